@@ -1,40 +1,68 @@
 # Each target installs what it needs into a local .venv at its first call.
 PYTHON ?= python3
-BIN := .venv/bin
+VENV ?= .venv
+BIN := $(VENV)/bin
 # Python compiles modules as they are imported; pip would take 13 s for all of numba and matplotlib.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
 
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-long test-engines lint package validation bench pictures clean
+.PHONY: demo test test-long test-engines matrix coverage lint docs package validation bench \
+  pictures release clean
 
-demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
+demo: $(VENV)/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-test: .venv/test.done  ## run the tests, but for those of `test-long`; of a part: PART=tests/laws
+test: $(VENV)/test.done  ## run the tests, but for those of `test-long`; of a part: PART=tests/laws
 	$(PYTEST) -m "not long" $(PART)
 
-test-long: .venv/test.done  ## run long validations: whole fits, statistics, elements, the catalogue
+test-long: $(VENV)/test.done  ## run long validations: whole fits, statistics, elements, the catalogue
 	$(PYTEST) -m long
 
 ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 
-test-engines: .venv/engines.done  ## run the tests of LIGGGHTS, CUDA and OpenCL; none may be skipped
+test-engines: $(VENV)/engines.done  ## run the tests of LIGGGHTS, CUDA and OpenCL; none may be skipped
 	@dpkg-query --show $(ENGINES) >/dev/null || \
 	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
 	$(BIN)/python -m pytest tests/export/test_liggghts.py tests/export/test_gpu.py \
-	  --junitxml=.venv/engines.xml
-	@! grep -o '<skipped [^>]*' .venv/engines.xml
+	  --junitxml=$(VENV)/engines.xml
+	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
 
-lint: .venv/dev.done  ## check style and types
+PYTHONS := 3.11 3.12 3.13
+QUICK := tests/physical tests/laws/test_laws.py tests/test_model.py tests/cli/test_cor.py
+
+matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is on PATH
+	@for version in $(PYTHONS); do \
+	  if python$$version -c '' 2>/dev/null; then \
+	    echo "Python $$version:"; \
+	    $(MAKE) --no-print-directory test VENV=.venv/$$version PYTHON=python$$version \
+	      PART="$(QUICK)" || exit 1; \
+	  else echo "Python $$version is not on PATH: not tested"; fi; \
+	done
+
+# Tests that need few integrations: with kernels as Python, whose lines count then, these are slow.
+PLAIN := tests/physical/test_materials.py tests/physical/test_pair.py tests/physical/test_hardness.py \
+  tests/physical/test_scaling.py tests/physical/test_validity.py \
+  tests/cli/test_quantities.py tests/cli/test_wording.py tests/cli/test_lines.py \
+  tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/reporting \
+  contactlaw/engines/pymunk
+
+coverage: $(VENV)/coverage.done  ## print which lines of contactlaw a part of the tests reaches
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest --cov=contactlaw --cov-report=term:skip-covered \
+	  -m "not long" $(PLAIN)
+
+lint: $(VENV)/dev.done  ## check style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-package: .venv/dev.done  ## build the wheel and use it in an environment of its own
+docs: $(VENV)/docs.done  ## build the site of the documentation: build/docs/index.html
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+package: $(VENV)/dev.done  ## build the wheel and use it in an environment of its own
 	rm -rf dist
 	$(BIN)/python -m build --outdir dist
 	$(BIN)/twine check --strict dist/*
@@ -45,15 +73,15 @@ package: .venv/dev.done  ## build the wheel and use it in an environment of its 
 	cd dist && env/bin/contactlaw table check
 	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
 
-validation: .venv/validation.done  ## write the report on accuracy and on the paper: validation/report/index.html
+validation: $(VENV)/validation.done  ## write the report on accuracy and on the paper: validation/report/index.html
 	$(BIN)/python -m validation
 
-bench: .venv/bench.done  ## measure each performance target beside a comparable program
+bench: $(VENV)/bench.done  ## measure each performance target beside a comparable program
 	$(BIN)/python -m validation.bench
 
-PICTURES := .venv/pictures
+PICTURES := $(VENV)/pictures
 
-pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minutes
+pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 minutes
 	$(BIN)/dem-demo rain --out $(PICTURES)/rain
 	$(BIN)/mpirun -np 2 $(BIN)/dem-demo sieve --out $(PICTURES)/sieve
 	$(BIN)/python -m validation --out $(PICTURES)/report
@@ -73,16 +101,32 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cd $(PICTURES) && cp thickness.png speed.png map.png oblique.png fit.png $(CURDIR)/docs/gallery
 	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
 
-clean:  ## remove the environment and the wheels
-	rm -rf .venv dist
+# What a person would forget: each line stops with what to do.
+release:  ## check the tree, the version and the changelog, build all and tag: VERSION=0.4.0
+	@stop() { echo "release: $$1" >&2; exit 1; }; \
+	[ -n "$(VERSION)" ] || stop "say which: make release VERSION=0.4.0"; \
+	[ -z "$$(git status --porcelain)" ] || stop "commit, or remove, what git status lists"; \
+	grep -qxF 'VERSION = "$(VERSION)"' contactlaw/_version.py || \
+	  stop "contactlaw/_version.py has another version"; \
+	grep -qxF 'version: $(VERSION)' CITATION.cff || stop "CITATION.cff has another version"; \
+	grep -qE '^## \[$(VERSION)\] - 20[0-9]{2}-[0-9]{2}-[0-9]{2}$$' CHANGELOG.md || \
+	  stop "CHANGELOG.md has no '## [$(VERSION)] - DATE': rename [Unreleased]"; \
+	! git rev-parse --quiet --verify "refs/tags/v$(VERSION)" >/dev/null || \
+	  stop "the tag v$(VERSION) exists"
+	$(MAKE) test test-long lint docs package
+	git tag --annotate "v$(VERSION)" --message "contactlaw $(VERSION)"
+	@echo "now: git push origin v$(VERSION)"
+
+clean:  ## remove the environments, the wheels and the site
+	rm -rf .venv dist build
 
 # One stamp file per extra; the extra is installed again when pyproject.toml is newer.
-.venv/%.done: pyproject.toml | .venv/bin/python
-	@echo "Installing contactlaw[$*] into .venv ..."
+$(VENV)/%.done: pyproject.toml | $(VENV)/bin/python
+	@echo "Installing contactlaw[$*] into $(VENV) ..."
 	@$(INSTALL) '.[$*]'
 	@touch $@
 
-.venv/bin/python:
+$(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "contactlaw needs Python 3.11 or later; try: make PYTHON=python3.11"; exit 1; }
-	@$(PYTHON) -m venv .venv
+	@$(PYTHON) -m venv $(VENV)

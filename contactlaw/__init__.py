@@ -1,10 +1,10 @@
 """Thickness-dependent restitution of beads on plates for particle simulations.
 
-The coefficient of restitution of a sphere that hits a plate falls with plastic flow at the contact
-and with the bending wave that runs away in the plate. The modified Zener model (Peng, Jin, Liu,
-Wei, Int. J. Solids Struct. 222-223 (2021) 111036) has both; this package answers from a table of
-its solutions. All quantities are in SI units.
+A sphere loses speed to plastic flow at the contact and to the bending wave that runs away in the
+plate; the modified Zener model (Peng et al. 2021) has both. All quantities are in SI units.
 
+Examples
+--------
 >>> import contactlaw as cl
 >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
 >>> model.restitution(speed=5.0, radius=0.9e-3, thickness=[0.5e-3, 1e-3, 3e-3]).round(3)
@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from contactlaw.physical.pair import Pair
     from contactlaw.physical.rebound import Rebound
     from contactlaw.physical.validity import Validity, edge_distance, explain
+    from contactlaw.record.file import Bodies, Record, read_record
+    from contactlaw.reporting.files import report
 
 __all__ = [
+    "Bodies",
     "Fit",
     "ForceHistory",
     "ImpactModel",
@@ -44,6 +47,7 @@ __all__ = [
     "Measurements",
     "Pair",
     "Rebound",
+    "Record",
     "Sensitivity",
     "Uncertainty",
     "UnidentifiedError",
@@ -58,6 +62,8 @@ __all__ = [
     "materials",
     "measured_law",
     "read_materials",
+    "read_record",
+    "report",
     "restitution_sphere_sphere",
 ]
 
@@ -74,6 +80,8 @@ _MODULES = {
     "physical.pair": "Pair",
     "physical.rebound": "Rebound",
     "physical.validity": "Validity edge_distance explain",
+    "record.file": "Bodies Record read_record",
+    "reporting.files": "report",
     "answers.sensitivity": "Sensitivity",
     "answers.uncertainty": "Uncertainty",
     "answers.beads": "restitution_sphere_sphere",

@@ -1,4 +1,4 @@
-"""Numbers as people read them: a value with its error, and a share.
+"""Numbers as people read them: a size in a suitable unit, a value with its error, and a share.
 
 Everything that is printed for people uses these; files for programs have every digit.
 """
@@ -14,6 +14,8 @@ _PREFIXES = {
     "Pa": ((1e10, "GPa", 1e9), (1e5, "MPa", 1e6), (1e2, "kPa", 1e3), (0.0, "Pa", 1.0)),
     "m": ((1.0, "m", 1.0), (1e-4, "mm", 1e-3), (1e-7, "um", 1e-6), (0.0, "nm", 1e-9)),
     "s": ((1.0, "s", 1.0), (1e-3, "ms", 1e-3), (1e-7, "us", 1e-6), (0.0, "ns", 1e-9)),
+    "kg": ((1.0, "kg", 1.0), (1e-3, "g", 1e-3), (1e-6, "mg", 1e-6), (0.0, "ug", 1e-9)),
+    "J": ((1.0, "J", 1.0), (1e-3, "mJ", 1e-3), (1e-6, "uJ", 1e-6), (0.0, "nJ", 1e-9)),
 }
 _FINEST = 1e-6  # smallest relative error that is written: no material is known so well
 _PLAIN = (1e-4, 1e7)  # sizes between which a number needs no exponent
@@ -31,6 +33,33 @@ def scale_of(size: float, unit: str) -> tuple[str, float]:
         if abs(size) >= least:
             return name, scale
     return unit, 1.0
+
+
+def in_unit(size: float, unit: str, digits: int = 6) -> str:
+    """Write a size in SI units in the unit that suits it.
+
+    Examples
+    --------
+    >>> in_unit(0.9e-3, "m"), in_unit(5.0, "m/s"), in_unit(0.0, "J"), in_unit(math.inf, "m")
+    ('0.9 mm', '5 m/s', '0 J', 'inf')
+    """
+    if not math.isfinite(size):
+        return f"{size:g}"
+    name, scale = scale_of(size, unit) if size else (unit, 1.0)
+    return f"{size / scale:.{digits}g} {name}"
+
+
+def drawn(size: float, unit: str = "m", digits: int = 6) -> str:
+    """Write a size for figures and pages, which have µ; an infinite plate is a half-space.
+
+    Examples
+    --------
+    >>> drawn(50e-6), drawn(math.inf), drawn(1.2345e-3, "J", 3)
+    ('50 µm', 'half-space', '1.23 mJ')
+    """
+    if size == math.inf:
+        return "half-space"
+    return in_unit(size, unit, digits).replace(" u", " µ")
 
 
 def rounded(number: float, digits: int = 2) -> str:

@@ -50,11 +50,11 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         Normal force law: ``"fem"``, read off finite elements, for metals, ceramics and glasses,
         of which either, both or neither body may yield; ``"myc"``, the paper's; another of
         `contactlaw.laws.names`; or a `contactlaw.laws.Law` of your own. A table for it is built
-        when it is first needed, in less than a second, and kept in the user's cache folder;
-        `solve`, soft spheres and LAMMPS need none.
+        when it is first needed, in one to two seconds, for a pair with a rate in three, and kept in
+        the user's cache folder; `solve`, soft spheres and LAMMPS need none.
     table : Table, path-like or Settings, optional
         A table in place of the law's own. For `contactlaw.table.Settings` a larger or finer one is
-        built when it is first needed, usually in less than a second, and kept in the cache folder.
+        built when it is first needed, usually in seconds, and kept in the cache folder.
     outside : {"raise", "solve", "clamp"}, optional
         What to do outside the table: refuse, integrate the equation, or take the value at the
         border (each such impact is counted in `clamped` and flagged in `Rebound.flags`).
@@ -163,7 +163,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             What holds the plate at its edge; a hole has a free one.
         edge_distance : array_like, optional
             Distance of the impact from that edge [m]; ``inf`` is a plate without edges. Impacts
-            near edges are integrated, whatever table there is. See docs/edges.md.
+            near edges are integrated, whatever table there is. See docs/angles_and_edges.md.
         hole_radius : array_like, optional
             Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
         mass : array_like, optional

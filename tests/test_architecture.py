@@ -24,13 +24,14 @@ LAYERS = [
     {"laws"},
     {"table"},
     {"physical"},  # SI units
+    {"record"},  # of impacts, and its file
     {"answers"},  # by a table or by the solver
     {"fitting"},
     {"model"},  # where the towers meet
     {"dashpot", "walls"},
     {"stepping"},  # the contacts of a time step; no engine
     {"softsphere"},
-    {"export", "report"},
+    {"export", "reporting"},
     {"engines"},
     {"cli"},
 ]
@@ -52,9 +53,9 @@ FILES = {
                 "fit"],
     "emit": ["types", "languages", "program", "function"],
     "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
-    "report": ["limits", "gallery", "page", "surface", "run", "summary", "charts", "figures",
-               "files"],
-    "engines": ["record", "hdf5", "layout", "needs"],
+    "record": ["columns", "hdf5", "file"],
+    "reporting": ["limits", "gallery", "page", "surface", "meshes", "run", "summary", "charts",
+                  "figures", "files"],
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
     "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "edges",
                        "lookahead", "contacts", "impacts", "attachment"],
@@ -77,24 +78,25 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_535,
-    "contactlaw/answers": 2_745,
-    "contactlaw/cli": 4_500,
+    "contactlaw": 33_149,
+    "contactlaw/answers": 2_746,
+    "contactlaw/cli": 3_934,
     "contactlaw/emit": 700,
-    "contactlaw/engines": 4_300,
-    "contactlaw/equation": 2_726,  # with the series of w_m, and masses that are no solid sphere's
-    "contactlaw/export": 1_085,
+    "contactlaw/engines": 3_625,
+    "contactlaw/equation": 2_775,  # series of w_m, masses, the part of a law that an impact asks
+    "contactlaw/export": 1_084,
     "contactlaw/fitting": 2_124,
     "contactlaw/laws": 2_064,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_277,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/report": 1_150,
-    "contactlaw/stepping": 1_960,
-    "contactlaw/table": 3_000,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_000,
+    "contactlaw/physical": 3_295,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/record": 687,
+    "contactlaw/reporting": 1_130,
+    "contactlaw/stepping": 1_979,
+    "contactlaw/table": 2_993,  # one interpolant, of two or three axes
+    "contactlaw/walls": 1_962,
     "contactlaw templates": 1_051,  # sources of other languages
-    "dem_demo": 6_350,
+    "dem_demo": 6_336,
     "validation": 14_850,  # with spheres that are not solid, and the turning-point form
-    "tests": 25_944,  # with rates at which something in the law changes
+    "tests": 24_155,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -183,7 +185,7 @@ def test_an_engine_knows_no_other():
     for engine in engines:
         for path in (ROOT / "engines" / engine).glob("*.py"):
             used = {name[1] for name in own(path) if name[0] == "engines" and len(name) > 1}
-            assert used <= {engine, *FILES["engines"]}, path
+            assert used <= {engine, "needs", "record"}, path
 
 
 def test_a_subcommand_knows_no_other():
@@ -276,7 +278,8 @@ def test_the_demo_has_layers(path):
         package, *parts = name.split(".")
         if package == "contactlaw":
             assert not any(part.startswith("_") for part in parts), name
-            assert parts[:2] != ["cli", "parts"], name
+            shared = ["quantities"], ["wording"], []
+            assert parts[:2] != ["cli", "parts"] or parts[2:3] in shared, name
         elif package == "dem_demo" and parts:
             assert parts[0] in {"kit", home if home in {"kit", *scenes} else "cli"}, name
 

@@ -60,14 +60,6 @@ def test_lookup_agrees_with_solve(model):
     np.testing.assert_allclose(fast, looked.restitution, rtol=0, atol=2e-11)
 
 
-def test_below_yield_no_plasticity_remains(model):
-    for thickness in (0.5e-3, H, math.inf):
-        v_y = model.yield_speed(R, thickness)
-        assert model.lookup(0.999 * v_y, R, thickness).plastic_fraction == 0.0
-        assert model.lookup(1.001 * v_y, R, thickness).plastic_fraction > 0.0
-        assert model.solve(0.999 * v_y, R, thickness).residual_compression == 0.0
-
-
 def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     radius, thickness = np.array([0.5e-3, 0.9e-3, 2e-3]), np.array([0.5e-3, 0.5e-3, 5e-3])
     hit = model.solve(model.yield_speed(radius, thickness), radius, thickness)
@@ -75,28 +67,6 @@ def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     # the table's w_m is good to 3e-11
     assert hit.peak_compression == pytest.approx(0.68 * strain**2 * radius, rel=1e-9)
     assert hit.overload == pytest.approx(1.0, rel=1e-9)
-
-
-def test_yield_speed_is_near_eq_14(model):
-    # Eq. 14, with eta as Eq. 1 gives it, claims 1.2 % up to R/H = 1.8
-    v_y0 = model.pair.yield_speed
-    eta = model.lookup(v_y0, R, R).inelasticity
-    for ratio in (0.2, 0.6, 1.0, 1.8):
-        q = eta * (5 / 4) ** 0.6 * ratio**2
-        assert model.yield_speed(R, R / ratio) / v_y0 == pytest.approx(
-            q + (1 + q) ** -0.2, rel=0.012
-        )
-    assert model.yield_speed(R, math.inf) == pytest.approx(v_y0, rel=1e-9)
-
-
-def test_momentum_and_force_scale(model):
-    # peak force of the elastic half-space impact, Hertz: F = K (5 m V^2/(4 K))^(3/5)
-    hit = model.solve(3.0, R, math.inf)
-    mass = 4 / 3 * math.pi * R**3 * model.pair.sphere.density
-    k = 4 / 3 * model.pair.effective_modulus * math.sqrt(R)
-    peak = (5 / 4 * mass * 3.0**2 / k) ** 0.4
-    assert hit.peak_compression == pytest.approx(peak, rel=1e-9)
-    assert hit.peak_force == pytest.approx(k * peak**1.5, rel=1e-9)
 
 
 @settings(deadline=None, max_examples=200)
@@ -128,15 +98,6 @@ def test_strided_input_is_taken_as_it_reads(model):
     speed.flags.writeable = False
     each = [model.restitution(v, R, H) for v in speed]
     np.testing.assert_allclose(model.restitution(speed, R, H), each, rtol=0, atol=2e-11)
-
-
-@pytest.mark.parametrize("method", ["restitution", "lookup", "solve"])
-@pytest.mark.parametrize("bad", NOT_POSITIVE, ids=repr)
-@pytest.mark.parametrize("name", ["speed", "radius", "thickness"])
-def test_bad_numbers_are_refused_by_name(model, method, name, bad):
-    good = {"speed": 5.0, "radius": R, "thickness": H}
-    with pytest.raises(ValueError, match=f"^{name}: .*"):
-        getattr(model, method)(**{**good, name: bad})
 
 
 @pytest.mark.parametrize("method", ["restitution", "lookup", "solve"])
@@ -265,23 +226,9 @@ def test_wrong_options(pair, arguments, message):
         cl.ImpactModel(pair, **arguments)
 
 
-def test_the_table_of_another_law_is_refused(pair, small_table):
-    other = dataclasses.replace(small_table, law=laws.law("thornton"))
-    with pytest.raises(ValueError, match="belongs to law 'thornton'"):
-        cl.ImpactModel(pair, law="myc", table=other)
-
-
 def test_a_pair_is_needed():
     with pytest.raises(TypeError, match="pair: expected a contactlaw.Pair"):
         cl.ImpactModel(("gamma-alumina", "glass"), law="myc")
-
-
-def test_a_table_file_is_taken(pair, small_table, tmp_path):
-    from contactlaw.table import file
-
-    file.write(small_table, tmp_path / "t.h5")
-    ours = cl.ImpactModel(pair, law="myc", table=tmp_path / "t.h5").restitution(5.0, R, H)
-    assert ours == cl.ImpactModel(pair, law="myc", table=small_table).restitution(5.0, R, H)
 
 
 def test_settings_of_a_finer_table_are_taken(pair, model, tmp_path, monkeypatch):
@@ -299,11 +246,6 @@ def test_settings_of_a_finer_table_are_taken(pair, model, tmp_path, monkeypatch)
 def test_solve_refuses_a_tolerance_out_of_range(model, rtol):
     with pytest.raises(ValueError, match="rtol: must be a float between"):
         model.solve(5.0, R, H, rtol=rtol)
-
-
-def test_solve_says_when_the_plate_is_hopelessly_thin(model):
-    with pytest.raises(RuntimeError, match=r"lambda = .*did not solve|did not solve at lambda"):
-        model.solve(1e3, 1.0, 0.01)
 
 
 def test_curve_is_restitution(model):
@@ -324,13 +266,6 @@ def test_a_curve_is_for_one_number(model, bad):
         model.sphere_sphere_curve(R, bad)
 
 
-@pytest.mark.parametrize("bad", [value for value in NOT_POSITIVE if np.ndim(value) == 0], ids=repr)
-def test_a_curve_takes_no_other_speeds_than_restitution(model, bad):
-    for curve in (model.curve(R, H), model.sphere_sphere_curve(R, R)):
-        with pytest.raises(ValueError, match="^speed: "):
-            curve(bad)
-
-
 def test_a_curve_takes_any_kind_of_number(model):
     for curve in (model.curve(R, H), model.sphere_sphere_curve(R, R)):
         for speed in (5, np.float64(5.0), np.float32(5.0), np.int64(5), np.array(5.0)):
@@ -348,12 +283,6 @@ def test_a_model_travels_to_another_process(model):
     twin = pickle.loads(pickle.dumps(model))
     assert (twin.pair, twin.law, twin.outside) == (model.pair, model.law, model.outside)
     assert twin.restitution(5.0, R, H) == model.restitution(5.0, R, H)
-
-
-def test_a_coarse_table_says_so(pair, small_table):
-    with pytest.warns(UserWarning, match="less accurate than contactlaw promises"):
-        settings = table.Settings(log_overload_step=0.5)
-        cl.ImpactModel(pair, law="myc", table=table.build(laws.law("myc"), settings))
 
 
 def test_a_callers_disk_cache_keeps_no_table(tmp_path):
@@ -439,22 +368,6 @@ def test_kernel_is_restitution(model):
         assert cor(speed, R, thickness) == pytest.approx(expected, abs=1e-15)
     for bad in ((-1.0, R, H), (math.nan, R, H), (5.0, 0.0, H), (5.0, R, -H), (1e4, R, H)):
         assert math.isnan(cor(*bad))  # what it is documented to give where it cannot raise
-
-
-def test_kernel_in_a_parallel_loop(model):
-    import numba
-
-    cor = model.kernel
-
-    @numba.njit(parallel=True)
-    def rebounds(speed, out):
-        for i in numba.prange(speed.size):
-            out[i] = cor(speed[i], 0.9e-3, 1e-3)
-
-    speed = np.linspace(0.1, 60, 1000)
-    out = np.empty_like(speed)
-    rebounds(speed, out)
-    np.testing.assert_allclose(out, model.restitution(speed, R, H), rtol=0, atol=1e-15)
 
 
 def test_address_through_ctypes(model):

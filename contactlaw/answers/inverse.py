@@ -44,7 +44,7 @@ class Solutions:
         Solutions, rising; none if no value gives the COR; a thickness of ``inf`` is a half-space.
     low, high : ndarray, shape (n,)
         Ends of the range about each solution in which the COR that was asked for lies within the
-        band of `ImpactModel.uncertainty`, that of two in three impacts; or -inf and inf.
+        band of `ImpactModel.uncertainty`, that of two of three impacts; or -inf and inf.
     flags : ndarray of int64, shape (n,)
         `Validity` limits that the impact exceeds.
     attainable, attained_at : (float, float)

@@ -318,7 +318,8 @@ def table_for(law: Law, table: TableArgument) -> Table:
         )
     if not table.law.follows(served):
         raise ValueError(
-            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r}: "
+            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r} "
+            f"(data {table.law.key} and {served.key}; laws of one name differ in their rates): "
             f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
             "--plate if the law takes numbers from them"
         )

@@ -1,27 +1,27 @@
 """Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
 
-Each file or folder but `parts` is a subcommand: its function `add` adds the parser and options to
-argparse's subparsers. Code that several subcommands share is in `parts`. Another command line, as
-that of dem-demo, takes `quantities` and `sentence` from here.
+Each file or folder but `parts` has a subcommand: its function `add` adds the parser and options to
+argparse's subparsers, and a line of its docstring that begins with ``contactlaw NAME`` says what it
+is for. Only the file of the subcommand that is called is imported, so that help comes at once. Code
+that several subcommands share is in `parts`.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import importlib
 import os
-import pkgutil
+import re
 import sys
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 
 from contactlaw._version import VERSION
-from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.wording import sentence
 from contactlaw.parser import Parser
 
-__all__ = ["main", "parser", "quantities", "sentence"]
-
+_ABOUT = re.compile(r"^``contactlaw ([\w-]+)``: (.*)\.$", re.MULTILINE)
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
 
@@ -43,7 +43,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     ...
       "restitution": 0.7...
     """
-    arguments = parser().parse_args(argv)
+    words = sys.argv[1:] if argv is None else argv
+    arguments = parser(words).parse_args(words)
+    from contactlaw.cli.parts import wording  # what takes long is loaded once help has been given
+
     if sys.stdout is None:  # the shell has closed it by >&-
         wording.print_message("the standard output is closed")
         return _REFUSED
@@ -59,7 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
-        wording.print_message(sentence(error, vars(arguments)))
+        wording.print_message(wording.sentence(error, vars(arguments)))
         try:
             sys.stdout.flush()
         except OSError:  # a full disk
@@ -68,23 +71,34 @@ def main(argv: Sequence[str] | None = None) -> int:
     return _DONE
 
 
-def parser() -> argparse.ArgumentParser:
-    """Make the parser of ``contactlaw``; parsed arguments have the subcommand's function as `run`.
+def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
+    """Make the parser; parsed arguments have the function of the subcommand as `run`.
 
-    Examples
-    --------
-    >>> run = parser().parse_args(["table", "info", "--law", "myc"]).run
-    >>> run.__module__, run.__name__
-    ('contactlaw.cli.table', '_info')
+    With the words of a command line, other subcommands than its own have a line of help only.
     """
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
                       help="print the version and exit")  # fmt: skip
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
-    for found in pkgutil.iter_modules(__path__):
-        if found.name != "parts":
-            importlib.import_module(f"{__name__}.{found.name}").add(commands)
+    listed = _subcommands()
+    asked = next((word for word in words or () if not word.startswith("-")), None)
+    modules = {module for name, (module, _) in listed.items() if words is None or name == asked}
+    for name, (_, about) in listed.items() if not modules else ():
+        commands.add_parser(name, help=about)
+    for module in sorted(modules):
+        importlib.import_module(f"{__name__}.{module}").add(commands)
     return made
+
+
+def _subcommands() -> dict[str, tuple[str, str]]:
+    """Find module and purpose of each subcommand, from the docstring of its file."""
+    found = dict[str, tuple[str, str]]()
+    for path in sorted(Path(__file__).parent.glob("*")):
+        file = path / "__init__.py" if path.is_dir() else path
+        if file.suffix == ".py" and path.stem not in ("__init__", "parts") and file.exists():
+            said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+            found |= {name: (path.stem, about) for name, about in _ABOUT.findall(said)}
+    return found
 
 
 def _drop_output() -> None:

@@ -22,6 +22,6 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     model = ImpactModel(chosen.pair(arguments), law=arguments.law)
-    with wording.file_of("out", arguments.out):
+    with wording.writing("out", arguments.out):
         export.page(arguments.out, model)
     print(arguments.out)

@@ -1,4 +1,4 @@
-"""``contactlaw export``: source files for codes that do not run Python."""
+"""``contactlaw export``: source files for codes that do not run Python: header, liggghts."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def add(commands: Any) -> None:
 
 
 def _header(arguments: argparse.Namespace) -> None:
-    with wording.file_of("out", arguments.out):
+    with wording.writing("out", arguments.out):
         model = ImpactModel(chosen.pair(arguments), law=arguments.law)
         export.header(arguments.out, model, arguments.table, prefix=arguments.prefix)
     print(arguments.out)
 
 
 def _liggghts(arguments: argparse.Namespace) -> None:
-    with wording.folder_of("out", arguments.out):
+    with wording.writing("out", arguments.out, folder=True):
         model = ImpactModel(chosen.pair(arguments), law=arguments.law)
         export.liggghts(arguments.out, model)
     print(arguments.out)

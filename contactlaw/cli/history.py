@@ -9,8 +9,9 @@ from typing import Any, Literal
 import numpy as np
 
 from contactlaw import style
+from contactlaw._readable import drawn
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
-from contactlaw.cli.parts.plots import length_of, plate_of
+from contactlaw.cli.parts.plots import plate_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain, limits_in_words
@@ -34,9 +35,7 @@ def _run(arguments: argparse.Namespace) -> None:
         with chosen.plot_file(arguments):
             _plot_history(arguments)
         return
-    given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness")}
-    if arguments.mass is not None:
-        given["mass"] = arguments.mass
+    given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness", "mass")}
     model = chosen.model(arguments)
     contact = np.column_stack(_contact(arguments, model))
     print(f"# {impacts.in_words(impacts.asked(model, **given))}")
@@ -48,7 +47,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
     """Force over time; flags are warnings on stderr, because the output is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
-    with wording.naming_impact(*impact):
+    with wording.naming_impact(*impact, mass=arguments.mass):
         found = model.force_history(*impact, arguments.samples, method, mass=arguments.mass)
     flags = int(found.flags)
     for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):
@@ -59,7 +58,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
 def _plot_history(arguments: argparse.Namespace) -> None:
     contact = _contact(arguments, chosen.model(arguments))
     title = (
-        f"{arguments.sphere} on {arguments.plate}: radius {length_of(arguments.radius)}, "
+        f"{arguments.sphere} on {arguments.plate}: radius {drawn(arguments.radius)}, "
         f"{plate_of(arguments.thickness)}, {arguments.speed:g} m/s"
     )
     _draw(contact, title, arguments.plot)

@@ -56,21 +56,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def text(found: SpeedTable) -> Iterator[str]:
-    """Lines for a terminal: rows of COR over speed, their error, and the meaning of the flags.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> for line in text(model.speed_table(0.9e-3, 1e-3, error=0.05)):
-    ...     print(line)
-    speed     COR
-    [m/s]     [-]
-      0.1  0.9567
-       10  0.8878
-    <BLANKLINE>
-    2 rows, straight lines between them within 0.021 in COR
-    """
+    """Lines for a terminal: rows of COR over speed, their error, and the meaning of the flags."""
     rows = [
         (f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)
     ]

@@ -35,7 +35,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    with wording.file_of("out", arguments.out):
+    with wording.writing("out", arguments.out):
         wording.check_suffix("out", arguments.out, _SUFFIXES)
         axes = (arguments.speed, arguments.radius, arguments.thickness)
         model = chosen.model(arguments)
@@ -55,26 +55,9 @@ def save(
 ) -> None:
     """Write a grid of impacts; the file appears complete or not at all.
 
-    Parameters
-    ----------
-    table : ImpactTable
-        Impacts of every combination, from `contactlaw.cli.parts.impacts.tabulate`.
-    model : ImpactModel
-        Model of these impacts.
-    axes : sequence of sequence of float
-        Speeds, radii and thicknesses [m/s, m, m].
-    path : path-like
-        ``.csv``: a row per impact, units in the header. ``.h5``: radius, thickness and speed are
-        the axes (HDF5 dimension scales), each field an array over them with its unit in the
-        attribute ``units`` (``"1"`` without one). The attributes of ``flags`` have the number of
-        each limit.
-
-    Raises
-    ------
-    ValueError
-        If the suffix is none of these.
-    OSError
-        If the folder does not exist or is not writable, or the disk is full.
+    In ``.h5``, radius, thickness and speed are the axes (HDF5 dimension scales), each field is an
+    array over them with its unit in the attribute ``units`` (``"1"`` without one), and the
+    attributes of ``flags`` have the number of each limit.
     """
     wording.check_suffix("out", path, _SUFFIXES)
     if Path(path).suffix.lower() == ".csv":

@@ -67,7 +67,7 @@ def _check(arguments: argparse.Namespace) -> None:
 def _build(arguments: argparse.Namespace) -> None:
     enable_caching()
     out = Path(arguments.out or f"{arguments.law}.h5")
-    with wording.file_of("out", out):
+    with wording.writing("out", out):
         law = _law(arguments)
         built = table.build(law, progress=cache.progress_bar)
         built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)

@@ -170,6 +170,46 @@ def at_strength(laws: Array, strength: float, room: Array) -> Array:
 
 
 @kernel
+def _put(laws: Array, at: int, t: float, begins: int, count: int, room: Array) -> None:
+    """Write some of the numbers of a law at t of the piece whose row begins at `at`."""
+    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
+    last = int(laws[at + BEGINS]) + powers * width
+    for n in range(begins, begins + count):
+        room[n] = laws[last + n]
+    for k in range(powers):
+        row = last - (k + 1) * width
+        for n in range(begins, begins + count):
+            room[n] = room[n] * t + laws[row + n]
+
+
+@kernel
+def at_compression(laws: Array, strength: float, dm: float, room: Array) -> Array:
+    """`at_strength`, but only of what belongs to a contact that is loaded to dm.
+
+    A law has thousands of numbers and a contact asks for a hundred of them.
+    """
+    at = _piece(laws, strength)
+    t = _place(laws, at, strength)
+    _put(laws, at, t, 0, HEADER, room)
+    _put(laws, at, t, int(room[STARTS]), int(room[PIECES]) + 1, room)
+    row = row_of(room, piece_at(room, math.sqrt(dm)))
+    _put(laws, at, t, row, PIECE, room)
+    _put(laws, at, t, int(room[row + AT]), int(room[row + DEGREE]) // 4 * 4 + 4, room)
+    _put(laws, at, t, int(room[FAMILY_STARTS]), int(room[UNLOADINGS]) + 1, room)
+    one = _unloading_row(room, dm)
+    if one > 0:
+        _put(laws, at, t, one, UNLOADING_ROW, room)
+        for which in range(FUNCTIONS):
+            k = one + OFFSET + 1 + which * FUNCTION
+            count = int(room[k + FUNCTION_DEGREE]) // 4 * 4 + 4
+            _put(laws, at, t, int(room[k + FUNCTION_AT]), count, room)
+    if int(laws[at + POWERS]) > 0:
+        _by_scale(room, row, 1, PIECE)
+        _by_scale(room, one, min(one, 1), UNLOADING_ROW)
+    return room
+
+
+@kernel
 def _by_scale(room: Array, at: int, count: int, length: int) -> None:
     """Put SCALE and OFFSET in place of half the length and the middle of each piece."""
     for k in range(at, at + count * length, length):

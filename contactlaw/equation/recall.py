@@ -42,7 +42,7 @@ def _block(
 
 @kernel
 def recalled(r: Array, at: int, m: Memory, force: float, half: float) -> Recalled:
-    """Say what six numbers add in a step of 2 half/tau, from the force at its beginning.
+    """Compute what a contact's six numbers add in a step of 2 half/tau, from the force before it.
 
     They are those of the response r from place `at` on.
     """

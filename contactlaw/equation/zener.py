@@ -88,11 +88,12 @@ def _integrate(
 
     The solution of each goes into a column of out, in the order of `Solution`.
     """
-    room = np.empty(force.room_for(law))
+    room, own, made = np.empty(force.room_for(law)), law, math.nan
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            own = law if room.size == 0 else force.at_strength(law, s[n], room)
+            if room.size > 0 and s[n] != made:  # it takes a quarter of an integration
+                own, made = force.at_strength(law, s[n], room), s[n]
             one = follow_impact(goal, own, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
@@ -106,6 +107,9 @@ def follow_impact(
     edges: Edges | None,
 ) -> Solution:  # fmt: skip
     """Integrate one impact, and note points of its path in row n."""
+    if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
+        # slower impacts lose the same share, but the law knows no loss of the shallowest contacts
+        y = 0.05 / force.lossless(law)
     scale, h = integrator.scale_of(y, rtol)
     contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t, rtol)))
     leg, state = motion.touch(contact, scale.u)
@@ -393,8 +397,11 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
     if status.any():
         return failure(status[which])
     w_m = each[which]
-    out.yield_ratio[:] = w_m / overload
-    one = _run(TO_THE_END, law, lam, out.yield_ratio, rtol, strength=s)
+    out.yield_ratio[:] = y = w_m / overload
+    order = np.argsort(s, kind="stable")  # the law of a strength is made once
+    found = np.empty((len(Solution._fields), s.size))
+    found[:, order] = _run(TO_THE_END, law, lam[order], y[order], rtol, strength=s[order])
+    one = Solution(*found)
     _put(one, w_m, out)
     return failure(one.status)
 
@@ -453,7 +460,9 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
             n = beyond[k]
-            one = law if own.size == 0 else force.at_strength(law, outcome.strength[n], own)
+            one = (
+                law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
+            )
             left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
             if own.size > 0:
                 out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))

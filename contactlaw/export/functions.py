@@ -147,7 +147,7 @@ INSTEAD: dict[Any, Any] = {
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"
-NOTHING = Answer(*[math.nan] * 11)
+NOTHING = Answer(*[math.nan] * len(Answer._fields))
 BLOWN_UP = State(0.0, 0.0, math.nan)
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 

@@ -15,7 +15,7 @@ from contactlaw.physical.arguments import broadcast, check, within
 Array = NDArray[np.float64]
 
 
-class Kind(NamedTuple):
+class Measurable(NamedTuple):
     """A measured quantity and its limits, in SI units."""
 
     title: str
@@ -28,18 +28,18 @@ class Kind(NamedTuple):
 
 NORMAL = {
     # a measured COR may be a little above 1, from its error
-    "restitution": Kind("COR", "-", 1e-3, 1.2, "in per cent?"),
-    "contact_time": Kind("contact time", "s", 1e-9, 10.0, "in microseconds?"),
-    "peak_force": Kind("peak force", "N", 1e-12, 1e9, "in another unit?"),
+    "restitution": Measurable("COR", "-", 1e-3, 1.2, "in per cent?"),
+    "contact_time": Measurable("contact time", "s", 1e-9, 10.0, "in microseconds?"),
+    "peak_force": Measurable("peak force", "N", 1e-12, 1e9, "in another unit?"),
 }
 # Of beads that came without spin. Between the first and the second there is the identity
 # tangential = 1 - (2/7) (1 + rotational); 1 + rotational is what friction took of the sliding.
 OBLIQUE = {
-    "tangential_restitution": Kind("tangential restitution", "-", 1e-3, 1.2, "in per cent?"),
-    "rotational_restitution": Kind(
+    "tangential_restitution": Measurable("tangential restitution", "-", 1e-3, 1.2, "in per cent?"),
+    "rotational_restitution": Measurable(
         "rotational restitution", "-", -0.9999, 1.2, "in per cent?", 1.0
     ),
-    "spin": Kind("spin", "rad/s", 1e-3, 1e9, "its size, without a sign; in rpm?"),
+    "spin": Measurable("spin", "rad/s", 1e-3, 1e9, "its size, without a sign; in rpm?"),
 }
 KINDS = NORMAL | OBLIQUE
 
@@ -211,7 +211,7 @@ def _check_sliding(name: str, flat: dict[str, Array]) -> None:
         )
 
 
-def _check_kind(name: str, kind: Kind, flat: dict[str, Array]) -> None:
+def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
     """Refuse values out of range, and errors that some values lack."""
     values, errors = flat.get(name), flat.get(f"{name}_error")
     if values is None:

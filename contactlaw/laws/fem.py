@@ -291,7 +291,7 @@ class Curves:
         return q
 
     def _nearer(self, q: Array) -> Array | float:
-        """Way from yield of the `_own` compression over that of q, in their roots."""
+        """Distance of the `_own` root compression from yield, over that of q."""
         return 1.0
 
     def _sum(self, name: str, q: Array) -> Array:

@@ -41,6 +41,17 @@ _LIMITS = {
 }
 
 
+class ArgumentError(ValueError):
+    """What is wrong with an argument, or with several, whose `name` it has."""
+
+    def __init__(self, name: str, what: str) -> None:
+        super().__init__(name, what)
+        self.name, self.what = name, what
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.what}"
+
+
 def broadcast(**arguments: ArrayLike) -> Any:
     """Flat float64 arrays of one length, and their common shape (None for scalars)."""
     arrays = {name: _numbers(name, value) for name, value in arguments.items()}
@@ -54,15 +65,16 @@ def _common_shape(arrays: dict[str, Array], *more: tuple[int, ...]) -> tuple[int
         return np.broadcast_shapes(*more, *(array.shape for array in arrays.values()))
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ValueError(f"{next(iter(arrays))}: shapes do not broadcast: {shapes}") from None
+        raise ArgumentError(next(iter(arrays)), f"shapes do not broadcast: {shapes}") from None
 
 
 def refuse_units(name: str, value: object, unit: str) -> None:
     """Refuse what carries a unit, as pint, astropy, unyt and xarray have it: numpy drops it."""
     if _unit(value) is not None:
-        raise ValueError(
-            f"{name}: got {value!r}, whose unit would be lost; convert it to SI and pass the bare "
-            f'numbers: x.to("{unit}").magnitude with pint, x.to_value("{unit}") with astropy, unyt'
+        raise ArgumentError(
+            name,
+            f"got {value!r}, whose unit would be lost; convert it to SI and pass the bare "
+            f'numbers: x.to("{unit}").magnitude with pint, x.to_value("{unit}") with astropy, unyt',
         )
 
 
@@ -84,7 +96,7 @@ def _numbers(
     except (ValueError, TypeError, OverflowError):  # rows of different lengths, 10**400
         array = np.asarray(None)
     if array.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
-        raise ValueError(f"{name}: expected {expected}, got {value!r}")
+        raise ArgumentError(name, f"expected {expected}, got {value!r}")
     with np.errstate(over="ignore"):  # a huge long double becomes inf
         return array.astype(np.float64, copy=False)
 
@@ -106,12 +118,12 @@ def vectors(**arguments: ArrayLike) -> tuple[Any, tuple[int, ...]]:
     arrays = {name: _numbers(name, value) for name, value in arguments.items()}
     for name, values in arrays.items():
         if values.shape[-1:] != (3,) and not (values.ndim == 0 and values == 0.0):
-            raise ValueError(
-                f"{name}: expected vectors of three numbers along the last axis, got shape "
-                f"{values.shape}"
+            raise ArgumentError(
+                name,
+                f"expected vectors of three numbers along the last axis, got shape {values.shape}",
             )
         if not np.isfinite(values).all():
-            raise ValueError(f"{name}: must be finite, got {arguments[name]!r}")
+            raise ArgumentError(name, f"must be finite, got {arguments[name]!r}")
     shape = _common_shape(arrays, (3,))
     rows = (np.broadcast_to(values, shape).reshape(-1, 3) for values in arrays.values())
     return tuple(np.array(row, dtype=np.float64, order="C") for row in rows), shape
@@ -123,7 +135,7 @@ def number(name: str, value: float) -> float:
         return value
     array = _numbers(name, value, "one number")
     if array.ndim > 0:
-        raise ValueError(f"{name}: expected one number, got {value!r}")
+        raise ArgumentError(name, f"expected one number, got {value!r}")
     return float(array)
 
 
@@ -150,9 +162,10 @@ def _check_ratio(radius: Array, thickness: Array) -> None:
     n = int(np.argmin(known))
     where = f" (element {n})" if known.size > 1 else ""
     r, h = (float(np.broadcast_to(values, known.shape)[n]) for values in (radius, thickness))
-    raise ValueError(
-        f"thickness: got {h!r}{where} beside a radius of {r!r}, R/H = {r / h:.4g}; must be at "
-        f"least {lookup.THINNEST:g} of the radius, of impacts on thinner foils nothing is known"
+    raise ArgumentError(
+        "thickness",
+        f"got {h!r}{where} beside a radius of {r!r}, R/H = {r / h:.4g}; must be at "
+        f"least {lookup.THINNEST:g} of the radius, of impacts on thinner foils nothing is known",
     )
 
 
@@ -167,9 +180,10 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     if wrong.any():
         n = int(np.argmax(wrong))
         where = f" (element {n})" if values.size > 1 else ""
-        raise ValueError(
-            f"{name}: got {float(values[n])!r}{where}; "
-            f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip()
+        raise ArgumentError(
+            name,
+            f"got {float(values[n])!r}{where}; "
+            f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip(),
         )
 
 

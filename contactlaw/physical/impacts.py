@@ -15,6 +15,8 @@ from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
 
+_ENDLESS = np.array([math.inf])  # distance from an edge, and radius of a hole, where there is none
+
 
 @dataclass(frozen=True, eq=False)
 class Impacts:
@@ -41,12 +43,13 @@ class Impacts:
     ) -> Impacts:
         """Broadcast and check what the user gave."""
         given = {} if mass is None else {"mass": mass}
-        v, r, h, s, a, *masses, shape = broadcast(
-            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance,
-            hole_radius=hole_radius, **given,
-        )  # fmt: skip
-        check(speed=v, radius=r, thickness=h, **dict(zip(given, masses, strict=True)))
-        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), *masses)
+        if edge_distance is not math.inf or hole_radius is not math.inf:
+            given |= {"edge_distance": edge_distance, "hole_radius": hole_radius}
+        v, r, h, *more, shape = broadcast(speed=speed, radius=radius, thickness=thickness, **given)
+        known = dict(zip(given, more, strict=True))
+        s, a = (known.pop(name, _ENDLESS) for name in ("edge_distance", "hole_radius"))
+        check(speed=v, radius=r, thickness=h, **known)
+        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), **known)
 
     def part(self, some: NDArray[np.intp]) -> Impacts:
         """Choose some of the impacts."""

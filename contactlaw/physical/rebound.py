@@ -96,8 +96,9 @@ def _with_units(
 
     Returns 0, or NaN where a field is not finite.
     """
-    wrong = 0.0
+    wrong, same = 0.0, limits_at(limits, 0.0)
     for n in range(speed.size):
+        own = same if limits.shape[0] == 1 else limits_at(limits, outcome.strength[n])
         v, t = speed[n], time[n]
         contact_time = outcome.contact_time[n] * t
         out.contact_time[n] = contact_time
@@ -109,8 +110,7 @@ def _with_units(
         extremes.peak_force[n] *= mass[n] * v / t
         extremes.residual_compression[n] *= unit
         flags[n] |= flags_of(
-            limits_at(limits, outcome.strength[n]), radius[n], thickness[n], unit, contact_time,
-            w * unit, extremes.peak_force[n],
+            own, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n],
         )  # fmt: skip
         total = contact_time + w * unit + out.wave_fraction[n] + out.overload[n]
         total += extremes.peak_force[n] + extremes.residual_compression[n]

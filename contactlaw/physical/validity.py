@@ -45,9 +45,10 @@ class Validity(enum.IntFlag):
     """Limits that an impact exceeds; 0 if it exceeds none.
 
     All but `DAMAGE` are limits of the answer's accuracy; `ACCURACY` combines those. What the model
-    leaves out altogether (adhesion, strain rate in metals, coatings) raises no flag: at 1e4 per
-    second steels are about a third stronger than in the tensile test that the catalogue quotes, and
-    so yield at twice the speed. `explain` puts flags into words.
+    leaves out altogether (adhesion, coatings) raises no flag, nor does a metal without a rate of
+    strain, which its material may have: at 1e4 per second steels are about a third stronger than in
+    the tensile test that the catalogue quotes, and so yield at twice the speed. `explain` puts
+    flags into words.
 
     Examples
     --------

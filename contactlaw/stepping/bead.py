@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.record.file import Record, Surface, bodies_of
 from contactlaw.stepping.contact import (
     ALONE,
     AT_REST,
@@ -33,6 +34,7 @@ from contactlaw.stepping.plate_rows import plate_rows
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
+from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import (
     OVERLAP,
     ROOM,
@@ -101,8 +103,10 @@ class WallContacts:
         kinds = sorted(by_type(models, types))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ValueError(f"models: the types of beads are 1 to {types}, got {kinds}")
-        rows, numbers, self._models = plate_rows(walls, by_type(models, types), types)
-        facets, frames, self._held = framed(walls, numbers, largest)
+        own = by_type(models, types)
+        rows, numbers, self._held = plate_rows(walls, own, types)
+        self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
+        facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
         self.scene = WallScene(
             rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction
@@ -124,6 +128,26 @@ class WallContacts:
             )
         hits: Rows = self.scene.impacts[: status["impacts"]]
         return hits
+
+    def record(self, rows: Rows | None = None, **made: Any) -> Record:
+        """Record of impacts, with the materials, law and places of each.
+
+        Parameters
+        ----------
+        rows : structured array, optional
+            Impacts on these walls; by default `collisions`.
+        **made
+            What else the record shall say, such as the engine; texts and numbers.
+        """
+        rows = self.collisions() if rows is None else rows
+        keys = np.stack([rows["plate"], rows["material"]], axis=1)
+        known, which = np.unique(keys, axis=0, return_inverse=True)
+        found = [bodies_of(self._models[plate][kind + 1]) for plate, kind in known.tolist()]
+        bodies = [one for n, one in enumerate(found) if one not in found[:n]]
+        number = np.array([bodies.index(one) for one in found], dtype=np.int64)
+        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
+        made = {"friction": self.scene.friction, **made}
+        return Record(rows.copy(), bodies, number[which.ravel()], surface, made)
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:
         """Empty rows of CONTACT and of FRICTION for a number of beads, shape (beads, n) each."""

@@ -146,7 +146,7 @@ class Bead(NamedTuple):
     friction: Any  # as many rows of FRICTION; none without friction
 
 
-class Edge(NamedTuple):
+class NearestEdge(NamedTuple):
     """The edge of a wall that is nearest to a contact."""
 
     near: Near
@@ -324,7 +324,7 @@ def _end(
     spring: Spring,
     last: State,
     u: float,
-    edge: Edge,
+    edge: NearestEdge,
 ) -> Point:
     """Record an impact whose force ended in this step; return the force that settles its energy.
 
@@ -378,7 +378,7 @@ def _end(
         since = min(max(gap / -u, 0.0), clock.dt)
     record = scene.impacts[n]
     record.time = clock.now - row.duration
-    record.bead, record.other = bead.number, -1
+    record.bead, record.other, record.material = bead.number, -1, bead.kind
     record.plate, record.triangle = contact.wall, contact.triangle
     record.x, record.y, record.z = contact.point
     record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed
@@ -431,11 +431,11 @@ def state_of(row: Any) -> State:
 @kernel
 def _near_edge(
     scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring
-) -> Edge:
+) -> NearestEdge:
     """Edge that is nearest to a contact, and how it acts there."""
     facet = scene.facets[contact.facet]
     if facet.edge_count == 0 or plate_row.thickness == math.inf:
-        return Edge(Near(plate_row.responses[0], 0.0), math.inf)
+        return NearestEdge(Near(plate_row.responses[0], 0.0), math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
     # Slow impacts last twice as long as those at 1 m/s, and the more the plate gives way, the
     # longer: the bead is then slowed in the time m alpha.
@@ -446,7 +446,7 @@ def _near_edge(
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
     rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
     place = place_of(kind, distance, hole, thickness)
-    return Edge(Near(plate_row.responses[place], rate), distance)
+    return NearestEdge(Near(plate_row.responses[place], rate), distance)
 
 
 @kernel

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.table.lookup import ELASTIC, STRETCHED, TERMS
+from contactlaw.table.lookup import ELASTIC, STRETCHED
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class Axis:
         """Raise a ValueError if segments do not meet, or nodes do not rise."""
         pairs = itertools.pairwise(self.segments)
         if not self.segments or not all(np.array_equal(a.end, b.start) for a, b in pairs):
-            raise ValueError(f"its segments along {self.name} do not meet")
+            raise ValueError(f"its segments along {self.name} leave gaps, or overlap")
         for start, end, shares, _ in self.segments:
             rises = shares.size >= FEWEST and (np.diff(shares) > 0.0).all() and (start < end).all()
             if not (rises and shares[0] == 0.0 and shares[-1] == 1.0):
@@ -141,10 +141,11 @@ class TableGrid:
         which = self.axes[2].segment_of(strength, np.zeros(1))
         ends = np.array([(one.start[0], one.end[0]) for one in self.axes[2].segments])[which]
         t = (2.0 * strength - ends.sum(axis=-1)) / (ends[..., 1] - ends[..., 0])
-        rows = self.by_strength[which, STRETCHED:ELASTIC]
-        at_t = (rows * t[:, None, None] ** np.arange(TERMS)).sum(axis=-1)
         z = 2.0 * self.axes[0].place(lam) - 1.0
-        factor = (at_t * z[:, None] ** np.arange(ELASTIC - STRETCHED)).sum(axis=-1)
+        factor = np.zeros_like(lam)
+        for row in range(ELASTIC - 1, STRETCHED - 1, -1):
+            terms = self.by_strength[which, row].T
+            factor = factor * z + np.polynomial.polynomial.polyval(t, terms, tensor=False)
         return np.where(log_chi > 0.0, log_chi / factor, log_chi)
 
 

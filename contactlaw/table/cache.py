@@ -32,8 +32,9 @@ from contactlaw.table.nodes import Table
 Array = NDArray[np.float64]
 
 _DIGEST = 32  # bytes of a checksum
-# [s]; a build takes less than one second: a process that holds a lock for so long hangs
-_PATIENCE = 60.0
+# [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be
+# minutes where many processes share a core: one that holds a lock for longer hangs.
+_PATIENCE = 600.0
 
 
 def file_name(law: Law, settings: Settings) -> str:
@@ -92,10 +93,9 @@ def cached_slides(table: Table, kappa: float) -> Array:
     """
     packed = table.packed.tobytes()
     key = hashlib.sha256(packed + f"{kappa!r} {fingerprint()}".encode()).hexdigest()
-    try:
+    place = None
+    with contextlib.suppress(RuntimeError):  # the table has warned of this
         place = folder()
-    except RuntimeError:  # the table has warned of this
-        place = None
     path = None if place is None else place / f"slides-{key[:24]}.bin"
     if path is not None:
         with contextlib.suppress(OSError):

@@ -23,7 +23,7 @@ BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"forc
 """Promised errors: absolute for COR, relative to the peak for force histories, else relative."""
 
 PAIR_BOUNDS = {n: FIELDS[n].of_pair for n in BOUNDS if n in FIELDS} | {"force_history": 3e-3}
-"""Promised errors of tables built for one pair: they are coarser, and take a fifth of a second."""
+"""Promised errors of tables built for one pair: they are coarser, so that they are made soon."""
 
 
 def bounds(law: Law) -> dict[str, float]:
@@ -80,14 +80,9 @@ class Certificate:
 
 
 def compare_outcomes(
-    law: Law,
-    settings: Settings,
-    grid: TableGrid,
-    packed: Array,
-    points: int,
-    seed: int,
+    law: Law, settings: Settings, grid: TableGrid, packed: Array, points: int, seed: int,
     progress: Progress,
-) -> tuple[Outcome, dict[str, Array]]:
+) -> tuple[Outcome, dict[str, Array]]:  # fmt: skip
     """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
         raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")

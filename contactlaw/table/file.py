@@ -9,7 +9,6 @@ not intent: a file that fits it is checked for the datasets below and what kerne
 from __future__ import annotations
 
 import dataclasses
-import errno
 import functools
 import hashlib
 import io
@@ -43,7 +42,6 @@ FORMAT = "contactlaw table"
 SCHEMA = 6
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: 700 times the packaged table, and a PC can hold it
-_HEAD = {"format": FORMAT, "schema": f"{SCHEMA}", "complete": "True"}
 
 
 class _Part(NamedTuple):
@@ -98,7 +96,6 @@ def _by_strength(grid: TableGrid) -> dict[str, _Part]:
 
 def _shapes(grid: TableGrid) -> dict[str, _Part]:
     return {
-        **{axis.name: _Part("of the states [-]", grid.shape) for axis in grid.axes},
         "shares": _Part("of the largest root compression, up and down [-]", (shapes.STATES,)),
         "states": _Part(
             "when it passes them: times [T_H], speeds [V0]",
@@ -127,17 +124,9 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     OSError
-        If the folder does not exist, is not writable or full, or the table is larger than `read`
-        accepts; nothing is left behind then.
+        If the folder does not exist, is not writable or full; nothing is left behind then.
     """
-    content = _serialise(table)
-    if len(content) > LARGEST:
-        raise OSError(
-            errno.EFBIG,
-            f"table: it has {len(content)} bytes, above the limit of {LARGEST}: take coarser "
-            "Settings",
-        )
-    _atomic.write(path, content)
+    _atomic.write(path, _serialise(table))
 
 
 def _serialise(table: Table) -> bytes:
@@ -175,20 +164,15 @@ def _fill(file: h5py.File, table: Table) -> None:
     for axis in grid.axes:
         for k, segment in enumerate(axis.segments):
             _put(file, f"axes/{axis.name}/{k}", _SEGMENT, segment._asdict())
+            file[f"axes/{axis.name}/{k}"].attrs["graded"] = segment.graded
+        file[f"axes/{axis.name}"].attrs["stretch"] = axis.stretch
     _put(file, "fields", _fields(grid), table.fields)
     if table.states is not None:
-        coarser = shape_grid(table)
-        nodes = dict(zip((axis.name for axis in grid.axes), coarser.nodes(), strict=True))
         states = {"shares": shapes.SHARES, "states": table.states}
-        _put(file, "shapes", _shapes(coarser), nodes | states)
+        _put(file, "shapes", _shapes(shape_grid(table)), states)
     file.create_group("law/parameters", track_order=True).attrs.update(law.parameters)
-    for axis in grid.axes:
-        file[f"axes/{axis.name}"].attrs["stretch"] = axis.stretch
-        for k, segment in enumerate(axis.segments):
-            file[f"axes/{axis.name}/{k}"].attrs["graded"] = segment.graded
     if table.certificate is not None:
         file.attrs["certificate"] = json.dumps(asdict(table.certificate))
-    file.attrs["complete"] = True  # last: a file cut short opens without complaint
 
 
 def _put(file: h5py.File, group: str, parts: dict[str, _Part], values: Mapping[str, Any]) -> None:
@@ -239,17 +223,15 @@ def _parse(content: bytes) -> Table:
     if head[-1] != hashlib.sha256(memoryview(content)[_BLOCK:]).hexdigest():
         raise ValueError("its checksum does not fit: it was cut short or altered")
     with h5py.File(io.BytesIO(content), "r") as file:
-        found = {key: str(file.attrs.get(key)) for key in _HEAD}
-        if found != _HEAD:
-            raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
+        if (found := file.attrs.get("schema")) != SCHEMA:
+            raise ValueError(f"it is a table of schema {found}, not {SCHEMA}")
         return _from_file(file)
 
 
 def _from_file(file: h5py.File) -> Table:
     settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in asdict(Settings()).items()})
     law = _law(file)
-    axes = tuple(_axis(file, name) for name in grids.AXES if name in file["axes"])
-    grids.check(axes, law, settings)
+    axes = grids.axes_with(_overloads(file), law, settings)
     grid = TableGrid(axes, _take(file, "", _SERIES)["elastic_compression"])
     if law.strengths is not None:
         rows = _take(file, "strengths", _by_strength(grid))["by_strength"]
@@ -319,13 +301,14 @@ def _law(file: h5py.File) -> Law:
     )
 
 
-def _axis(file: h5py.File, name: str) -> Axis:
-    group = file[f"axes/{name}"]
+def _overloads(file: h5py.File) -> Axis:
+    """Read the axis of ln chi; the others follow from the law and the settings."""
+    group = file["axes/log_overload"]
     segments = (
         Segment(**_take(group, k, _SEGMENT), graded=bool(group[k].attrs["graded"]))
         for k in map(str, range(len(group)))
     )
-    return Axis(name, tuple(segments), float(group.attrs["stretch"]))
+    return Axis(grids.AXES[1], tuple(segments), float(group.attrs["stretch"]))
 
 
 @functools.cache

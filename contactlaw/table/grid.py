@@ -16,7 +16,6 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,10 +125,9 @@ def with_steps(
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
     segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
-    axes = [inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)]
-    if law.strengths is not None:
-        axes.append(strength_axis(law.strengths, coarser))
-    return dataclasses.replace(grid, axes=tuple(axes))
+    axes = inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)
+    more = () if law.strengths is None else (strength_axis(law.strengths, coarser),)
+    return dataclasses.replace(grid, axes=(*axes, *more))
 
 
 def largest_inelasticity(law: Law) -> float:
@@ -138,7 +136,7 @@ def largest_inelasticity(law: Law) -> float:
 
 
 def on_demand(law: Law) -> Settings:
-    """Choose settings of a table that is built when it is first needed, in tenths of a second."""
+    """Choose settings of a table that is built when it is first needed."""
     if math.isinf(law.range[1]):
         return Settings(log_overload_step=_STEP, rtol=1e-11)
     w_m = zener.elastic_compression(law.data, 0.0, 1e-11, few=True)[1]
@@ -147,31 +145,24 @@ def on_demand(law: Law) -> Settings:
         largest_inelasticity=largest_inelasticity(law),
         largest_overload=float(f"{_BEYOND * deepest:.3g}"),
         log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
-        inelasticity_nodes=41, rtol=1e-11,
+        inelasticity_nodes=41, rtol=1e-11 if law.strengths is None else 1e-10,
     )  # fmt: skip
 
 
-def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
-    """Raise a ValueError if axes are not those of a law and of settings."""
-    for axis in axes:
-        axis.check()
-    first, second, *third = axes
-    known = law.strengths
-    if [one.sizes for one in third] != ([strength_axis(known).sizes] if known else []):
-        raise ValueError("its strengths are not those of the law")
-    expected = inelasticity_axis(settings)
-    same = first.sizes == expected.sizes
-    same = same and (first.stretch, second.stretch) == (expected.stretch, math.inf)
-    for one, other in zip(first.segments[0][:3], expected.segments[0][:3], strict=True):
-        same = same and np.allclose(one, other, rtol=1e-12, atol=1e-12)
-    if not same or not (second.segments[-1].end == math.log(settings.largest_overload)).all():
+def axes_with(overload: Axis, law: Law, settings: Settings) -> tuple[Axis, ...]:
+    """Axes of a table, from that of ln chi, which has to fit the law and the settings."""
+    overload.check()
+    end = overload.segments[-1].end
+    if overload.stretch != math.inf or not (end == math.log(settings.largest_overload)).all():
         raise ValueError("its axes are not those of its settings")
     kinks = [kink for kink in law.outcome_kinks if kink <= _straight(law)]
     if not law.is_hertz:
         kinks.insert(0, law.range[0])
-    starts = [one.start[0] for one in second.segments[: len(kinks)] if not np.ptp(one.start)]
-    if not np.array_equal(starts, np.log(kinks[: len(second.segments)])):
+    starts = [one.start[0] for one in overload.segments[: len(kinks)] if not np.ptp(one.start)]
+    if not np.array_equal(starts, np.log(kinks[: len(overload.segments)])):
         raise ValueError(f"its kinks are not those of the law, {law.outcome_kinks}")
+    axes = inelasticity_axis(settings), overload
+    return axes if law.strengths is None else (*axes, strength_axis(law.strengths))
 
 
 def _straight(law: Law) -> float:
@@ -209,30 +200,28 @@ def grid(law: Law, settings: Settings) -> TableGrid:
     if law.strengths is None:
         return TableGrid(axes, elastic)
     has_end = len(lines) > 2 + (not law.is_hertz)  # of the law's range
-    ends = itertools.pairwise(law.strengths.knots)
-    rows = np.array([_rows(law, one, settings, has_end) for one in ends])
-    return TableGrid((*axes, strength_axis(law.strengths)), elastic, rows)
+    return TableGrid((*axes, strength_axis(law.strengths)), elastic, _rows(law, settings, has_end))
 
 
-def _rows(law: Law, ends: tuple[float, float], settings: Settings, has_end: bool) -> Array:
-    """Rows of polynomials for a segment in ln k, as `contactlaw.table.lookup` has them."""
-    data, powers, none = law.at_any_strength, ROWS - ELASTIC, np.zeros(TERMS * (ROWS - ELASTIC))
-    strength = ends[0] + (ends[1] - ends[0]) * chebyshev_nodes(TERMS)
-    lam = inelasticity_axis(settings).values(chebyshev_nodes(powers))
-    lam, s = np.tile(lam, TERMS), np.repeat(strength, powers)
-    own, slow = (elastic_compressions(law, lam, settings.rtol, one) for one in (s, none))
-    factor = np.ones_like(lam)
+def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
+    """Rows of polynomials for the segments in ln k, as `contactlaw.table.lookup` has them."""
+    assert law.strengths is not None
+    data, knots = law.at_any_strength, np.array(law.strengths.knots)
+    places = knots[:-1, None] + np.diff(knots)[:, None] * chebyshev_nodes(TERMS)
+    along = inelasticity_axis(settings).values(chebyshev_nodes(ROWS - ELASTIC))
+    every = np.append(places, 0.0)  # the last one is the slow pair, which the others are beside
+    lam, s = np.tile(along, every.size), np.repeat(every, along.size)
+    elastic = elastic_compressions(law, lam, settings.rtol, s)
+    end = np.ones((every.size, along.size))
     if has_end:
-        slow_end, end = (
-            np.log(_overloads(law, np.array([_end(data, k) for k in at.tolist()]), lam, w_m, at))
-            for at, w_m in ((none, slow), (s, own))
-        )
-        factor = slow_end / end
-    rows = [[math.log(force.growth_at(data, one)) for one in strength.tolist()]]
-    for values, degree in ((factor, ELASTIC - STRETCHED), (np.log(own / slow), powers)):
-        each = [power_series(one, degree - 1) for one in values.reshape(TERMS, powers)]
-        rows += np.transpose(each).tolist()
-    return np.array([power_series(np.array(row), TERMS - 1) for row in rows])
+        kink = np.repeat([_end(data, one) for one in every.tolist()], along.size)
+        end = np.log(_overloads(law, kink, lam, elastic, s)).reshape(end.shape)
+    log_w_m = np.log(elastic).reshape(end.shape)
+    growth = [[math.log(force.growth_at(data, one))] for one in every.tolist()]
+    factor = [power_series(one, ELASTIC - STRETCHED - 1) for one in end[-1] / end]
+    stiffer = [power_series(one, ROWS - ELASTIC - 1) for one in log_w_m - log_w_m[-1]]
+    rows = np.split(np.hstack([growth, factor, stiffer])[:-1], len(places))
+    return np.array([[power_series(row, TERMS - 1) for row in one.T] for one in rows])
 
 
 def _end(data: Array, strength: float) -> float:

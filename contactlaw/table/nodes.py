@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import functools
 import itertools
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +37,11 @@ _LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
+# How many times fewer rows and wider steps most layers of strength have, with their limits, and how
+# far apart in ln k are those that have all nodes, our choices. The COR moves by 2e-6 at most.
+_FEWER, _FEWEST_ROWS = 2.2, 19
+_WIDER, _WIDEST = 2.0, 0.1
+_APART = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +85,7 @@ class Table:
     @functools.cached_property
     def packed_shapes(self) -> shapes.Shapes:
         """Splines through the shapes of force histories; for a table that has them."""
-        if self.states is None:
-            raise ValueError(
-                "table: has no shapes of force histories; with_shapes(table) adds them"
-            )
+        assert self.states is not None, "with_shapes(table) adds them"
         return shapes.pack(shape_grid(self), self.states)
 
 
@@ -125,11 +129,45 @@ def build(
     """
     settings = settings or (Settings() if law.is_hertz else grids.on_demand(law))
     grid = grids.grid(law, settings)
-    parts = settings.inelasticity_nodes
-    values = sweep.solve_overloads(law, *grid.points(), settings.rtol, parts, progress)
-    fields = {name: getattr(values, name).reshape(grid.shape) for name in STORED}
-    table = Table(law, settings, grid, fields)
+    solve = _solved if law.strengths is None else _solved_layers
+    table = Table(law, settings, grid, solve(law, grid, settings, progress))
     return dataclasses.replace(table, certificate=certify(table, points))
+
+
+def _solved(
+    law: Law, grid: TableGrid, settings: Settings, progress: Progress, layers: Any = slice(None)
+) -> dict[str, Array]:
+    """Solve the nodes of a grid; of one with strengths, those of all layers or of some."""
+    chosen = [values.reshape(grid.shape)[..., layers] for values in grid.points()]
+    lam, chi, strength = (values.ravel() for values in chosen)
+    found = sweep.solve_overloads(law, lam, chi, strength, settings.rtol, len(grid.rows), progress)
+    return {name: getattr(found, name).reshape(chosen[0].shape) for name in STORED}
+
+
+def _solved_layers(
+    law: Law, grid: TableGrid, settings: Settings, progress: Progress
+) -> dict[str, Array]:
+    """Solve a few layers at all nodes, among them those that end the axis, and others coarsely.
+
+    Between the few, fields are nearly straight lines along the strength. How far they are from them
+    varies so little with the other coordinates that splines over a coarser grid give it.
+    """
+    rows, step = settings.inelasticity_nodes, settings.log_overload_step
+    fewer = max(round(rows / _FEWER), min(rows, _FEWEST_ROWS))
+    wider = max(min(_WIDER * step, _WIDEST), step)
+    few = dataclasses.replace(settings, inelasticity_nodes=fewer, log_overload_step=wider)
+    coarse = grids.with_steps(law, grid, few, wider)
+    table = Table(law, few, coarse, _solved(law, coarse, few, progress))
+    fields = _resampled(table, rows, step, 1).fields
+    strength = grid.axes[2].nodes(np.zeros(1))[0]
+    count = 1 + math.ceil(strength[-1] / _APART)
+    layers = np.linspace(0, strength.size - 1, count).round().astype(int)
+    shares = [np.interp(strength, strength[layers], one) for one in np.eye(count)]
+    exact = _solved(law, grid, settings, progress, layers)
+    for name, values in fields.items():
+        values += (exact[name] - values[..., layers]) @ shares
+    fields["restitution"].clip(0.0, 1.0, out=fields["restitution"])
+    return fields
 
 
 def thinned(table: Table, error: float) -> Table:
@@ -137,10 +175,8 @@ def thinned(table: Table, error: float) -> Table:
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
     points = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, *points).restitution
-    found = table
-    for fewer, coarser in itertools.product(
-        _ROW_FACTORS, _LAYER_FACTORS[: 3 if len(table.grid.axes) > 2 else 1]
-    ):
+    found, layers = table, _LAYER_FACTORS if len(table.grid.axes) > 2 else (1,)
+    for fewer, coarser in itertools.product(_ROW_FACTORS, layers):
         count = max(rows // fewer + 1, fewest)
         steps = _widest_steps(table, count, error, points, exact, coarser)
         if steps is not None:
@@ -191,8 +227,8 @@ def _resampled(table: Table, rows: int, steps: float | Array, coarser: int) -> T
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
     grid = grids.with_steps(table.law, table.grid, settings, steps, coarser)
-    lam, log_chi, *strength = (values.ravel() for values in grid.nodes())
-    found = _looked_up(table, lam, log_chi, strength[0] if strength else np.zeros_like(lam))
+    lam, log_chi, *_ = (values.ravel() for values in grid.nodes())
+    found = _looked_up(table, lam, log_chi, grid.points()[2])  # just above a knot, where laws jump
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}
     return Table(table.law, settings, grid, fields)
 
@@ -233,11 +269,7 @@ def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
         known = lam[part], at.yield_ratio[part], rtol, shapes.SHARES, strength[part]
         status, time, speed = zener.shape(law.at_any_strength, *known)
         if status.any():
-            failed, n = zener.failure(status)
-            raise RuntimeError(
-                f"table for law {law.name!r}: the shape at lambda = {lam[part][n]:.6g}, chi = "
-                f"{chi[part][n]:.6g} did not solve: {zener.MESSAGES[failed]}"
-            )
+            raise sweep.failure("shape", law, lam[part], chi[part], *zener.failure(status))
         out[part] = np.stack((time, speed), axis=1)[:, :, :-1]
 
     sweep.in_parts(solve, lam.size, len(grid.rows), progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -33,26 +34,17 @@ def in_parts(
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         # compile the function once, before the threads call it
-        first = function(slices[0])
-        return list(progress(_chain(first, pool.map(function, slices[1:])), len(slices)))
+        first = (function(slices[0]),)
+        found = itertools.chain(first, pool.map(function, slices[1:]))
+        return list(progress(found, len(slices)))
     finally:  # on Ctrl-C, wait for the parts that run and start no others
         pool.shutdown(cancel_futures=True)
 
 
-def _chain(first: _T, rest: Iterator[_T]) -> Iterator[_T]:
-    yield first
-    yield from rest
-
-
 def solve_overloads(
-    law: Law,
-    lam: Array,
-    chi: Array,
-    strength: Array,
-    rtol: float,
-    parts: int,
+    law: Law, lam: Array, chi: Array, strength: Array, rtol: float, parts: int,
     progress: Progress = no_progress,
-) -> Outcome:
+) -> Outcome:  # fmt: skip
     """Solve impacts at many points; those with the same lambda have to lie side by side.
 
     Raises
@@ -67,10 +59,15 @@ def solve_overloads(
             law.at_any_strength, rtol, chi[part], outcome.part(out, part)
         )
         if status != zener.OK:
-            raise RuntimeError(
-                f"table for law {law.name!r}: the node lambda = {lam[part][n]:.6g}, chi = "
-                f"{chi[part][n]:.6g} did not solve: {zener.MESSAGES[status]}"
-            )
+            raise failure("node", law, lam[part], chi[part], status, n)
 
     in_parts(solve, lam.size, parts, progress)
     return out
+
+
+def failure(what: str, law: Law, lam: Array, chi: Array, status: int, n: int) -> RuntimeError:
+    """Say which of several points did not solve."""
+    return RuntimeError(
+        f"table for law {law.name!r}: the {what} lambda = {lam[n]:.6g}, chi = {chi[n]:.6g} did not "
+        f"solve: {zener.MESSAGES[status]}"
+    )

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
-from contactlaw.walls.motion import FARTHEST, Motion, check_motion, vector
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, floats, vector
 from contactlaw.walls.plate import Models, check_models
 
 Floats = NDArray[np.float64]
@@ -351,10 +351,7 @@ def _circle(axis: Floats, facets: int) -> Floats:
 
 
 def _vertices(given: Any) -> Floats:
-    try:
-        found = np.array(given, dtype=float, order="C")
-    except (TypeError, ValueError):
-        found = np.empty(0)
+    found = floats(given)
     if found.ndim != 2 or found.shape[1] != 3 or not len(found):
         raise ValueError(f"vertices: expected an array of shape (n, 3) [m], got {given!r}")
     wrong = np.flatnonzero(~(abs(found) <= FARTHEST).all(axis=1))
@@ -382,10 +379,7 @@ def _triangles(given: Any, vertices: int) -> Integers:
 
 
 def _thickness(given: Any, triangles: int) -> Floats:
-    try:
-        found = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
-        found = np.empty(0)
+    found = floats(given)
     if found.shape not in ((), (triangles,)):
         raise ValueError(
             f"thickness: expected a number or one for each of {triangles} triangles [m], got "

@@ -29,12 +29,17 @@ MOTION: list[tuple[Any, ...]] = [
 ]  # fmt: skip
 
 
+def floats(value: Any) -> Floats:
+    """Copy numbers into an array, which is empty if they are none."""
+    try:
+        return np.array(value, dtype=float, order="C")
+    except (TypeError, ValueError):
+        return np.empty(0)
+
+
 def vector(name: str, value: Any, unit: str = "m") -> Floats:
     """Three numbers of at most FARTHEST as an array, or an error that names the argument."""
-    try:
-        found = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        found = np.empty(0)
+    found = floats(value)
     if found.shape != (3,) or not (abs(found) <= FARTHEST).all():
         raise ValueError(
             f"{name}: expected three numbers [{unit}], none beyond {FARTHEST:g}, got {value!r}"

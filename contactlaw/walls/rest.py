@@ -18,25 +18,11 @@ Rows = NDArray[np.void]
 
 
 def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, Integers, Integers, Floats]:
-    """Triangles of all walls, and the triangle and the point on it of each impact.
+    """Triangles of all walls in their places at time 0, and where on them impacts have happened.
 
-    Parameters
-    ----------
-    facets, frames : structured array
-        As `contactlaw.walls.frame.framed` makes them; they stay as they are.
-    hits : structured array (n,)
-        Impacts on these walls, with the columns of `contactlaw.engines.record.IMPACT`.
-
-    Returns
-    -------
-    corners : ndarray, shape (m, 3, 3)
-        Corners of the triangles at time 0 of the motion's data [m]; a rectangle is two of them.
-    wall : ndarray of int, shape (m,)
-        Number of the wall of each triangle.
-    triangle : ndarray of int, shape (n,)
-        Triangle that each impact was on.
-    point : ndarray, shape (n, 3)
-        Where on it [m].
+    Hits have the columns of `contactlaw.engines.record.IMPACT`. Returned are the corners of m
+    triangles (m, 3, 3) [m], of which a rectangle is two; the number of the wall of each; the
+    triangle that each impact was on; and where on it (n, 3) [m].
     """
     four, box = corners_of(facets), facets["kind"] == RECTANGLE
     corners = np.concatenate((four[:, :3], four[box][:, [0, 2, 3]]))

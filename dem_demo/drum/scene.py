@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactlaw.engines import layout
 from dem_demo.drum import defaults
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
@@ -43,7 +42,7 @@ class Drum(Bed):
         "one row per impact on the drum; bead is a row of /beads, plate one of /plates: 0 the "
         "shell, 1 and 2 the ends; the drum turns about y, z points up"
     )
-    NUMBERS = "drum", "length", "turns", "friction", "duration", "seed"
+    NUMBERS = "thickness", "drum", "length", "turns", "friction", "duration", "seed"
     FRAME_RATE = defaults.FRAME_RATE
 
     drum: float
@@ -87,13 +86,12 @@ class Drum(Bed):
         return [shell, *discs]
 
     def write_walls(self, file: h5py.File) -> None:
-        """Write the thicknesses of the shell and of the two ends."""
-        layout.write_plates(file, [self.thickness] * 3)
+        """Write nothing: numbers say all."""
 
     @staticmethod
     def read_walls(file: h5py.File) -> Mapping[str, Any]:
-        """Read the thickness of the walls."""
-        return {"thickness": float(file["plates/thickness"][0])}
+        """Read nothing: numbers say all."""
+        return {}
 
 
 def drum(

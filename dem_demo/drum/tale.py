@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.drum import figures
 from dem_demo.drum.scene import Drum
 from dem_demo.kit.beads import Floats

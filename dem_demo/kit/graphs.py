@@ -13,10 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from contactlaw import style
-from contactlaw.report import run as report
-from contactlaw.report.figures import impacts
-from contactlaw.report.limits import label
+from contactlaw import Bodies, Pair, Record, style
+from contactlaw.reporting import run as report
+from contactlaw.reporting.figures import impacts
+from contactlaw.reporting.limits import label
 from dem_demo.kit.measure import account, curve
 from dem_demo.kit.runs import Run, Runs
 from dem_demo.kit.tale import progress
@@ -36,10 +36,10 @@ _PARTS = (
 )
 
 
-def histograms(rows: NDArray[np.void], subject: str, material: str) -> Figure:
+def histograms(rows: NDArray[np.void], pair: Pair, law: str, engine: str) -> Figure:
     """Draw speed, COR and angle of the impacts on walls as a report of any run does."""
-    materials = (material,) * (int(rows["plate"].max(initial=-1)) + 1)
-    return impacts.draw(report.Run(rows, subject, materials))
+    record = Record(rows, [Bodies(pair, law)], made={"engine": engine})
+    return impacts.draw(report.Run(record))
 
 
 def source(runs: Runs[Any]) -> str:

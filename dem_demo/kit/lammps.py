@@ -235,7 +235,10 @@ class _Simulation:
 
     def collisions(self) -> NDArray[np.void] | None:
         """Gather new impacts: on rank 0, None on the others."""
-        return self.impacts.take()
+        rows = self.impacts.take()
+        if rows is not None:
+            rows["thickness"] = self.scene.thickness  # of a constant COR the law's is infinite
+        return rows
 
     def look(self) -> Frame | None:
         """Gather the beads of all ranks: on rank 0, None on the others."""

@@ -33,7 +33,7 @@ def needing(extras: str) -> Iterator[None]:
 @contextmanager
 def refusing(arguments: argparse.Namespace) -> Iterator[None]:
     """Raise a `ValueError` of this block as `Refused`, in terms of the options."""
-    from contactlaw.cli import sentence
+    from contactlaw.cli.parts.wording import sentence
 
     try:
         yield
@@ -83,7 +83,7 @@ def speeds(words: str) -> tuple[float, float]:
 
 
 def _values(words: str, quantity: str) -> tuple[float, ...]:
-    from contactlaw.cli import quantities
+    from contactlaw.cli.parts import quantities
 
     try:
         return quantities.values(words, getattr(quantities, quantity))

@@ -14,7 +14,6 @@ from pathlib import Path
 import h5py
 from filelock import FileLock, Timeout
 
-from contactlaw.engines.layout import FORMAT
 from dem_demo.kit.recorder import COMPLETE
 from dem_demo.kit.signals import held
 
@@ -68,7 +67,7 @@ def entries(folder: Path) -> list[str]:
 def earlier(folder: Path, scene: str) -> tuple[set[str], bool]:
     """Names of the files that an earlier run of a scene left, and whether it was complete."""
     with suppress(OSError), h5py.File(folder / f"{scene}.h5", "r") as file:
-        if file.attrs.get("format") == FORMAT + scene:
+        if file.attrs.get("scene") == scene:
             files = {*file.attrs.get("files", ())} & {*entries(folder)}
             return files, file.attrs.get("state") == COMPLETE
     return set(), False

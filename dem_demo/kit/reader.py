@@ -10,8 +10,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines import layout
-from contactlaw.engines.record import only_impacts
+from contactlaw.record.file import read_from
 from dem_demo.kit.beads import Floats
 
 
@@ -70,12 +69,11 @@ class Recorded:
 def checked(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
     """Attributes of a scene's record; `ValueError` if it is another file."""
     attributes = dict(file.attrs)
-    form, found = (attributes.get(name) for name in ("format", "schema"))
-    wanted = layout.FORMAT + name
-    if (form, found) != (wanted, schema):
+    found = tuple(attributes.get(one) for one in ("scene", "scene_schema"))
+    if found != (name, schema):
         raise ValueError(
-            f"{path}: no file of format {wanted!r}, schema {schema}, but format {form!r}, "
-            f"schema {found}: run the {name} again"
+            f"{path}: no record of the scene {name!r}, schema {schema}, but of {found[0]!r}, "
+            f"schema {found[1]}: run the {name} again"
         )
     return attributes
 
@@ -89,15 +87,15 @@ def common(file: h5py.File) -> dict[str, Any]:
         for name, text in attributes.items()
         if name.startswith("version_")
     }
-    rows = layout.impacts(file)
-    known = "kind" in (rows.dtype.names or ())
-    impact, left_out = only_impacts(rows["kind"] if known else np.zeros(rows.size))
+    record = read_from(file)
+    record = record.part(np.argsort(record.rows["time"], kind="stable"))
     return {
         **{name: attributes[name] for name in names},
         "constant_cor": attributes.get("constant_cor"),
         "versions": versions,
-        "collisions": rows,
-        "impact": impact,
-        "left_out": left_out,
+        "collisions": record.rows,
+        "impact": record.impact,
+        "left_out": record.left_out,
+        "pair": record.bodies[0].pair,
         **{name: dataset[()] for name, dataset in file["trajectories"].items()},
     }

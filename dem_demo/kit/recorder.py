@@ -1,6 +1,6 @@
 """Recording a run: its frames and impacts, as an HDF5 file that explains itself.
 
-The layout of the file is that of `contactlaw.engines.layout`, plus what the scene writes. The file
+The layout of the file is that of `contactlaw.record.file`, plus what the scene writes. The file
 is written when the run has ended, in whichever way: HDF5 can neither be interrupted halfway nor
 close a file that the disk has no room for. The record of a run fits into memory, because figures
 and page need all of it at once.
@@ -8,11 +8,9 @@ and page need all of it at once.
 
 from __future__ import annotations
 
-import datetime
-import io
-import platform
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,9 +19,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel
-from contactlaw.engines import layout
+from contactlaw import ImpactModel, Pair
 from contactlaw.engines.record import IMPACT
+from contactlaw.record.file import Record, bodies_of, write
 from dem_demo.kit import disk, signals
 from dem_demo.kit.signals import Interrupted
 
@@ -98,7 +96,7 @@ class Recorder:
         axes: str,
     ) -> None:
         self.folder, self._path = path.parent, path
-        self._attributes = {**_made(scene, making), **attributes}
+        self._attributes, self._model = {**_made(scene, making), **attributes}, making.model
         self._files, self._write_scene, self._axes = {*making.files}, write_scene, axes
         self._trajectories, self._frame_rate = trajectories, frame_rate
         self._frames: list[dict[str, NDArray[Any]]] = []
@@ -161,29 +159,32 @@ class Recorder:
         return full
 
     def _content(self, frames: int, reason: str) -> bytes:
-        image = io.BytesIO()
         others = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
-        impacts = np.concatenate(self._impacts or [np.empty(0, IMPACT)])
-        with h5py.File(image, "w") as file:
-            file.attrs.update(self._attributes)
-            file.attrs["state"] = PARTIAL if reason else COMPLETE
-            file.attrs["reason"] = reason
-            file.attrs["files"] = sorted(self._files | others)
-            self._write_scene(file)
-            group, time = file.create_group("trajectories"), np.arange(frames) / self._frame_rate
-            layout.write(group, "time", time, "s", "time of the frame")
-            for name, _, unit, description in self._trajectories:
-                values = np.stack([frame[name] for frame in self._frames[:frames]])
-                layout.write(group, name, values, unit, description)
-            layout.write_impacts(file, impacts, self._axes)
-        return image.getvalue()
+        rows = np.concatenate(self._impacts or [np.empty(0, IMPACT)])
+        on_plate = bodies_of(self._model)
+        sphere = on_plate.pair.sphere
+        bodies = [on_plate, on_plate._replace(pair=Pair(sphere, sphere))]
+        made = {**self._attributes, "state": PARTIAL if reason else COMPLETE, "reason": reason,
+                "files": sorted(self._files | others)}  # fmt: skip
+        record = Record(rows, bodies, (rows["plate"] < 0).astype(np.int64), None, made)
+        return record.content(partial(self._write_rest, frames))
+
+    def _write_rest(self, frames: int, file: h5py.File) -> None:
+        """Write the scene, its frames and what its columns of impacts mean."""
+        file["impacts"].attrs["description"] = self._axes
+        self._write_scene(file)
+        group, time = file.create_group("trajectories"), np.arange(frames) / self._frame_rate
+        write(group, "time", time, "s", "time of the frame")
+        for name, _, unit, description in self._trajectories:
+            values = np.stack([frame[name] for frame in self._frames[:frames]])
+            write(group, name, values, unit, description)
 
 
 def _made(scene: str, making: Making) -> dict[str, object]:
     engine, version_of_engine = making.engine
     law, cor = making.model.force_law, making.constant_cor
     return {
-        "format": layout.FORMAT + scene,
+        "scene": scene,
         "command": making.command,
         "engine": engine,
         f"version_{engine}": version_of_engine,
@@ -192,10 +193,5 @@ def _made(scene: str, making: Making) -> dict[str, object]:
         "outside": making.model.outside,
         "time_step": making.time_step,
         **({} if cor is None else {"constant_cor": cor}),
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "version_contactlaw": version("contactlaw"),
         "version_numba": version("numba"),
-        "version_numpy": np.__version__,
-        "version_python": platform.python_version(),
-        "units": "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own",
     }

@@ -12,7 +12,7 @@ from typing import Generic, TypeVar
 import h5py
 
 from contactlaw import Pair
-from contactlaw.engines import layout
+from contactlaw.record.file import write
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.bed import Bed
 from dem_demo.kit.reader import Recorded, checked, common
@@ -88,7 +88,7 @@ def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder
         path,
         scene.NAME,
         making,
-        attributes={**attributes, "schema": scene.SCHEMA, "ranks": ranks},
+        attributes={**attributes, "scene_schema": scene.SCHEMA, "ranks": ranks},
         write_scene=lambda file: _write(file, scene),
         trajectories=[
             Dataset("position", "f4", "m", "centre; of a bead that is gone: where it was"),
@@ -103,11 +103,11 @@ def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder
 
 
 def _write(file: h5py.File, scene: Bed) -> None:
-    layout.write_materials(file, scene.sphere_material, scene.plate_material)
-    beads = layout.write_beads(file, scene.radius, scene.mass)
-    layout.write(beads, "position", scene.position, "m", "centre (x, y, z) at the start")
+    beads = file.create_group("beads")
+    write(beads, "radius", scene.radius, "m", "radius")
+    write(beads, "position", scene.position, "m", "centre (x, y, z) at the start")
     text = "velocity (x, y, z) of all at the start"
-    layout.write(beads, "velocity", scene.velocity, "m/s", text)
+    write(beads, "velocity", scene.velocity, "m/s", text)
     scene.write_walls(file)
 
 
@@ -128,7 +128,8 @@ def read_one(path: Path, scene: type[S]) -> Run[S]:
     """
     with h5py.File(path, "r") as file:
         attributes = checked(file, path, scene.NAME, scene.SCHEMA)
-        sphere, plate = layout.materials(file)
+        shared = common(file)
+        sphere, plate = shared.pop("pair").given
         return Run(
             scene=scene(
                 **{name: file[f"beads/{name}"][()] for name in ("radius", "position", "velocity")},
@@ -138,5 +139,5 @@ def read_one(path: Path, scene: type[S]) -> Run[S]:
                 plate_material=plate,
             ),
             ranks=int(attributes["ranks"]),
-            **common(file),
+            **shared,
         )

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from contactlaw.report.gallery import Picture
+from contactlaw.reporting.gallery import Picture
 from dem_demo.kit import disk
 from dem_demo.kit.options import Refused
 from dem_demo.kit.place import PARTIAL, earlier, entries, replace, workplace

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
-from contactlaw.report import page as common
-from contactlaw.report.gallery import Picture
-from contactlaw.report.limits import exceeded, limits_lines
+from contactlaw.reporting import page as common
+from contactlaw.reporting.gallery import Picture
+from contactlaw.reporting.limits import exceeded, limits_lines
 from dem_demo.kit.measure import account, kept
 from dem_demo.kit.runs import Run, Runs
 

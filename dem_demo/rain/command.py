@@ -147,7 +147,7 @@ def _plan(
 
 def _checked(scene: Scene, model: ImpactModel) -> ImpactModel:
     """Refuse a scene whose hardest impact on a plate is outside the model, before the run."""
-    from contactlaw.report.limits import label
+    from contactlaw.reporting.limits import label
     from dem_demo.rain.complaint import sentence
 
     speed, radius = scene.top_speed, float(scene.beads.radius.max())

@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 
 from contactlaw import ImpactModel
-from contactlaw.report.limits import label
+from contactlaw.answers.backend import OutsideTableError
+from contactlaw.reporting.limits import label
 from dem_demo.kit import disk
 from dem_demo.rain.scene import Scene
-
-_BEYOND = "outside the table, "
 
 
 def sentence(error: BaseException, scene: Scene, model: ImpactModel) -> str:
@@ -27,10 +26,9 @@ def sentence(error: BaseException, scene: Scene, model: ImpactModel) -> str:
     text = str(error) or type(error).__name__
     if isinstance(error, OSError):
         return disk.complaint(error)
-    reason = text.partition(_BEYOND)[2].partition(" ImpactModel(")[0]
-    if reason:
-        law = model.force_law.family
-        text = f"outside the table of the law {law}, {reason} {_remedies(model, reason)}"
+    if isinstance(error, OutsideTableError):
+        law, reason = model.force_law.family, error.reason
+        text = f"outside the table of the law {law}, {reason}. {_remedies(model, reason)}"
     where = "; ".join(getattr(error, "__notes__", []))
     return f"{_with_sizes(where, scene)}: {text}" if where else text
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import edge_distance
-from contactlaw.report.limits import Limit, exceeded
-from contactlaw.report.run import Shares, shares
+from contactlaw.reporting.limits import Limit, exceeded
+from contactlaw.reporting.run import Shares, shares
 from dem_demo.kit.beads import FLYING, GRAVITY, Floats
 from dem_demo.rain.record import Run
 

@@ -1,7 +1,7 @@
 """index.html: the results of a rain on one page, which needs no other file and no network.
 
 ``page.html`` and ``player.js``, the animation, which draws with ``drawing.js`` of
-`contactlaw.export`, stand in the frame of `contactlaw.report.page`.
+`contactlaw.export`, stand in the frame of `contactlaw.reporting.page`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
-from contactlaw.report import page as common
-from contactlaw.report.gallery import Picture
-from contactlaw.report.limits import label
+from contactlaw.reporting import page as common
+from contactlaw.reporting.gallery import Picture
+from contactlaw.reporting.limits import label
 from dem_demo.rain import figures, paths
 from dem_demo.rain.figures import _rain
 from dem_demo.rain.measure import (

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Pair, Rebound
-from contactlaw.engines import layout
 from contactlaw.engines.record import IMPACT, fill
+from contactlaw.record.file import write
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.reader import Recorded, checked, common
 from dem_demo.kit.recorder import Dataset, Making, Recorder
@@ -49,7 +49,7 @@ def rain_recorder(
     attributes = {
         name: getattr(scene, name) for name in ("seed", "duration", "frame_rate", "friction")
     }
-    attributes["schema"] = SCHEMA
+    attributes["scene_schema"] = SCHEMA
     if bead_on_bead is not None:
         attributes["bead_on_bead"] = bead_on_bead
     return Recorder(
@@ -65,23 +65,22 @@ def rain_recorder(
 
 
 def _write_scene(file: h5py.File, scene: Scene) -> None:
-    layout.write_materials(file, scene.sphere_material, scene.plate_material)
-    plates = layout.write_plates(file, (plate.thickness for plate in scene.plates))
+    plates, beads = file.create_group("plates"), file.create_group("beads")
     for name, description in (
+        ("thickness", "thickness, inf: half-space"),
         ("x0", "left end"),
         ("x1", "right end"),
         ("y", "height of the upper face"),
     ):
         values = [getattr(plate, name) for plate in scene.plates]
-        layout.write(plates, name, values, "m", description)
-    mass = scene.beads.mass(scene.sphere_material.density)
-    beads = layout.write_beads(file, scene.beads.radius, mass)
+        write(plates, name, values, "m", description)
     for name, units, description in (
+        ("radius", "m", "radius"),
         ("emission_time", "s", "time at which the bead leaves its nozzle"),
         ("position", "m", "centre (x, y) at emission"),
         ("velocity", "m/s", "velocity (x, y) at emission"),
     ):
-        layout.write(beads, name, getattr(scene.beads, name), units, description)
+        write(beads, name, getattr(scene.beads, name), units, description)
 
 
 def _trajectories(dimensions: int, friction: bool) -> list[Dataset]:
@@ -142,9 +141,6 @@ class Run(Recorded):
         rows = np.zeros(recorded.size, IMPACT)
         for name in names:
             rows[name] = recorded[name]
-        beads, mass = self.scene.beads, self.scene.beads.mass(self.scene.sphere_material.density)
-        rows["radius"], rows["mass"] = beads.radius[rows["bead"]], mass[rows["bead"]]
-        rows["thickness"] = self.thickness
         fill(rows, self.by_model, self.energy(rows))
         return rows
 
@@ -186,6 +182,22 @@ class Run(Recorded):
         return energy
 
 
+def sized(scene: Scene, rows: NDArray[np.void]) -> NDArray[np.void]:
+    """Give impacts sizes of beads and plates, which an engine with a constant COR leaves out."""
+    names = rows.dtype.names or ()
+    if "radius" in names:
+        return rows
+    more = ("radius", "mass", "thickness")
+    found = np.empty(rows.size, [(name, IMPACT[name]) for name in (*names, *more)])
+    for name in names:
+        found[name] = rows[name]
+    beads, plates = scene.beads, np.array([plate.thickness for plate in scene.plates])
+    found["radius"] = beads.radius[rows["bead"]]
+    found["mass"] = beads.mass(scene.sphere_material.density)[rows["bead"]]
+    found["thickness"] = np.where(rows["plate"] < 0, 0.0, plates[rows["plate"]])
+    return found
+
+
 def read(path: Path) -> Run:
     """Read a file that `dem-demo rain` has written.
 
@@ -205,11 +217,9 @@ def read(path: Path) -> Run:
     """
     with h5py.File(path, "r") as file:
         attributes = checked(file, path, NAME, SCHEMA)
-        return Run(
-            scene=_scene(file),
-            bead_on_bead=attributes.get("bead_on_bead"),
-            **common(file),
-        )
+        shared = common(file)
+        scene = _scene(file, shared.pop("pair"))
+        return Run(scene=scene, bead_on_bead=attributes.get("bead_on_bead"), **shared)
 
 
 def read_folder(folder: Path) -> Run:
@@ -217,9 +227,9 @@ def read_folder(folder: Path) -> Run:
     return read(folder / f"{NAME}.h5")
 
 
-def _scene(file: h5py.File) -> Scene:
+def _scene(file: h5py.File, pair: Pair) -> Scene:
     plates = [file[f"plates/{name}"][()].tolist() for name in ("thickness", "x0", "x1", "y")]
-    sphere, plate = layout.materials(file)
+    sphere, plate = pair.given
     fields = ("radius", "emission_time", "position", "velocity")
     return Scene(
         beads=Beads(**{name: file[f"beads/{name}"][()] for name in fields}),

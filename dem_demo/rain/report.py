@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from contactlaw.report.limits import label, limits_lines
+from contactlaw.reporting.limits import label, limits_lines
 from dem_demo.rain.measure import PlateRow, balance, bead_on_bead, limits, plate_rows
 from dem_demo.rain.record import Run
 

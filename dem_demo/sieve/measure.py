@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
-from contactlaw.report.surface import averaged
+from contactlaw.reporting.surface import averaged
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.runs import Run
 from dem_demo.sieve.scene import Sieve

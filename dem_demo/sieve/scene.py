@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines import layout
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
 from dem_demo.sieve import defaults
@@ -110,9 +109,11 @@ class Sieve(Bed):
 
     def write_walls(self, file: h5py.File) -> None:
         """Write the triangles and the dimensions of the deck."""
+        from contactlaw.record.file import write
+
         deck = file.create_group("deck")
         corners = "corners (x, y, z) of each triangle at rest"
-        layout.write(deck, "triangles", self.deck.triangles(), "m", corners)
+        write(deck, "triangles", self.deck.triangles(), "m", corners)
         deck.attrs.update({name: getattr(self.deck, name) for name in _DECK})
 
     @staticmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.kit.runs import Run
 from dem_demo.kit.tale import Facts, Tale
 from dem_demo.sieve import figures

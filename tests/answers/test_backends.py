@@ -99,14 +99,6 @@ def test_what_the_sphere_loses_is_the_sum_over_the_channels(law):
             assert all((getattr(hit, name) >= 0.0).all() for name in LOSSES)
 
 
-def test_histories_are_those_of_the_table():
-    impacts = Impacts.on_plates([2.0, 9.0], R, 1e-3)
-    ours, exact = (one.histories(impacts, 33) for one in backends(PAIRS["both yield"], "fem"))
-    peak = exact.force.max(axis=1, keepdims=True)
-    assert np.abs(ours.force - exact.force).max() < 1e-4 * peak.max()
-    assert ours.time == pytest.approx(exact.time, rel=1e-4)
-
-
 def test_two_beads_build_no_table_of_plates():
     model = cl.ImpactModel(cl.Pair(*PAIRS["the bead yields"]))
     model.lookup_sphere_sphere(5.0, R, R)

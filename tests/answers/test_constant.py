@@ -3,15 +3,11 @@
 import math
 
 import numpy as np
-import pymunk
 import pytest
-from pymunk_room import make_bead, make_plate
 
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.answers.constant import constant
-from contactlaw.engines.pymunk import attach
-from dem_demo.rain.baseline import ConstantRestitution
 
 R, H = 0.9e-3, 0.5e-3
 RNG = np.random.default_rng(11)
@@ -96,36 +92,6 @@ def test_a_height_of_nothing_has_no_finite_error(e, error):
     one = np.ones(2)
     best = constant(one, one, one, np.array(e), np.zeros(2, dtype=int), "energy")
     assert best.rebound_error == error
-
-
-def drops(model, speed, radius):
-    """Rebound speeds of beads that fly at a plate in pymunk."""
-    space = pymunk.Space()
-    impacts = attach(space, model)
-    impacts.add_plate(make_plate(space, (-1, 0), (1 + 0.01 * speed.size, 0)), H)
-    beads = []
-    for n, (v, r) in enumerate(zip(speed, radius, strict=True)):
-        beads.append(make_bead(space, (0.01 * n, 1.2 * r), (0, -v), radius=r))
-        impacts.add_bead(beads[-1])
-    while len(impacts.collisions()) < speed.size:
-        space.step(1e-6)
-    return np.array([bead.body.velocity.y for bead in beads])
-
-
-def test_beads_in_an_engine_lose_as_much_as_with_their_own_cor(model):
-    """pymunk gives the rebound speeds with the model, the equal constant and the plain mean."""
-    speed, radius = np.geomspace(0.3, 10, 12), np.linspace(0.4e-3, 0.9e-3, 12)
-    best = model.constant(speed, radius, H)
-    taken = []
-    for one in (model, best.restitution, best.mean):
-        own = one is model
-        after = drops(one if own else ConstantRestitution(model.pair, one), speed, radius)
-        assert (after > 0).all()
-        taken.append(math.fsum(radius**3 * (speed**2 - after**2)))
-    own, constant, mean = taken
-    assert constant == pytest.approx(own, rel=1e-9)
-    assert mean / own - 1 == pytest.approx(best.mean_energy_error, rel=1e-9)
-    assert best.mean_energy_error < -0.1
 
 
 def test_a_plain_mean_misses_a_third_of_the_energy(model):

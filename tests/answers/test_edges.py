@@ -59,17 +59,6 @@ def test_the_plate_takes_the_work_of_the_force(kind):
     np.testing.assert_allclose(coarse.plate_displacement, path.plate_displacement[::500], rtol=1e-5)
 
 
-def test_an_effective_inelasticity_does_not_do():
-    """Matched on elastic impacts, it is off where a body yields: memory is no dashpot."""
-    hertz = cl.ImpactModel(STEEL.pair, law="hertz")
-    wanted = hertz.restitution(30.0, R, H, "supported", 1.5e-3)
-    thickness = np.geomspace(H, 4.0 * H, 400)
-    effective = np.interp(wanted, hertz.restitution(30.0, R, thickness), thickness)
-    real = cl.ImpactModel(STEEL.pair, law="myc").restitution(30.0, R, H, "supported", 1.5e-3)
-    by_it = cl.ImpactModel(STEEL.pair, law="myc").restitution(30.0, R, effective)
-    assert by_it < 0.9 * real
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_kernel_answers_as_the_solver(kind):
     kernel = STEEL.edge_kernel(kind)
@@ -107,27 +96,6 @@ def test_what_is_flagged():
     for distance, flagged in ((0.8 * wide, True), (1.2 * wide, False)):
         found = light.solve(speed, radius, thin, edge="supported", edge_distance=distance)
         assert bool(found.flags & Validity.NEAR_EDGE) is flagged
-
-
-@pytest.mark.parametrize(("distance", "again"), [(1e-3, True), (4e-3, False)])
-def test_a_plate_that_recedes_is_struck_again(distance, again):
-    """As a bead in small steps does: it presses on, or leaves for good."""
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "carbon-steel-1006"))
-    radius, found = 2e-3, model.solve(3.0, 2e-3, H, edge_distance=distance)
-    assert bool(found.flags & Validity.STRIKES_AGAIN) is again
-    contacts = Contacts(model, radius, H, edge_distance=distance)
-    step, overlap, speed, strikes = 1e-7, np.zeros(1), np.array([3.0]), 0
-    for _ in range(40_000):
-        pressed = contacts.force[0] > 0.0
-        speed -= 0.5 * step * contacts.force / contacts.mass
-        overlap += step * speed
-        speed -= 0.5 * step * contacts.advance(overlap, step) / contacts.mass
-        strikes += contacts.force[0] > 0.0 and not pressed
-        if overlap[0] < 0.0:
-            break
-    assert bool(strikes > 1 or overlap[0] > 0.0) is again
-    if not again:
-        assert -speed[0] / 3.0 == pytest.approx(found.restitution, abs=5e-3)
 
 
 @pytest.mark.parametrize("kind", KINDS)

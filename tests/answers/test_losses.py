@@ -127,6 +127,17 @@ def test_oblique_impacts_from_the_table_are_those_of_the_solver():
     assert (np.abs(exact.sliding_speed) < sliding).all() and (exact.friction_energy > 0.0).all()
 
 
+def test_the_slowest_impacts_lose_what_slow_ones_do():
+    """Their compression is below the smallest one of which the law knows the loss."""
+    model = polymer.WEAK_MODEL
+    speed, radius = np.array([1e-5, 1e-7, 1e-12]), np.array([1.5, 1e-2, 100.0])
+    for hit in (
+        model.solve(speed, radius, 3.0 * radius),
+        model.lookup(speed, radius, 3.0 * radius),
+    ):
+        assert hit.restitution == pytest.approx(0.438, abs=1e-3)
+
+
 @pytest.mark.parametrize("loss", [0.1, 0.35, 0.7, 0.9])
 @pytest.mark.parametrize("strength", [5e6, 20e6, 50e6])
 def test_friction_of_bodies_that_flow_obeys_coulomb(loss, strength):

@@ -1,6 +1,7 @@
 """Elasticities against difference quotients of solver and scipy, and invariants."""
 
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -18,9 +19,10 @@ THICKNESS = np.array([0.4e-3, 0.7e-3, 1e-3, 3e-3, 0.5e-3])
 RADIUS = 0.9e-3
 
 
-def solved(pair, speed=SPEED, radius=RADIUS, thickness=THICKNESS):
-    model = cl.ImpactModel(pair, law="myc")
-    return np.log(model.solve(speed, radius, thickness, rtol=1e-13).restitution)
+def solved(pair, speed=1.0, radius=1.0, thickness=1.0):
+    """Compute ln(COR) with sizes changed by these factors."""
+    impacts = SPEED * speed, RADIUS * radius, THICKNESS * thickness
+    return np.log(cl.ImpactModel(pair, law="myc").solve(*impacts, rtol=1e-13).restitution)
 
 
 def integrated(name, pair, speed, thickness):
@@ -57,15 +59,16 @@ def assert_units_change_nothing(moved):
     assert moved.speed == pytest.approx(-2 * stresses, abs=1e-13)
 
 
+# Each of these solves with one input changed by a factor x.
 INPUTS = {
-    "speed": lambda pair, x: solved(pair, speed=SPEED * x),
-    "radius": lambda pair, x: solved(pair, radius=RADIUS * x),
-    "thickness": lambda pair, x: solved(pair, thickness=THICKNESS * x),
-    "sphere_density": lambda pair, x: solved(changed(pair, "sphere", "density", x)),
-    "plate_density": lambda pair, x: solved(changed(pair, "plate", "density", x)),
-    "sphere_modulus": lambda pair, x: solved(changed(pair, "sphere", "youngs_modulus", x)),
-    "plate_modulus": lambda pair, x: solved(changed(pair, "plate", "youngs_modulus", x)),
-    "yield_strength": lambda pair, x: solved(changed(pair, "sphere", "yield_strength", x)),
+    "speed": lambda solved, pair, x: solved(pair, speed=x),
+    "radius": lambda solved, pair, x: solved(pair, radius=x),
+    "thickness": lambda solved, pair, x: solved(pair, thickness=x),
+    "sphere_density": lambda solved, pair, x: solved(changed(pair, "sphere", "density", x)),
+    "plate_density": lambda solved, pair, x: solved(changed(pair, "plate", "density", x)),
+    "sphere_modulus": lambda solved, pair, x: solved(changed(pair, "sphere", "youngs_modulus", x)),
+    "plate_modulus": lambda solved, pair, x: solved(changed(pair, "plate", "youngs_modulus", x)),
+    "yield_strength": lambda solved, pair, x: solved(all_changed(pair, "yield_strength", x)),
 }
 # next to a corner of the loading curve
 CORNERS = {"stronge": 8.46, "kogut_etsion": 72.8, "jackson_green": 17.7}
@@ -78,7 +81,7 @@ def moved(model):
 
 @pytest.mark.parametrize("name", INPUTS)
 def test_elasticities_are_those_of_the_solver(pair, moved, name):
-    expected = quotient(lambda x: INPUTS[name](pair, x))
+    expected = quotient(functools.partial(INPUTS[name], solved, pair))
     assert getattr(moved, name) == pytest.approx(expected, abs=2e-6)
     assert np.abs(expected).max() > 0.02  # there was something to compare
 
@@ -169,23 +172,12 @@ def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
         found = cl.ImpactModel(other, law="fem", table=table).solve(*moved, rtol=1e-13)
         return np.log(found.restitution)
 
-    ways = {
-        "speed": lambda x: solved(pair, speed=x),
-        "radius": lambda x: solved(pair, radius=x),
-        "thickness": lambda x: solved(pair, thickness=x),
-        "sphere_density": lambda x: solved(changed(pair, "sphere", "density", x)),
-        "plate_density": lambda x: solved(changed(pair, "plate", "density", x)),
-        "sphere_modulus": lambda x: solved(changed(pair, "sphere", "youngs_modulus", x)),
-        "plate_modulus": lambda x: solved(changed(pair, "plate", "youngs_modulus", x)),
-        "yield_strength": lambda x: solved(all_changed(pair, "yield_strength", x)),
-    }
-    assert set(ways) == set(INPUTS)
     ours = model.sensitivity(*impacts)
-    for field, way in ways.items():
+    for field, way in INPUTS.items():
         # a law's numbers are rounded to six digits, which such a step makes 2e-3 of a derivative
         # by one of them at most; most take no such number, and err by the step alone
         rounded = "modulus" in field or field == "yield_strength"
-        expected = quotient(way, 3e-3)
+        expected = quotient(functools.partial(way, solved, pair), 3e-3)
         assert getattr(ours, field) == pytest.approx(expected, abs=2e-3 if rounded else 2e-6), field
     assert np.abs(ours.thickness[:2]).min() > 0.01 and ours.thickness[2] == 0.0
     assert_units_change_nothing(ours)
@@ -237,12 +229,6 @@ def test_every_input_is_compared(moved):
 
 def test_other_units_change_nothing(moved):
     assert_units_change_nothing(moved)
-
-
-def test_below_yield_the_strength_does_not_matter(model):
-    one = model.sensitivity(2.0, RADIUS, 0.5e-3)
-    assert one.yield_strength == 0.0
-    assert one.speed == pytest.approx(0.1 * one.radius, abs=1e-8)  # both act through lambda only
 
 
 def test_on_a_half_space_the_plate_does_not_bend(model):

@@ -38,13 +38,6 @@ def test_no_choice_has_fewer_rows(curve, error):
             assert largest_miss(X, y, [0, *chosen, X.size - 1]) > error
 
 
-def test_the_longest_line_each_time_is_not_enough():
-    """Where the curvature changes sign, a greedy choice is not the best."""
-    x = np.arange(6.0)
-    y = np.array([0.0, 1.0, 0.0, 1.0, 2.0, 3.0])
-    assert fewest(x, y, 1.0).tolist() == [0, 2, 5]  # greedily: [0, 3, ...], or stopping at 4
-
-
 @pytest.mark.parametrize("law", laws.names())
 def test_straight_lines_are_within_the_error(law):
     model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law=law)
@@ -83,15 +76,6 @@ def test_on_a_half_space_one_line_leads_to_yield(model):
         0.1,
         yields,
     ]
-
-
-def test_half_the_rows_that_geometric_speeds_take(model):
-    rows = model.speed_table(R, H, error=1e-4)
-    probe = np.geomspace(0.1, 10, 20_001)
-    e = model.restitution(probe, R, H)
-    for count in range(2, 2 * len(rows.speed)):
-        v = np.geomspace(0.1, 10, count)
-        assert np.abs(np.interp(probe, v, model.restitution(v, R, H)) - e).max() > 1e-4
 
 
 def test_flags_and_what_is_outside(pair, model):

@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -42,12 +43,12 @@ def test_cor_json_holds_every_field(model, capsys):
     assert printed["flags"] == []
 
 
-def test_cor_text_has_units(capsys):
-    assert main(IMPACT) == 0
-    out = capsys.readouterr().out
-    assert "restitution           0.871554 (" in out
-    assert "contact_time          4.04768e-06 s (" in out
-    assert "inside every limit" in out
+def test_a_mass_is_a_number_and_named_where_it_makes_a_plate_too_thin(capsys):
+    assert main([*IMPACT, "--mass", "4mg", "--json", "--no-band"]) == 0
+    assert json.loads(capsys.readouterr().out)["mass_kg"] == 4e-6
+    thin = [*COR, "--radius", "0.9mm", "--thickness", "0.1mm", "--speed", "1", "--no-band"]
+    assert main([*thin, "--mass", "6mg"]) == 1
+    assert ", mass 6 mg: outside the table, its inelasticity" in capsys.readouterr().err
 
 
 def test_cor_names_the_limits_exceeded(capsys):
@@ -244,6 +245,18 @@ def test_the_version(capsys):
         main(["--version"])
     assert stop.value.code == 0
     assert capsys.readouterr().out == f"contactlaw {cl.__version__}\n"
+
+
+def test_help_comes_at_once():
+    """It lists every subcommand, and loads nothing that takes long."""
+    code = (
+        "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
+        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    listed = re.findall(r"^    ([a-z-]+)\b", shown.stdout, re.MULTILINE)
+    whole = re.findall(r"^    ([a-z-]+)\b", cli.parser().format_help(), re.MULTILINE)
+    assert sorted(listed) == sorted(whole) and len(whole) == 14
 
 
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))

@@ -177,7 +177,7 @@ def test_the_band_is_that_of_the_model(capsys):
     text = printed(f"{SURE} {GIVEN}", capsys)
     assert f" ({cor.low:.3g} to {cor.high:.3g}; {', '.join(sizes)})" in text
     assert sizes[0].startswith("yield strength of the bead 0.028")
-    assert "two in three impacts, by the errors that are known" in text
+    assert "two of three impacts, as far as errors are known" in text
     (row,) = csv.DictReader(printed(f"{SURE} {GIVEN} --csv", capsys).splitlines())
     record = json.loads(printed(f"{SURE} {GIVEN} --json", capsys))
     for name, unit in (("restitution", ""), ("contact_time", "_s"), ("peak_force", "_N")):
@@ -195,7 +195,7 @@ def test_strengths_without_an_error_are_named(capsys):
     """A band of moduli alone would look as if the COR were known."""
     table = " ".join(printed("cor --sphere aluminium-6061-t6 --plate glass --radius 1e-3 "
                              "--thickness 1e-2 --speed 1,2", capsys).split())  # fmt: skip
-    assert "by the errors that are known (the strength of the bead has none)." in table
+    assert "as far as errors are known (errors of the strength of the bead are not)." in table
 
 
 def test_no_range_is_printed_where_a_specified_minimum_matters(capsys):
@@ -212,7 +212,7 @@ def test_no_range_is_printed_where_a_specified_minimum_matters(capsys):
 
 
 def test_without_errors_of_materials_it_says_so(capsys):
-    words = "two in three impacts by finite elements (no errors of the materials are known)"
+    words = "two of three impacts by finite elements (no errors of the materials are known)"
     for command in (SURE, f"{SURE},1"):
         assert words in " ".join(printed(command, capsys).split())
     assert "low" not in printed(f"{SURE} --no-band --csv", capsys).splitlines()[0]

@@ -11,7 +11,6 @@ import contactlaw as cl
 from contactlaw import _atomic
 from contactlaw.cli import main
 from contactlaw.cli.parts.impacts import units
-from dem_demo import cli as demo
 
 PAIR = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
 SIZES = ["--radius", "0.9mm", "--thickness", "0.5mm,inf"]
@@ -124,29 +123,6 @@ def test_a_constant_as_csv(keep, model, capsys):
         for name in ("restitution", "spread", "energy_error", "rebound_error", "mean",
                      "mean_energy_error"):  # fmt: skip
             assert float(row[name]) == pytest.approx(getattr(best, name), rel=1e-12, abs=1e-13)
-
-
-def test_a_constant_from_the_record_of_a_run(tmp_path, monkeypatch, capsys):
-    """Materials, law, radii and plates are those of the run, and as much energy is lost."""
-    monkeypatch.setattr("dem_demo.kit.session.make", lambda *_: {})  # draws nothing
-    rain = ["rain", "--beads", "20", "--plates", "0.5e-3,3e-3", "--duration", "0.2"]
-    rain += ["--law", "fem", "--sphere", "glass"]
-    assert demo.main([*rain, "--out", str(tmp_path / "rain")]) == 0
-    capsys.readouterr()
-    assert main(["constant", "--record", str(tmp_path / "rain/rain.h5"), "--csv"]) == 0
-    rows = read_csv(capsys.readouterr().out)
-    with h5py.File(tmp_path / "rain/rain.h5") as file:
-        hits = {name: file[f"collisions/{name}"][()] for name in file["collisions"]}
-        mass, plates = file["beads/mass"][()], file["plates/thickness"][()]
-    for row in rows:
-        plate = np.flatnonzero(plates == float(row["thickness_m"]))
-        on_it = np.isin(hits["plate"], plate)
-        energy = mass[hits["bead"]] * hits["approach_speed"] ** 2 * on_it
-        lost = np.sum(energy * (1 - hits["restitution"] ** 2))
-        constant = np.sum(energy) * (1 - float(row["restitution"]) ** 2)
-        assert int(row["impacts"]) == np.count_nonzero(on_it) > 5
-        assert constant == pytest.approx(lost, rel=1e-6)
-    assert len(rows) == 2
 
 
 def test_a_constant_from_a_table_of_ones_own(tmp_path, model, capsys):

@@ -81,7 +81,7 @@ def test_two_long_lists_are_a_map(drawn, tmp_path):
     assert fast.hatches == ["///"] and flagged.tolist() == [False, True]
     assert fast.get_paths()[0].contains_points([(40.0, 1.0), (55.0, 1.0)]).tolist() == [False, True]
     assert axes.get_ylabel() == "plate thickness [mm]"
-    assert "two in three impacts" in caption(figure)
+    assert "two of three impacts" in caption(figure)
 
 
 def test_a_map_of_one_value(drawn, tmp_path):
@@ -175,7 +175,7 @@ def test_the_band_is_shaded_and_explained(pair, drawn, tmp_path):
     (shaded,) = figure.axes[0].collections
     ends = shaded.get_paths()[0].vertices[:, 1]
     assert ends.min() == pytest.approx(model.uncertainty(20.0, 0.9e-3, 1e-3).restitution.low)
-    said = "Shaded: two in three impacts, by the errors that are known, mostly by the yield"
+    said = "Shaded: two of three impacts, as far as errors are known, mostly by the yield"
     assert said in caption(figure)
 
 

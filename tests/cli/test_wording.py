@@ -7,12 +7,14 @@ import pytest
 import contactlaw as cl
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
 from contactlaw.cli.parts import wording
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 
 @pytest.mark.parametrize(
     ("error", "message"),
     [
+        (ArgumentError("speed", "got -1.0"), r"^speed: got -1\.0$"),
         (OutsideTableError(3, "too fast"), 'impact 3 .* too fast.* outside="solve"'),
         (UnsolvedError(3, "lambda = 200", "too many steps"), r"lambda = 200 \(element 3\): too"),
         (UnknownMaterialError("glas", ("glass",)), r"mean 'glass'\? contactlaw.materials\(\)"),

@@ -50,7 +50,7 @@ def test_each_panel_names_its_run(name, runs):
 
 def test_what_is_no_impact_is_left_out_and_said(drum, tmp_path):
     with h5py.File(shutil.copy(drum / "drum.h5", tmp_path), "r+") as file:
-        kinds = file["collisions/kind"]
+        kinds = file["impacts/kind"]
         kinds[:], count = 0, len(kinds)
         kinds[1] = 2
     runs = read(tmp_path, Drum)
@@ -59,7 +59,7 @@ def test_what_is_no_impact_is_left_out_and_said(drum, tmp_path):
     assert f"1 of {count} rows are no impacts and left out: 1 over edge" in text
     assert re.search(rf"^impacts on the drum +{count - 1}$", text, re.MULTILINE)
     with h5py.File(tmp_path / "drum.h5", "r+") as file:  # as older versions wrote it
-        del file["collisions/kind"], file["collisions/friction_energy"]
+        del file["impacts/kind"], file["impacts/friction_energy"]
     older = read(tmp_path, Drum).law
     assert older.impacts.size == count and older.left_out == ""
     assert (account(older).friction == 0.0).all()

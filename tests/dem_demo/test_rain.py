@@ -33,13 +33,13 @@ def test_all_files_are_there_and_nothing_else(rain):
 
 def test_file_explains_itself(rain):
     with h5py.File(rain / "rain.h5") as file:
-        assert file.attrs["format"] == "contactlaw-rain"
+        assert file.attrs["scene"] == "rain"
         assert file.attrs["seed"] == 1
         assert file.attrs["law"] == "myc"
         for name in ("pymunk", "contactlaw", "numba", "numpy", "python"):
             assert file.attrs[f"version_{name}"]
         assert "--beads 40" in file.attrs["command"]
-        assert "Table 1" in file["materials/sphere"].attrs["source"]
+        assert "Table 1" in file["bodies/0/sphere"].attrs["source"]
         assert np.isinf(file["plates/thickness"][-1])
         seen = []
 
@@ -51,14 +51,14 @@ def test_file_explains_itself(rain):
                 assert not np.isnan(item[()]).any(), name
 
         file.visititems(visit)
-    assert {"collisions/wave_energy", "trajectories/position", "beads/mass"} <= set(seen)
+    assert {"impacts/wave_energy", "trajectories/position", "beads/radius"} <= set(seen)
 
 
 def test_collisions_are_the_one_record_of_impacts(rain, run):
     assert run.collisions.dtype == IMPACT
     with h5py.File(rain / "rain.h5") as file:
-        group = file["collisions"]
-        assert set(group) == set(IMPACT.names)
+        group = file["impacts"]
+        assert set(group) == {*IMPACT.names, "bodies"}
         for column in COLUMNS:
             attributes = group[column.name].attrs
             assert attributes["units"] == column.unit

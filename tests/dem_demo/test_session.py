@@ -17,8 +17,9 @@ import numpy as np
 import pytest
 from demos import names
 
+import contactlaw as cl
 from contactlaw.engines.record import IMPACT
-from contactlaw.report.gallery import Picture
+from contactlaw.reporting.gallery import Picture
 from dem_demo import cli
 from dem_demo.kit import disk, session
 from dem_demo.kit.recorder import Dataset, Making, Recorder
@@ -53,7 +54,7 @@ class Dust:
 
     def read(self, folder):
         with h5py.File(folder / "dust.h5") as file:
-            frames, impacts = (file[name].size for name in ("trajectories/time", "collisions/time"))
+            frames, impacts = (file[name].size for name in ("trajectories/time", "impacts/time"))
             return SimpleNamespace(reason=file.attrs["reason"], frames=frames, impacts=impacts)
 
     def start(self, arguments, command):
@@ -64,8 +65,7 @@ class Dust:
             self.film, lambda error: disk.complaint(error) if isinstance(error, OSError)
             else str(error),
         )  # fmt: skip
-        law = SimpleNamespace(family="none", name="none", from_pair=False)
-        model = SimpleNamespace(force_law=law, outside="raise")
+        model = cl.ImpactModel(cl.Pair("glass", "glass"))
 
         def simulate(folder):
             making = Making(model, ("none", "1"), command, show.files, 1.0)

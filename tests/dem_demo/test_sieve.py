@@ -19,7 +19,7 @@ from verlet import fallen  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw.engines.record import IMPACT  # noqa: E402
-from contactlaw.report.surface import areas  # noqa: E402
+from contactlaw.reporting.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
 from dem_demo.kit.constant import constant_model  # noqa: E402

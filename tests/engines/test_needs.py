@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 import pytest
-from pymunk_room import DT, Full, Stub, drop
+from pymunk_room import DT, Full, drop
 
 import contactlaw as cl
-from contactlaw.engines.needs import knows_beads, knows_rebounds
+from contactlaw.engines.needs import knows, knows_rebounds
 from contactlaw.engines.record import IMPACT
 from dem_demo.rain.baseline import ConstantRestitution
 
@@ -24,18 +24,7 @@ from dem_demo.rain.baseline import ConstantRestitution
 def test_who_knows_what(make, beads, rebounds):
     model = make()
     assert callable(model.curve(0.9e-3, 1e-3))
-    assert (knows_beads(model), knows_rebounds(model)) == (beads, rebounds)
-
-
-@pytest.mark.parametrize("missing", ["pair", "lookup", "lookup_sphere_sphere"])
-def test_the_whole_record_needs_all_three(missing):
-    model = Stub()
-    for name in {"pair", "lookup", "lookup_sphere_sphere"} - {missing}:
-        setattr(model, name, getattr(Full(), name))
-    assert not knows_rebounds(model)
-    space, _, impacts = drop(model)
-    space.step(DT)
-    assert impacts.collisions().dtype.names[-1] == "kind"
+    assert (knows(model, "sphere_sphere_curve"), knows_rebounds(model)) == (beads, rebounds)
 
 
 def test_a_model_that_passes_questions_on():

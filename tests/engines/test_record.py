@@ -1,16 +1,13 @@
 """The record of impacts, without any engine."""
 
-import dataclasses
 import math
 import re
 
-import h5py
 import numpy as np
 import pytest
 from pymunk_room import Full, R, Stub
 
 import contactlaw as cl
-from contactlaw.engines import layout
 from contactlaw.engines.pymunk import PymunkImpacts
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Record, Register
@@ -37,27 +34,16 @@ def test_every_column_has_a_unit_and_a_description():
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
         "sliding_speed", "kind", "sliding_speed_after", "spin_x", "spin_y", "spin_z",
         "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
-        "friction_energy", "wall_work", "radius", "mass", "thickness", "triangle", "flags",
+        "friction_energy", "wall_work", "radius", "mass", "material", "thickness", "triangle",
+        "flags",
     )  # fmt: skip
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
     units = {"1", "s", "m", "kg", "m/s", "rad/s", "N", "J"}
     for column in COLUMNS:
         assert column.unit in units, column
         assert len(column.description) > 10, column
-        whole = column.name in ("bead", "plate", "other", "kind", "triangle", "flags")
-        assert IMPACT[column.name] == (np.int64 if whole else np.float64), column
-
-
-def test_a_record_keeps_every_field_of_a_material(tmp_path):
-    more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
-    more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}}
-    sphere = dataclasses.replace(cl.material("gamma-alumina"), **more)
-    plate = cl.Material("steel", 207e9, 0.3, 7850, kind="metal", hardness="62 HRC", hardening=0.1)
-    assert None not in dataclasses.astuple(sphere)
-    with h5py.File(tmp_path / "run.h5", "w") as file:
-        layout.write_materials(file, sphere, plate)
-        assert set(file["materials/sphere"].attrs) == {*dataclasses.asdict(sphere), "units"}
-        assert layout.materials(file) == (sphere, plate)
+        whole = "bead plate other kind material triangle flags".split()
+        assert IMPACT[column.name] == (np.int64 if column.name in whole else np.float64)
 
 
 def test_flags_are_explained_bit_by_bit():
@@ -105,19 +91,6 @@ def test_record_asks_each_model_for_its_own_rows():
     np.testing.assert_allclose(rows["other_energy"], 0.0625 * kinetic, rtol=1e-14)
     assert rows["flags"].tolist() == [3, 4, 3]
     assert (main.speeds, other.speeds) == ([[2.0], [4.0]], [[3.0]])
-
-
-def test_an_impact_is_looked_up_once():
-    model, record, seen = Full(), Record(), []
-    for n in range(1, 4):
-        add(record, n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6)
-        add(record, n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6)
-        for _ in range(2):
-            seen.append(record.read(register_of(model, [R], [(model, 1e-3)])))
-    assert sum(model.speeds, []) == [11.0, 21.0, 12.0, 22.0, 13.0, 23.0]
-    assert seen[-1]["approach_speed"].tolist() == sum(model.speeds, [])
-    assert [len(rows) for rows in seen] == [2, 2, 4, 4, 6, 6]
-    assert (seen[-1][:2] == seen[0]).all()
 
 
 def test_rows_that_were_given_away_are_not_the_record():

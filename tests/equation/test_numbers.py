@@ -120,23 +120,6 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
         assert (one.inelasticity, one.time, one.compression) == pytest.approx(theirs, rel=1e-14)
 
 
-@pytest.mark.parametrize("method", ["table", "solve"])
-@pytest.mark.parametrize("law", ["fem", "myc"])
-def test_a_history_has_the_same(law, method):
-    """The numbers of a history follow from its last time and from the plate's displacement."""
-    model = cl.ImpactModel(STEEL, law, outside="solve")
-    v, r, h = (each[:2000] for each in impacts(cl.ImpactModel(STEEL), 3))
-    units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(v, r, h))
-    inside = units.inelasticity < 30.0
-    units, v, r, h = type(units)(*(each[inside] for each in units)), v[inside], r[inside], h[inside]
-    answer = model.lookup if method == "table" else model.solve
-    hit, history = answer(v, r, h), model.force_history(v, r, h, samples=5, method=method)
-    np.testing.assert_allclose(history.time[:, -1], hit.contact_time, rtol=1e-12)
-    mass = 4 / 3 * math.pi * STEEL.sphere.density * r**3
-    mobility = history.plate_displacement[:, -1] / history.impulse[:, -1]  # lambda T_H/m
-    np.testing.assert_allclose(mobility * mass / units.time, units.inelasticity, rtol=3e-14)
-
-
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share):
     """The flag began 0.5 % too low in LAMMPS when it left out how plates stiffen contacts."""
@@ -158,14 +141,3 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
     assert row["restitution"] == pytest.approx(ours.restitution, abs=1e-3)
     assert row["flags"] == ours.flags
     assert bool(row["flags"] & Validity.FAST_IMPACT) == (share > 1.0)
-
-
-def test_impacts_next_to_a_limit_are_tried():
-    model = cl.ImpactModel(STEEL)
-    v, r, h = impacts(model, 1)
-    units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(v, r, h))
-    over = units.compression / r / model.limits.swiftest - 1.0
-    assert np.count_nonzero(np.abs(over) < 1e-9) > 0.05 * COUNT
-    assert np.count_nonzero((np.abs(over) < 1e-9) & (over > 0)) > 0.02 * COUNT
-    over = r / h / model.limits.slender - 1.0
-    assert np.count_nonzero((np.abs(over) < 1e-9) & (over > 0)) > 0.04 * COUNT

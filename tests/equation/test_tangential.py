@@ -48,28 +48,6 @@ def test_a_contact_that_sticks(kappa, beta):
     assert -speed / 1e-4 == pytest.approx(beta, abs=0.01)
 
 
-def test_published_finite_elements_where_the_contact_slides():
-    # Chung and Ooi's test 5, digitised, in mu V0; they print no digits, and 0.05 is their scatter
-    psi = np.array([1.92, 2.79, 3.97, 4.76, 5.76, 7.12])
-    published = [-0.63, -1.25, -1.72, -1.71, -1.20, 0.13]
-    assert np.abs(after(MYC.data, solved(0.0, 0.9), 0.83, psi[None])[0] - published).max() < 0.05
-
-
-def test_order_of_convergence():
-    found = solved(0.3, 6.0)
-    exact = after(MYC.data, found, 0.8, PSI[None], 12801, 64)[0]
-    errors = [
-        np.abs(after(MYC.data, found, 0.8, PSI[None], n + 1, 64)[0] - exact).max()
-        for n in (100, 200, 400, 800)
-    ]
-    # second order but for the moments at which springs begin and cease to slide
-    assert errors[0] > 20 * errors[3]
-    springs = [
-        np.abs(after(MYC.data, found, 0.8, PSI[None], 801, n) - exact).max() for n in (8, 16, 32)
-    ]
-    assert springs[0] > 6 * springs[2]
-
-
 def test_no_impact_makes_energy():
     generator = np.random.default_rng(0)
     worst = -math.inf

@@ -4,7 +4,6 @@ import itertools
 import math
 import random
 
-import mpmath
 import numpy as np
 import pytest
 import reference_laws
@@ -15,7 +14,6 @@ import contactlaw as cl
 from contactlaw import laws
 from contactlaw.laws import HERTZ, Law, Loading, jackson_green
 
-DEEPEST = 60.0  # the packaged table ends at chi = 40
 PAIRS = list(itertools.product(cl.materials(), repeat=2))
 # polymers give way before these spheres yield: E*/sigma_Y is 2.4, 2.0, 2.3 and 0.002
 SOFT = [
@@ -24,52 +22,6 @@ SOFT = [
     ("aluminium-2024-t351", "ptfe"),
     ("bearing-steel-52100", "natural-rubber"),
 ]
-
-
-def compressions(law):
-    """Largest compressions around and between the law's kinks."""
-    near = [kink * (1 + step) for kink in law.outcome_kinks for step in (-1e-3, 0.0, 1e-3)]
-    return [0.3, 0.9, *near, 1.7, 5.0, DEEPEST]
-
-
-def unloading(law, q, dm):
-    """Force on the unloading curve from dm."""
-    return law.unloading(q, law.unloading_curve(dm))
-
-
-@pytest.fixture(params=ALL_LAWS, ids=lambda law: law.name)
-def law(request):
-    return request.param
-
-
-def test_is_hertz_below_yield(law):
-    q = np.linspace(0.0, 1.0, 11)
-    assert [law.loading(x) for x in q] == pytest.approx(q**3, rel=1e-15)
-    assert [unloading(law, x, 0.999) for x in q[:-1]] == pytest.approx(q[:-1] ** 3, rel=1e-14)
-    assert law.residual(0.999) == 0.0
-    assert law.dissipation(0.999) == 0.0
-
-
-def test_first_kink_is_yield(law):
-    assert law.outcome_kinks == () or law.outcome_kinks[0] == 1.0
-    assert (law.yield_coefficient is None) == (not law.yields)
-
-
-def test_loading_is_continuous_and_rises(law):
-    d = np.linspace(1e-6, DEEPEST, 200_001)
-    force = np.array([law.loading(math.sqrt(x)) for x in d])
-    steps = np.diff(force)
-    assert (steps > 0).all()
-    # The bound excludes jumps: the steepest slope, Stronge's at yield, is (2 + 2/3.3)/1.5 Hertz's.
-    assert (steps <= 1.74 * 1.5 * np.sqrt(d[1:]) * np.diff(d) * (1 + 1e-6)).all()
-
-
-def test_unloading_lies_below_loading(law):
-    for dm in compressions(law):
-        residual = law.residual(dm)
-        for d in np.linspace(residual, dm, 50):
-            down = unloading(law, math.sqrt(max(0.0, d - residual)), dm)
-            assert down <= law.loading(math.sqrt(d)) * (1 + 1e-12)
 
 
 # the pair of the other tests, and one that jackson_green was fitted for
@@ -165,25 +117,6 @@ class TestAgainstTheFormulas:
 
 def test_every_registered_law_has_a_reference():
     assert {law.family for law in REFERENCED} == reference_laws.FAMILIES <= set(laws.names())
-
-
-@pytest.mark.parametrize("law", REFERENCED, ids=lambda law: law.name)
-def test_the_losses_of_the_reference_are_areas(law):
-    exact = reference_laws.of(law.name)
-    for dm in (1.3, 2.0, 9.0) if law.yields else ():
-        with mpmath.workdps(25):
-            dm = mpf(dm)
-            left = exact.residual(dm)
-            corners = sorted({mpf(1), *(b.start for b in exact.branches), *exact.crossings(dm)})
-
-            def area(force, low, dm=dm, corners=corners):
-                """Over d = low + q^2: no root at the lower end."""
-                ends = [low, *(d for d in corners if low < d < dm), dm]
-                ends = [mpmath.sqrt(d - low) for d in ends]
-                return mpmath.quad(lambda q: 2 * q * force(low + q * q), ends)
-
-            lost = area(exact.loading, mpf(0)) - area(lambda d, dm=dm: exact.unloading(d, dm), left)
-            assert float(lost / exact.loss(dm)) == pytest.approx(1.0, abs=1e-11)
 
 
 def test_a_pair_gives_its_numbers(pair):

@@ -36,17 +36,3 @@ def test_each_body_has_its_own_strength_at_the_rate_of_the_impact(slope, rate0):
         265e6 * (1.0 + 0.015 * math.log(at / 10.0))
     )
     assert stronger.sphere.rate is None and flow_of(stronger) is None
-
-
-def test_slow_impacts_have_the_strength_of_a_slow_test():
-    pair = cl.Pair(IRON, GLASS)
-    slow = rate.factors(flow_of(pair), np.array([1e-3]), np.array([1e-3]))
-    assert slow.tolist() == [1.0]
-    assert rate.strengthened(pair, 1.0).sphere == dataclasses.replace(IRON, rate=None)
-    assert rate.strengthened(pair, 1.5).plate is pair.plate
-
-
-def test_other_laws_have_no_rate():
-    pair = cl.Pair(IRON, GLASS)
-    assert rate.rated(pair, law_of(pair, "myc")) is None
-    assert flow_of(cl.Pair(dataclasses.replace(IRON, rate=None), GLASS)) is None

@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 from contactlaw import laws
 
 MYC = laws.law("myc")
-RATIO = 2.14 / 0.68  # d_P/d_Y of it
 # Numbers besides d_Y that laws take from the pair, for gamma-alumina on glass.
 NUMBERS = {
     "modulus_ratio": 23.1922, "poissons_ratio": 0.21,

@@ -1,23 +1,21 @@
-"""A short record of the demo's kind."""
+"""A short record of beads that rain on two plates."""
 
 import math
 
-import h5py
+import numpy as np
 
-from contactlaw.engines.layout import write, write_materials
+import contactlaw as cl
+from contactlaw.engines.record import IMPACT
 
 
 def write_rain(path, pair):
-    """Write the datasets that `contactlaw constant` reads, as `dem-demo rain` does."""
-    columns = {
-        "beads/radius": [0.9e-3, 1e-3, 1.1e-3],
-        "plates/thickness": [0.5e-3, math.inf],
-        "collisions/approach_speed": [1.0, 2.0, 0.5, 3.0],
-        "collisions/bead": [0, 2, 1, 1],
-        "collisions/plate": [0, 1, -1, 0],
-    }
-    with h5py.File(path, "w") as file:
-        file.attrs.update(format="contactlaw-rain", law="hertz")
-        write_materials(file, pair.sphere, pair.plate)
-        for name, values in columns.items():
-            write(file, name, values, "", "")
+    """Write three impacts on plates and one of bead on bead, as engines save them."""
+    rows = np.zeros(4, IMPACT)
+    rows["time"] = np.arange(4)
+    rows["radius"] = [0.9e-3, 1.1e-3, 1e-3, 1e-3]
+    rows["mass"] = 4 / 3 * math.pi * pair.sphere.density * rows["radius"] ** 3
+    rows["approach_speed"], rows["plate"] = [1.0, 2.0, 0.5, 3.0], [0, 1, -1, 0]
+    rows["other"] = [-1, -1, 0, -1]
+    rows["thickness"] = [0.5e-3, math.inf, 0.0, 0.5e-3]
+    beads = cl.Bodies(cl.Pair(pair.sphere, pair.sphere), "hertz")
+    cl.Record(rows, [cl.Bodies(pair, "hertz"), beads], np.array([0, 0, 1, 0])).save(path)

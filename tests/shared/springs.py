@@ -24,22 +24,17 @@ def slide(lam, y, kappa, psi):
         top = max(top, d)
         left = top - y * math.sqrt(2 * top / y - 1) if top > y else 0.0
         path.append((f, 1.5 * f / (d - left) if d > left else 0.0))
-    return follow(path, dt, kappa, psi, kept=kept)
-
-
-def follow(path, dt, kappa, speed, friction=1.0, mass=1.0, kept=None):
-    """Speeds of contact points after a path of normal force and stiffness, in even steps."""
     width = max(k for _, k in path) / SPRINGS
     place = (np.arange(SPRINGS) + 0.5) * width
-    v = np.array(speed, dtype=float)
+    v = np.array(psi, dtype=float)
     stretch, pull = np.zeros((SPRINGS, v.size)), np.zeros(v.size)
-    for (f, k), share in zip(path, kept or [1.0] * len(path), strict=True):
+    for (f, k), share in zip(path, kept, strict=True):
         stretch *= share
-        half = v - 0.5 * dt * 3.5 * pull / mass  # 3.5: a solid sphere
+        half = v - 0.5 * dt * 3.5 * pull  # 3.5: a solid sphere
         parts = np.maximum(1 - (place / k) ** 2, 0) if k > 0 else np.zeros(SPRINGS)
-        limit = friction * f * parts / parts.sum() if parts.any() else parts
+        limit = f * parts / parts.sum() if parts.any() else parts
         most = limit[:, None] / (kappa * width)
         stretch = np.clip(stretch + dt * half, -most, most)
         pull = kappa * width * stretch.sum(axis=0)
-        v = half - 0.5 * dt * 3.5 * pull / mass
+        v = half - 0.5 * dt * 3.5 * pull
     return v

@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from loops import loop
+from loops import fly
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT, Kind
 from contactlaw.equation.edge import KINDS
-from contactlaw.stepping import Bead, Clock, WallContacts, interact
-from contactlaw.walls import Mesh, Plate, Translation, move
+from contactlaw.stepping import WallContacts
+from contactlaw.walls import Mesh, Plate, Translation
 
 R, H, SPEED, DT = 0.9e-3, 1e-3, 3.0, 1e-7
 MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc")
@@ -19,35 +19,14 @@ MASS = 4 / 3 * math.pi * R**3 * MODEL.pair.sphere.density
 SIDE = 0.05
 
 
-@loop
-def run(scene, contacts, friction, x, v, omega, gravity, dt, steps, mass=MASS):
-    """Path of one bead by velocity Verlet: energy, place, force of the wall, in each step."""
-    force, torque, path = np.zeros(3), np.zeros(3), np.zeros((steps, 5))
-    for step in range(steps):
-        move(scene.frames, step * dt, dt)
-        v += 0.5 * dt / mass * force
-        omega += 0.5 * dt / (0.4 * mass * R * R) * torque
-        x += dt * v
-        force[:] = torque[:] = 0.0
-        bead = Bead(0, 0, (x[0], x[1], x[2]), (v[0], v[1], v[2]), (omega[0], omega[1], omega[2]), R,
-                    mass, force, torque, contacts, friction)  # fmt: skip
-        interact(scene, Clock(step * dt, dt, dt, True), bead)
-        path[step, 4] = force[2]
-        force[2] -= mass * gravity
-        v += 0.5 * dt / mass * force
-        omega += 0.5 * dt / (0.4 * mass * R * R) * torque
-        energy = 0.5 * mass * (v @ v) + 0.2 * mass * R * R * (omega @ omega)
-        path[step, 0] = energy + mass * gravity * (x[2] - R)
-        path[step, 1:4] = x
-    return path
-
-
 def moved(wall, x, v, *, spin=(0.0, 0.0, 0.0), gravity=0.0, dt=DT, steps=400, model=MODEL, **more):
-    """Record and path of a bead."""
+    """Record of a bead, and its path: energy, place, force of the wall."""
     walls = WallContacts([wall], model, R, np.zeros(99, IMPACT), **more)
     (contacts,), (friction,) = walls.memory(1)
     given = (np.array(one, dtype=float) for one in (x, v, spin))
-    path = run(walls.scene, contacts, friction, *given, gravity, dt, steps)
+    down, none = np.array([0.0, 0.0, -gravity]), np.zeros(3)
+    path = fly(walls.scene, contacts, friction, *given, MASS, R, down, dt, steps, none, -1)
+    path[:, 0] += MASS * gravity * (path[:, 3] - R)
     return walls.collisions().copy(), path
 
 

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from loops import loop
+from loops import fly
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT, Kind
-from contactlaw.stepping import Bead, Clock, WallContacts, interact
-from contactlaw.walls import Mesh, Plate, move
+from contactlaw.stepping import WallContacts
+from contactlaw.walls import Mesh, Plate
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
@@ -18,26 +18,6 @@ MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
 MASS = 4 / 3 * math.pi * R**3 * MODEL.pair.sphere.density
 DT = 1e-7
 WIDE = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
-
-
-@loop
-def fly(scene, contacts, friction, x, v, gravity, kick, when, mass, radius, dt, steps):
-    """Move a bead by velocity Verlet; `kick` is added to its velocity at step `when`."""
-    force, torque, omega = np.zeros(3), np.zeros(3), np.zeros(3)
-    for step in range(steps):
-        move(scene.frames, step * dt, dt)
-        v += 0.5 * dt * (force / mass + gravity)
-        omega += 0.5 * dt / (0.4 * mass * radius**2) * torque
-        x += dt * v
-        force[:] = torque[:] = 0.0
-        interact(scene, Clock(step * dt, dt, dt, True),
-                 Bead(0, 0, (x[0], x[1], x[2]), (v[0], v[1], v[2]),
-                      (omega[0], omega[1], omega[2]), radius, mass, force, torque, contacts,
-                      friction))  # fmt: skip
-        v += 0.5 * dt * (force / mass + gravity)
-        omega += 0.5 * dt / (0.4 * mass * radius**2) * torque
-        if step == when:
-            v += kick
 
 
 def kinds(walls, x, v, *, slope=None, kick=(0.0, 0.0, 0.0), when=-1, friction=0.2, steps=2000):
@@ -52,7 +32,8 @@ def kinds(walls, x, v, *, slope=None, kick=(0.0, 0.0, 0.0), when=-1, friction=0.
     contacts = WallContacts(walls, MODEL, R, np.zeros(999, IMPACT), friction=friction)
     (rows,), (springs,) = contacts.memory(1)
     x, v, kick = (np.array(vector, dtype=float) for vector in (x, v, kick))
-    fly(contacts.scene, rows, springs, x, v, gravity, kick, when, MASS, R, DT, steps)
+    start = rows, springs, x, v, np.zeros(3)
+    fly(contacts.scene, *start, MASS, R, gravity, DT, steps, kick, when)
     found = contacts.collisions()
     return [Kind(kind).name for kind in found["kind"]], found
 

@@ -117,19 +117,6 @@ def test_a_bead_that_was_put_down_at_next_to_no_speed(example, speed):
     assert -0.3 * force[2] * (1 + 1e-12) <= force[0] < 0.0
 
 
-def test_a_type_without_a_model_is_named(example):
-    walls = WallContacts(
-        [Plate((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)],
-        cl.ImpactModel(example.PAIR), 1e-3, np.zeros(9, IMPACT),
-    )  # fmt: skip
-    (contacts,), (friction,) = walls.memory(1)
-    at, still = (0.05, 0.05, 9.9e-4), (0.0, 0.0, 0.0)
-    bead = Bead(0, 7, at, still, still, 1e-3, 1e-5, np.zeros(3), np.zeros(3), contacts, friction)
-    interact(walls.scene, Clock(0.0, 1e-8, 1e-8, True), bead)
-    with pytest.raises(RuntimeError, match="NO_MODEL.*got 8"):
-        walls.collisions()
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [

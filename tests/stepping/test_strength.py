@@ -8,7 +8,7 @@ import pytest
 from verlet import drop
 
 import contactlaw as cl
-from contactlaw.softsphere import PARTED, Contacts, advance, law_of, resized, time_step, unit_spring
+from contactlaw.softsphere import PARTED, advance, law_of, resized, unit_spring
 
 LAW = law_of(metal.MODEL)
 
@@ -68,21 +68,3 @@ def test_a_contact_keeps_its_strength():
     factor = np.exp(held[-1][1])
     flow = metal.PAIR.sphere.flow
     assert factor == pytest.approx(metal.rate.factors(flow, 5.0, 1e-3), rel=1e-6)
-
-
-def test_friction_is_that_of_the_pair_at_its_strength():
-    r, v, mu, psi = 1e-3, 3.0, 0.2, np.array([0.5, 2.0, 6.0])
-    contacts, n = Contacts(metal.MODEL, np.full(3, r), 5e-3), np.array([0.0, 0.0, 1.0])
-    hit = metal.at_strength(v, r).oblique(v, psi * mu * v, r, 5e-3, mu, method="solve")
-    dt = time_step(metal.MODEL, v, r, 5e-3)
-    velocity, spin = np.column_stack((psi * mu * v, 0.0 * psi, -v + 0.0 * psi)), np.zeros((3, 3))
-    mass, depth = contacts.mass[:, None], np.full(3, -0.4 * v * dt)
-    for _ in range(200):
-        depth -= dt * velocity[:, 2]
-        force = contacts.advance(depth, dt)[:, None] * n
-        force = force + contacts.slide(n, velocity - r * np.cross(spin, n), mu)
-        velocity += dt / mass * force
-        spin += dt / (0.4 * mass * r**2) * -r * np.cross(n, force)
-    point = (velocity - r * np.cross(spin, n))[:, 0]
-    assert np.abs(point - hit.sliding_speed).max() < 0.015 * mu * v
-    assert velocity[:, 2] == pytest.approx(v * hit.restitution, rel=2e-3)

@@ -52,7 +52,7 @@ EVERY_LAW = pytest.mark.parametrize(
 
 @EVERY_LAW
 def test_tables_have_the_stated_accuracy(law):
-    """Tables built on demand are as near as `ImpactModel.lookup` and docs/tables.md state."""
+    """Tables built on demand are as near as `ImpactModel.lookup` and docs/theory.md state."""
     built = built_for(law)
     assert built.certificate.largest["restitution"] < (4e-7 if law.capped else 2e-7)
     next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero

@@ -31,15 +31,16 @@ def add(commands: Any) -> None:
     add(
         "--record",
         metavar="FILE",
-        help="recorded impacts: a file of dem-demo, such as rain.h5, an engine's record (.npy), or "
-        "CSV with a column speed_m/s and, optionally, radius_m, thickness_m, weight and plate",
+        nargs="+",
+        help="recorded impacts: files of one run (.h5), an engine's rows (.npy), or CSV with a "
+        "column speed_m/s and, optionally, radius_m, thickness_m, weight and plate",
     )
     options.add_law(command, default=None)
     command.add_argument(
         "--keep",
         default="energy",
         choices=["energy", "momentum"],
-        help="what the wall takes in total as with each impact's own COR (default: %(default)s)",
+        help="keep the total energy or momentum that the wall takes (default: %(default)s)",
     )
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print a row per wall in SI units, every digit")
@@ -53,31 +54,59 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    recorded = _recorded(arguments)
-    pair = chosen.pair(arguments, recorded.pair)
-    law = arguments.law or recorded.law or laws.DEFAULT
-    model = ImpactModel(pair, law=law, outside=arguments.outside)
-    found = walls.walls(model, recorded, arguments.keep)
     formats = {"lammps": lines.lammps, "liggghts": lines.liggghts, "yade": lines.yade}
     write = next((write for name, write in formats.items() if getattr(arguments, name)), None)
-    if write is not None:
-        print(*list(write(model, found, arguments.keep)), sep="\n")
-    elif arguments.csv:
-        walls.write_csv(found, arguments.keep, sys.stdout, asked(model))
-    else:
-        print(in_words(asked(model)), *walls.text(found, arguments.keep), sep="\n")
+    for n, recorded in enumerate(_recorded(arguments, single=write is not None)):
+        law = arguments.law or recorded.law or laws.DEFAULT
+        pair = chosen.pair(arguments, recorded.pair)
+        model = ImpactModel(pair, law=law, outside=arguments.outside)
+        found = walls.walls(model, recorded, arguments.keep)
+        if write is not None:
+            print(*list(write(model, found, arguments.keep)), sep="\n")
+        elif arguments.csv:
+            walls.write_csv(found, arguments.keep, sys.stdout, asked(model), head=n == 0)
+        else:
+            print(
+                *[""] * (n > 0),
+                in_words(asked(model)),
+                *walls.text(found, arguments.keep),
+                sep="\n",
+            )
 
 
-def _recorded(arguments: argparse.Namespace) -> records.PlannedImpacts:
-    """Impacts of the record, or every combination of the given speeds, radii and thicknesses."""
+def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recorded]:
+    """Impacts of each pair, or every combination of the given speeds, radii and thicknesses."""
     chosen.check_quantities(arguments)
     sizes = (arguments.radius, arguments.thickness)
     if arguments.record is None:
-        return records.combined(arguments.speed, *sizes)
-    found = records.read(arguments.record)
-    if found.left_out:
-        wording.print_warning(f"{arguments.record}: {found.left_out}")
-    sphere = chosen.pair(arguments, found.pair).sphere
-    with wording.reading(arguments.record):
-        records.check_sphere(found, sphere)
-    return records.completed(found, *sizes)
+        return [records.combined(arguments.speed, *sizes)]
+    found = records.read(*arguments.record)
+    if found[0].left_out:
+        wording.print_warning(f"{arguments.record[0]}: {found[0].left_out}")
+    if len(found) > 1:
+        found = _of_names(arguments, found)
+    if single and len(found) > 1:
+        pairs = [one.pair for one in found if one.pair]
+        names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs)
+        raise wording.Refused(
+            f"{arguments.record[0]}: has impacts of several pairs, {names}, and these lines are "
+            "for one: choose it by --sphere and --plate"
+        )
+    with wording.reading(arguments.record[0]):
+        for one in found:
+            records.check_sphere(one, chosen.pair(arguments, one.pair).sphere)
+    return [records.completed(one, *sizes) for one in found]
+
+
+def _of_names(
+    arguments: argparse.Namespace, found: list[records.Recorded]
+) -> list[records.Recorded]:
+    """Impacts of the materials that --sphere and --plate name; of all if none of these is given."""
+    for role in ("sphere", "plate"):
+        name = getattr(arguments, role)
+        if name is not None:
+            known = sorted({getattr(one.pair, role).name for one in found if one.pair})
+            if name not in known:
+                raise wording.Refused(f"--{role}: the record has {', '.join(known)}, got {name}")
+            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
+    return found

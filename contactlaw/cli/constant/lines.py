@@ -8,12 +8,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from contactlaw._escaped import line
-from contactlaw._readable import relative
+from contactlaw._readable import in_unit, relative
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.cli.constant.walls import Wall, meaning
-from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.dashpot import betan
 from contactlaw.engines.lammps.beads import hertz_material
 from contactlaw.model import ImpactModel
@@ -29,16 +28,6 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
 
     LAMMPS takes E/(2 (1 - nu^2)) of a wall as the effective modulus, whatever the bead's material
     is. The line has the E for which this is the effective modulus of the pair.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> from contactlaw.cli.constant.records import combined
-    >>> from contactlaw.cli.constant.walls import walls
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
-    >>> print(list(lammps(model, found, "energy"))[-1].split(" tangential")[0])
-    fix wall1 all wall/gran granular hertz/material 2.09501e+10 0.908113 0.21
     """
     yield from _head("#", model, found, keep)
     sphere, pair = model.pair.sphere, model.pair
@@ -57,26 +46,7 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
 
 
 def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
-    """Lines of LIGGGHTS: ``fix property/global``, type 1 for beads, one more for each wall.
-
-    Raises
-    ------
-    ValueError
-        If a COR is below LIGGGHTS's limit.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> from contactlaw.cli.constant.records import combined
-    >>> from contactlaw.cli.constant.walls import walls
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
-    >>> for line in list(liggghts(model, found, "energy"))[-3:]:
-    ...     print(line)
-    fix cor all property/global coefficientRestitution peratomtypepair 2 &
-        1 0.908113 &
-        0.908113 1
-    """
+    """Lines of LIGGGHTS: ``fix property/global``, type 1 for beads, one more for each wall."""
     yield from _head("#", model, found, keep)
     beads = _bead_on_bead(model, found, keep)
     for where, best in [("bead on bead", beads), *((_name(wall), wall.best) for wall in found)]:
@@ -98,18 +68,7 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
 
 
 def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
-    """Lines of YADE, which is Python: ``betan`` by materials ``bead``, ``wall1`` and so on.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> from contactlaw.cli.constant.records import combined
-    >>> from contactlaw.cli.constant.walls import walls
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> found = walls(model, combined([40.0], [0.9e-3], [1e-3]), "energy")
-    >>> print(list(yade(model, found, "energy"))[-1])
-    betan = MatchMaker(matches=[(bead, bead, 0.0404234), (bead, wall1, 0.109426)])
-    """
+    """Lines of YADE, which is Python: ``betan`` by materials ``bead``, ``wall1`` and so on."""
     yield from _head("#", model, found, keep)
     yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en; bead, wall1 and so on:"
     yield "# what O.materials.append gives. Bead on bead by the same law at the same speeds."
@@ -122,7 +81,7 @@ def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
 def _name(wall: Wall) -> str:
     if math.isinf(wall.thickness):
         return "half-space"
-    return f"plate of {formatted(wall.thickness, LENGTH)}"
+    return f"plate of {in_unit(wall.thickness, 'm')}"
 
 
 def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:

@@ -15,55 +15,32 @@ from contactlaw._content import content_of
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import SPEED
-from contactlaw.engines import hdf5, layout
-from contactlaw.engines.record import only_impacts
-from contactlaw.physical.arguments import check
+from contactlaw.physical.arguments import ArgumentError, check
+from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.record import hdf5
+from contactlaw.record.file import HDF5, Record, read_record, saved
 
 Array = NDArray[np.float64]
 
 
 class Recorded(NamedTuple):
-    """Impacts on plates in SI units, each column an array of one length; None where unknown.
+    """Impacts on plates in SI units, each column an array of one length; None where unknown."""
 
-    Attributes
-    ----------
-    speed, radius, thickness
-        Normal approach speed [m/s], radius of the bead and thickness of the plate [m].
-    weights
-        Relative frequency of each impact.
-    plate, mass
-        Number of the plate that is hit, and mass of the bead [kg] in an engine's record.
-    pair, law
-        Materials and name of the law of the run.
-    left_out
-        Which rows of a record are left out, because they are no impacts.
-    """
-
-    speed: Array
-    radius: Array | None = None
-    thickness: Array | None = None
-    weights: Array | None = None
-    plate: NDArray[np.int64] | None = None
-    mass: Array | None = None
+    speed: Array  # of approach [m/s]
+    radius: Any = None  # of the bead [m]
+    thickness: Any = None  # of the plate [m]
+    weights: Any = None  # relative frequencies
+    plate: NDArray[np.int64] | None = None  # number of the plate that is hit
+    mass: Array | None = None  # of the bead [kg], in an engine's record
     pair: Pair | None = None
     law: str | None = None
-    left_out: str = ""
-
-
-class PlannedImpacts(NamedTuple):
-    """Impacts on plates in SI units, and which materials and law a run had; None where unknown."""
-
-    speed: Array
-    radius: Array
-    thickness: Array
-    weights: Array
-    pair: Pair | None = None
-    law: str | None = None
+    left_out: str = ""  # which rows of a record are no impacts
 
 
 _SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
+_OF_ROWS = "radius", "thickness", "mass"
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
     **columns.SIZES,
@@ -72,42 +49,24 @@ _COLUMNS = {
 }
 
 
-def read(path: str | os.PathLike[str]) -> Recorded:
-    r"""Read impacts on plates; bead on bead, and what is no impact in a record, are left out.
+def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
+    """Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
 
-    Parameters
-    ----------
-    path : path-like
-        The record of a scene of ``dem-demo`` (``.h5``); an impact record of an engine, as
-        ``np.save`` writes it (``.npy``); or else text: columns between commas, semicolons or tabs,
-        with names and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed
-        [m/s];Radius [mm]``. Speeds may be called speed, approach speed, normal speed or impact
-        speed, or velocity; a column without a unit is in that of the SI. Columns called radius or
-        diameter, thickness, weight and plate are optional.
-
-    Raises
-    ------
-    ValueError
-        If the file has no column of speeds, is of another kind, or has a unit or a number that
-        cannot be read.
-    OSError
-        If the file cannot be opened.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
-    ...     _ = file.write("Speed [cm/s];Radius [mm]\n50;0.9\n120;1.1\n")
-    ...     file.flush()
-    ...     found = read(file.name)
-    >>> found.speed, found.radius
-    (array([0.5, 1.2]), array([0.0009, 0.0011]))
+    The files are records of one run (``.h5``); or else one file: rows of an engine, as ``np.save``
+    writes them (``.npy``), or text with names and units in the first line, as in
+    ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness, weight and plate are
+    optional.
     """
-    readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
-    with wording.reading(path):
-        reader = readers.get(Path(path).suffix.lower(), _text)
-        found = reader(content_of(Path(path), pipe=reader is _text))
-        _check(found)
+    first = Path(paths[0])
+    if len(paths) > 1 or first.suffix.lower() in HDF5:
+        found = _by_pair(read_record(*paths))
+    else:
+        reader = _npy if first.suffix.lower() == ".npy" else _text
+        with wording.reading(first):
+            found = [reader(content_of(first, pipe=reader is _text))]
+    with wording.reading(first):
+        for one in found:
+            _check(one)
     return found
 
 
@@ -121,52 +80,27 @@ def _check(found: Recorded) -> None:
 
 def combined(
     speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> PlannedImpacts:
-    """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once.
-
-    Examples
-    --------
-    >>> combined([1.0, 2.0], [1e-3], [1e-3, 3e-3]).thickness
-    array([0.001, 0.001, 0.003, 0.003])
-    """
+) -> Recorded:
+    """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once."""
     sizes = {"radius": radii, "thickness": thicknesses}
     grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
     r, h, v = (part.ravel() for part in grid)
-    return PlannedImpacts(v, r, h, np.ones(v.size))
+    return Recorded(v, r, h, np.ones(v.size))
 
 
 def completed(
     found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> PlannedImpacts:
-    """Add what a record does not say: the radius of its beads, and the thickness of its plates.
+) -> Recorded:
+    """Add what a record does not say: the radius of its beads, and the thickness of its plates [m].
 
-    Parameters
-    ----------
-    found : Recorded
-        As `read` gives it.
-    radii, thicknesses : sequence of float or None
-        One value [m]; thicknesses one for each plate, too, if the record has their numbers.
-
-    Raises
-    ------
-    ValueError
-        If a value is missing, or given although the record has it.
-
-    Examples
-    --------
-    >>> run = Recorded(np.array([1.0, 2.0]), plate=np.array([1, 0]))
-    >>> completed(run, [1e-3], [0.5e-3, 2e-3]).thickness
-    array([0.002 , 0.0005])
+    One value is for all; thicknesses may be one for each plate if the record has their numbers.
     """
     one = np.zeros(found.speed.size, dtype=np.int64)
     plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate
-    return PlannedImpacts(
-        found.speed,
-        _sized("radius", found.radius, radii, one),
-        _sized("thickness", found.thickness, thicknesses, plate),
-        np.ones(one.size) if found.weights is None else found.weights,
-        found.pair,
-        found.law,
+    return found._replace(
+        radius=_sized("radius", found.radius, radii, one),
+        thickness=_sized("thickness", found.thickness, thicknesses, plate),
+        weights=np.ones(one.size) if found.weights is None else found.weights,
     )
 
 
@@ -188,7 +122,7 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
 
 def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     if values is None:
-        raise ValueError(f"{name}: has to be given, no record says it")
+        raise ArgumentError(name, "has to be given, no record says it")
     return values
 
 
@@ -199,23 +133,34 @@ def _sized(
     if recorded is None:
         sizes = np.array(_given(name, values))
         if sizes.size != which.max() + 1:
-            raise ValueError(
-                f"{name}: got {sizes.size} values for {which.max() + 1} in the record: give one "
-                "for all, or thicknesses for the numbers in a column plate"
+            raise ArgumentError(
+                name,
+                f"got {sizes.size} values for {which.max() + 1} in the record: give one "
+                "for all, or thicknesses for the numbers in a column plate",
             )
         return sizes[which]
     if values is not None:
-        raise ValueError(f"{name}: the record has its own: leave this one out")
+        raise ArgumentError(name, "the record has its own: leave this one out")
     return recorded
 
 
-def _hdf5(content: bytes) -> Recorded:
-    with hdf5.opened(content) as file:
-        return Recorded(**layout.hits(file)._asdict())
+def _by_pair(record: Record) -> list[Recorded]:
+    """Impacts on plates of each pair of materials; of one that is unknown last."""
+    on_plates = record.part(record.rows["plate"] >= 0)
+    impacts, found = on_plates.part(on_plates.impact), []
+    for n in sorted(set(impacts.which.tolist()), key=lambda n: (n < 0, n)) or [-1]:
+        rows = impacts.rows[impacts.which == n]
+        known = {name: rows[name] for name in _OF_ROWS if name in (rows.dtype.names or ())}
+        pair, law = impacts.bodies[n] if n >= 0 else (None, None)
+        found.append(Recorded(
+            rows["approach_speed"], plate=rows["plate"], pair=pair, law=law or None,
+            left_out=on_plates.left_out, **known,
+        ))  # fmt: skip
+    return found
 
 
 def _npy(content: bytes) -> Recorded:
-    rows = columns.saved(content)
+    rows = saved(content)
     names = rows.dtype.names or ()
 
     def numbers(wanted: list[int]) -> Array:
@@ -256,7 +201,7 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         plate = picked["plate"]
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
         if not whole.all():  # NaN, too
-            raise ValueError(f"plate: got {plate[~whole][0]:g}, expected whole numbers")
+            raise ArgumentError("plate", f"got {plate[~whole][0]:g}, expected whole numbers")
         on_plates = plate >= 0
         picked = {field: values[on_plates] for field, values in picked.items()}
         picked["plate"] = picked["plate"].astype(np.int64)

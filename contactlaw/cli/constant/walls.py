@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Iterator
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +13,11 @@ from numpy.typing import NDArray
 from contactlaw._escaped import cell
 from contactlaw._readable import relative
 from contactlaw.answers.constant import Constant, Keep
-from contactlaw.cli.constant.records import PlannedImpacts
+from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
-from contactlaw.physical.validity import Validity
+from contactlaw.physical.arguments import ArgumentError
 
 Array = NDArray[np.float64]
 
@@ -33,42 +34,13 @@ class Wall(NamedTuple):
     best: Constant
 
 
-def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall]:
-    """Find one COR for all impacts on plates of one thickness.
-
-    Parameters
-    ----------
-    model : ImpactModel
-        Model of beads and plates.
-    recorded : PlannedImpacts
-        Impacts on all plates.
-    keep : {"energy", "momentum"}
-        As in `ImpactModel.constant`.
-
-    Returns
-    -------
-    list of Wall
-        Walls, sorted by thickness.
-
-    Raises
-    ------
-    ValueError
-        If there are more than a hundred thicknesses; as `ImpactModel.constant`.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> from contactlaw.cli.constant.records import combined
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> found = walls(model, combined([1.0, 10.0], [0.9e-3], [0.5e-3, 3e-3]), "energy")
-    >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]
-    [(0.0005, 0.649), (0.003, 0.977)]
-    """
+def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
+    """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
     plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
-        raise ValueError(
-            f"thickness: {plates.size} different ones, {_MOST} is the most: round them to those of "
-            "the walls"
+        raise ArgumentError(
+            "thickness",
+            f"{plates.size} different ones, {_MOST} is the most: round them to those of the walls",
         )
     found = []
     for plate in plates:
@@ -77,15 +49,6 @@ def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall
         with wording.naming_impact(v, r, plate):
             found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w)))
     return found
-
-
-def flags_of(found: list[Wall]) -> dict[Validity, int]:
-    """Count the impacts on all walls that exceed each limit."""
-    counts = ((flag, count) for wall in found for flag, count in wall.best.flags.items())
-    total: dict[Validity, int] = {}
-    for flag, count in counts:
-        total[flag] = total.get(flag, 0) + count
-    return total
 
 
 def meaning(keep: Keep) -> str:
@@ -115,15 +78,19 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
     )
     yield ""
     yield meaning(keep)
-    yield from explained(flags_of(found), sum(one.impacts for one in best))
+    flags = sum((Counter(one.flags) for one in best), Counter())
+    yield from explained(flags, sum(one.impacts for one in best))
 
 
-def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, str]) -> None:
+def write_csv(
+    found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any], head: bool = True
+) -> None:
     """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
     writer = csv.writer(out, lineterminator="\n")
     errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")
     numbers = ("restitution", "spread", *errors)
-    writer.writerow(["thickness_m", "impacts", "keep", *numbers, *asked, "flags"])
+    if head:
+        writer.writerow(["thickness_m", "impacts", "keep", *numbers, *asked, "flags"])
     for wall in found:
         flags = "|".join(f"{flag.name}:{count}" for flag, count in wall.best.flags.items())
         values = (getattr(wall.best, name) for name in numbers)

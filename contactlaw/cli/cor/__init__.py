@@ -1,4 +1,9 @@
-"""``contactlaw cor``: coefficient of restitution and more, of one impact or many."""
+"""Coefficients of restitution, and what gives one.
+
+``contactlaw cor``: coefficient of restitution and more, of one impact or many.
+``contactlaw thickness``: all thicknesses of the plate that give a coefficient of restitution.
+``contactlaw speed``: all impact speeds that give a coefficient of restitution.
+"""
 
 from __future__ import annotations
 
@@ -34,9 +39,9 @@ def add(commands: Any) -> None:
     add("--json", action="store_true",
         help="print all fields in SI units, a list for several impacts; inf is null")  # fmt: skip
     add("--plot", metavar="FILE",
-        help="draw the COR into FILE (PNG, SVG, PDF), over the first list of speeds, thicknesses "
-        "or radii, a curve for each value of a second one; two of more than 8 values make a map; "
-        "without a list, up to the speed")  # fmt: skip
+        help="draw the COR into FILE (PNG, SVG, PDF): over the first list of speeds, thicknesses "
+        "or radii, with a curve for each value of a second list; as a map, if both have more than "
+        "8 values; over speeds up to the given one, if there is no list")  # fmt: skip
     command.epilog = f"{options.UNITS} {options.LISTS}"
     inverse.add(commands)
 
@@ -64,7 +69,7 @@ def _run(arguments: argparse.Namespace) -> None:
     known = None
     if errors is not None:
         sizes = [found.columns[name] for name in _SIZES]
-        with wording.naming_impact(*sizes):
+        with wording.naming_impact(*sizes, mass=mass):
             known = model.uncertainty(*sizes, **errors, mass=mass)
     found, columns = bands.with_bands(found, known)
     if arguments.csv:
@@ -107,7 +112,7 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
 
     def ask(grid: dict[str, Array]) -> layout.Answers:
         impact = grid["speed"], grid["radius"], grid["thickness"]
-        with wording.naming_impact(*impact):
+        with wording.naming_impact(*impact, mass=mass):
             hit = (model.solve if arguments.solve else model.lookup)(*impact, mass=mass)
             known = None
             if errors is not None:

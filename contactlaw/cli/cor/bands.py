@@ -14,8 +14,8 @@ from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.physical.pair import Pair
 
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
-_OF_LAW = "two in three impacts by finite elements (no errors of the materials are known)"
-_OF_ALL = "two in three impacts, by the errors that are known"
+_OF_LAW = "two of three impacts by finite elements (no errors of the materials are known)"
+_OF_ALL = "two of three impacts, as far as errors are known"
 WIDTH = 110  # of a line of text
 
 
@@ -47,13 +47,7 @@ def unknown(band: Band) -> str:
 
 
 def in_brackets(band: Band) -> str:
-    """Band of one impact, with its causes, as text after its value.
-
-    Examples
-    --------
-    >>> in_brackets(Band(0.41, 0.55, {"model": 0.0031}))
-    '(0.41 to 0.55; model 0.0031)'
-    """
+    """Band of one impact, with its causes, as text after its value."""
     low, high = (np.ravel(end).item() for end in (band.low, band.high))
     return "(no range)" if np.isinf(low) else f"({low:.3g} to {high:.3g}; {_causes(band)})"
 
@@ -61,7 +55,7 @@ def in_brackets(band: Band) -> str:
 def explained(band: Band, pair: Pair) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
-    said = f"68 %: in this range is the COR of {meaning(band)}{left_out(band, pair)}."
+    said = f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."
     yield from textwrap.wrap(said, WIDTH)
     if meaning(band) is _OF_ALL and np.isfinite(band.low).any():
         yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", WIDTH)
@@ -78,8 +72,8 @@ def left_out(band: Band, pair: Pair) -> str:
     ]
     parts = list(filter(None, [unknown(band)]))
     if names and meaning(band) is _OF_ALL:
-        subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
-        parts.append(f"the {subject} of {' and '.join(names)} {verb} none")
+        subject = "strength" if len(names) == 1 else "strengths"
+        parts.append(f"errors of the {subject} of {' and '.join(names)} are not")
     if any(body.is_polymer and not body.loss_factor for body in roles.values()):
         parts.append("what a polymer loses by viscosity is not in it")
     return f" ({'; '.join(parts)})" if parts else ""

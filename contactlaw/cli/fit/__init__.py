@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from contextlib import nullcontext
 from typing import Any
 
@@ -62,13 +63,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _prior(text: str) -> tuple[str, float]:
-    """Read the name of a quantity and its standard error, in a unit of that quantity.
-
-    Examples
-    --------
-    >>> _prior("density=20kg/m3")
-    ('density', 20.0)
-    """
+    """Read the name of a quantity and its standard error, in a unit of that quantity."""
     name, _, size = text.partition("=")
     name = name.strip().replace("-", "_")
     if name not in UNKNOWNS or not size:
@@ -102,10 +97,12 @@ def _run(arguments: argparse.Namespace) -> None:
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
         friction=arguments.friction,
     )  # fmt: skip
-    asked = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
+    asked: dict[str, Any] = {
+        "sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law
+    }  # fmt: skip
     for name in ("radius", "thickness"):
-        if getattr(arguments, name) is not None:
-            asked[f"{name}_m"] = repr(getattr(arguments, name))
+        if (size := getattr(arguments, name)) is not None:
+            asked[f"{name}_m"] = size
     priors = dict(arguments.prior)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         try:
@@ -116,7 +113,8 @@ def _run(arguments: argparse.Namespace) -> None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
             figure.save_fit(found, title, arguments.plot)
         if arguments.json:
-            print(json.dumps(asked | printed.record(found), indent=2))
+            known = {name: None if size == math.inf else size for name, size in asked.items()}
+            print(json.dumps(known | printed.record(found), indent=2))
         else:
             print(in_words(asked), *printed.text(found, read.lines), "", sep="\n")
             print(*printed.rows(found, read.lines), sep="\n")

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._readable import drawn
 from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
+from contactlaw.cli.parts.plots import SUFFIXES, colour_of, plate_of
 from contactlaw.fitting import Fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.physical.validity import Validity, limits_in_words
@@ -28,20 +29,14 @@ _MOST_CURVES = 6  # more could not be distinguished: then only the fitted values
 _WIDER = 1.25  # ratio of a curve's ends to the extreme speeds of the data
 
 
-class _Kind(NamedTuple):
-    """How a quantity is drawn."""
-
-    label: str
-    scale: float  # figure units per SI unit
-
-
+# How each quantity is drawn: label, and figure units per SI unit.
 _KINDS = {
-    "restitution": _Kind("coefficient of restitution [-]", 1.0),
-    "contact_time": _Kind("contact time [µs]", 1e6),
-    "peak_force": _Kind("peak force [N]", 1.0),
-    "tangential_restitution": _Kind("tangential restitution [-]", 1.0),
-    "rotational_restitution": _Kind("1 + rotational restitution [-]", 1.0),
-    "spin": _Kind("spin after [rad/s]", 1.0),
+    "restitution": ("coefficient of restitution [-]", 1.0),
+    "contact_time": ("contact time [µs]", 1e6),
+    "peak_force": ("peak force [N]", 1.0),
+    "tangential_restitution": ("tangential restitution [-]", 1.0),
+    "rotational_restitution": ("1 + rotational restitution [-]", 1.0),
+    "spin": ("spin after [rad/s]", 1.0),
 }
 
 
@@ -64,24 +59,7 @@ class FitCurve(NamedTuple):
 
 
 def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
-    """Draw a fit into a file: a column for each quantity that was measured.
-
-    Parameters
-    ----------
-    found : Fit
-        Result of `contactlaw.fit`.
-    title : str
-        Title of the figure.
-    path : path-like
-        File to write: PNG, SVG or PDF, by its suffix.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; the message says how to install it.
-    ValueError
-        If the suffix names no format.
-    """
+    """Draw a fit into a file: a column for each quantity that was measured."""
     wording.check_suffix("path", path, SUFFIXES)
     groups = list(groups_of(found))
     drawn = len(groups) <= _MOST_CURVES and not found.data.is_oblique  # speed is no abscissa then
@@ -141,7 +119,7 @@ def curve_of(found: Fit, group: Group) -> FitCurve:
 
 
 def _draw_curve(above: Axes, below: Axes, curve: FitCurve, kind: str, colour: Any) -> None:
-    scale = _KINDS[kind].scale
+    _, scale = _KINDS[kind]
     values, errors = curve.values[kind], curve.errors[kind]
     low, high = (values + sign * errors for sign in (-1.0, 1.0))
     above.fill_between(
@@ -171,12 +149,12 @@ def _draw_values(
     if not rows.size:
         return
     v = (_angles if found.data.is_oblique else _speeds)(found)[rows]
-    scale = _KINDS[kind].scale
+    _, scale = _KINDS[kind]
     measured: Array = np.asarray(getattr(found.data, kind))[rows] + KINDS[kind].shift
     errors: Any = getattr(found.data, f"{kind}_error")
     fitted = measured / (1.0 + off)
     inside = (found.flags[rows] & Validity.ACCURACY) == 0
-    name = f"radius {length_of(group.radius)}, {plate_of(group.thickness)}"
+    name = f"radius {drawn(group.radius)}, {plate_of(group.thickness)}"
     for part, face in ((inside, colour), (~inside, "white")):
         if not part.any():
             continue
@@ -201,7 +179,7 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     largest = 1.15 * max(abs(number) for number in below.get_ylim())
     below.set_ylim(-largest, largest)
     below.set(xlabel="impact speed [m/s]", ylabel="off the fit [%]")
-    above.set_ylabel(_KINDS[kind].label)
+    above.set_ylabel(_KINDS[kind][0])
     if found.data.is_oblique:
         below.set(xlabel="angle of incidence from the normal [°]", xlim=(0.0, 90.0))
         return

@@ -16,6 +16,7 @@ from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import FORCE, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
+from contactlaw.physical.arguments import ArgumentError
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
@@ -52,41 +53,11 @@ class Read(NamedTuple):
 
 
 def read(path: str | os.PathLike[str]) -> Read:
-    r"""Read a table of rebounds, a row for each.
+    """Read a table of rebounds, a row for each.
 
-    Parameters
-    ----------
-    path : path-like
-        Text file with columns between commas, semicolons or tabs, and names and units in the first
-        line, as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column
-        without a unit is in SI units. Required are speeds, and at least one of COR (restitution),
-        contact time, peak force, tangential restitution, rotational restitution and spin.
-        Optional are their standard errors, ``..._error``, angles of incidence from the normal,
-        with which the speeds are those of the beads, or sliding speeds, friction, radius and
-        thickness, or diameters. An empty cell, or ``n/a``, was not measured; rows in which nothing
-        was measured are left out.
-        Numbers may have decimal commas, with semicolons or tabs between the columns.
-
-    Returns
-    -------
-    Read
-
-    Raises
-    ------
-    ValueError
-        If the file is no table, lacks a column, or has a cell that is no number.
-    OSError
-        If the file cannot be opened.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
-    ...     _ = file.write("Speed [cm/s];COR [%];No\n50;91;1\n120;;2\n")
-    ...     file.flush()
-    ...     found = read(file.name)
-    >>> found.columns["restitution"], found.unused, found.empty
-    (array([0.91]), ('No',), [3])
+    Columns are between commas, semicolons or tabs, with names and units in the first line, as in
+    ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``. Rows in which nothing was
+    measured are left out.
     """
     with wording.reading(path):
         return _read(content_of(Path(path), LARGEST_TEXT, pipe=True))
@@ -148,7 +119,7 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     given = {name: size for name, size in sizes.items() if size is not None}
     twice = given.keys() & found.columns.keys()
     if twice:
-        raise ValueError(f"{min(twice)}: the table has its own: leave this one out")
+        raise ArgumentError(min(twice), "the table has its own: leave this one out")
     for name, values in found.columns.items():
         if name in (*INPUTS, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))

@@ -15,16 +15,7 @@ from contactlaw.fitting.unknowns import UNKNOWNS
 
 
 def text(found: Fit, lines: list[int]) -> Iterator[str]:
-    """Lines for a terminal: each value with its error and the error's parts, residuals, and notes.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> data = {"speed": [1.0, 2.0, 3.0], "radius": 0.9e-3, "restitution": [0.885, 0.869, 0.862]}
-    >>> found = cl.fit(cl.Pair("gamma-alumina", "glass"), data, "thickness")
-    >>> print(next(iter(text(found, [2, 3, 4]))))
-    thickness of the plate  0.793 +- 0.013 mm
-    """
+    """Lines for a terminal: each value with its error and the error's parts, residuals, notes."""
     width = max(len(UNKNOWNS[name].title) for name in found.unknown)
     for name in found.unknown:
         _, size = scale_of(max(abs(found.values[name]), found.errors[name]), UNKNOWNS[name].unit)

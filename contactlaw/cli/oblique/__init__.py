@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._readable import drawn
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
-from contactlaw.cli.parts.plots import length_of, plate_of
+from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import within
+from contactlaw.physical.arguments import ArgumentError, within
 
 Array = NDArray[np.float64]
 
@@ -58,9 +59,9 @@ def add(commands: Any) -> None:
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add("--plot", metavar="FILE",
-        help="draw the tangential restitution into FILE (PNG, SVG, PDF), over the first list of "
-        "angles, speeds, thicknesses, radii or coefficients of friction, a curve for each value of "
-        "a second one; two of more than 8 values make a map")  # fmt: skip
+        help="draw the tangential restitution into FILE (PNG, SVG, PDF): over the first list of "
+        "angles, speeds, thicknesses, radii or coefficients of friction, with a curve for each "
+        "value of a second list; as a map, if both have more than 8 values")  # fmt: skip
     for name, program in (("fluent", "Ansys Fluent"), ("acusolve", "AcuTrace (AcuSolve)")):
         add(f"--{name}", metavar="FILE",
             help="write the restitution of the wall over these angles into FILE, in a form that "
@@ -81,7 +82,7 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     for name in ("fluent", "acusolve"):
         if (path := getattr(arguments, name)) is not None:
-            with wording.file_of(name, path):
+            with wording.writing(name, path):
                 _atomic.write(path, _traced(arguments, name, given).encode())
             print(path)
             return
@@ -100,11 +101,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, Any]) -> ImpactTable:
     model = chosen.model(arguments)
     found = _hits(model, every, arguments.mass)
     columns = {column.name: found[column.name] for column in _COLUMNS}
-    return ImpactTable(columns, found["flags"], impacts.asked(model, **_mass(arguments)))
-
-
-def _mass(arguments: argparse.Namespace) -> dict[str, float]:
-    return {} if arguments.mass is None else {"mass": arguments.mass}
+    return ImpactTable(columns, found["flags"], impacts.asked(model, mass=arguments.mass))
 
 
 def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> dict[str, Any]:
@@ -112,7 +109,7 @@ def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> di
     angle, total, thickness, radius, friction = np.broadcast_arrays(*(given[n] for n in _GIVEN))
     inclined = np.radians(angle)
     speed, sliding = total * np.cos(inclined), total * np.sin(inclined)
-    with wording.naming_impact(speed, radius, thickness):
+    with wording.naming_impact(speed, radius, thickness, mass=mass):
         hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve", mass=mass)
     changed = sliding - np.asarray(hit.sliding_speed)
     return {
@@ -129,17 +126,18 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
     angles = np.unique(given["angle"])
     others = {name: len(values) for name, values in given.items() if name != "angle"}
     if max(others.values()) > 1 or angles.size < 2:
-        raise ValueError(
-            f"{program}: got {angles.size} angles and of {', '.join(others)} "
+        raise ArgumentError(
+            program,
+            f"got {angles.size} angles and of {', '.join(others)} "
             f"{', '.join(map(str, others.values()))} values; give one of each and at least two "
-            "angles, best from 0 to 89"
+            "angles, best from 0 to 89",
         )
     # without sliding there is no tangential restitution, but it has a limit
     given = given | {"angle": np.maximum(angles, _STEEPEST)[::-1]}
     rows = _table(arguments, given).columns
     (speed,), (friction,) = arguments.speed, arguments.friction
     about = (
-        f"{arguments.sphere} on {arguments.plate}, radius {length_of(*arguments.radius)}, "
+        f"{arguments.sphere} on {arguments.plate}, radius {drawn(*arguments.radius)}, "
         f"{plate_of(*arguments.thickness)}, {speed:g} m/s, friction {friction:g}, "
         f"law {arguments.law}, no spin before"
     )

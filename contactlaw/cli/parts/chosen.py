@@ -56,7 +56,7 @@ def check_quantities(arguments: argparse.Namespace) -> None:
 @contextmanager
 def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
-    with wording.file_of("plot", arguments.plot):
+    with wording.writing("plot", arguments.plot):
         wording.check_suffix("path", arguments.plot, plots.SUFFIXES)
         yield
     print(arguments.plot)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import csv
 import difflib
-import io
 import math
 import re
-import tokenize
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -48,45 +46,14 @@ class Located(NamedTuple):
     per_unit: float  # values are divided by this, which rounds only once
 
 
-def saved(content: bytes) -> NDArray[np.void]:
-    """Read rows with named columns from the content of a file of ``np.save``.
-
-    Raises
-    ------
-    ValueError
-        If it is another file, a damaged one, or one of other arrays.
-    """
-    if not content.startswith(b"\x93NUMPY"):
-        raise ValueError("no file of np.save")
-    try:
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
-            tokenize.TokenError) as error:  # fmt: skip
-        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
-    if rows.dtype.names is None or rows.ndim != 1:
-        raise ValueError(
-            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
-            "columns, as the record of an engine has"
-        )
-    found: NDArray[np.void] = rows
-    return found
-
-
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     r"""Split a table into the names of its columns, its rows, and the delimiter of columns.
 
     The names are in the first line, or below comments in the first that is none. Rows are the lines
     after the first; those that hold no data are empty.
 
-    Raises
-    ------
-    ValueError
-        If the content is not text.
-
     Examples
     --------
-    >>> split_table(b"Speed [m/s];COR\n0.5;0.9\n")
-    (['Speed [m/s]', 'COR'], ['0.5;0.9'], ';')
     >>> split_table(b"# in May\nspeed,COR\n0.5,0.9\n")
     (['speed', 'COR'], ['', '0.5,0.9'], ',')
     """
@@ -113,11 +80,6 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
 
     A unit follows in brackets, or after a space or an underscore; a column without a unit is in SI
     units.
-
-    Raises
-    ------
-    ValueError
-        If two columns hold one quantity, or a unit is of another quantity.
 
     Examples
     --------
@@ -191,31 +153,10 @@ def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
 def numbers(
     rows: Sequence[str], delimiter: str, names: Sequence[str], wanted: list[int], gaps: bool = False
 ) -> tuple[list[int], Array]:
-    """Read some columns of a table's rows.
+    """Read some columns of a table's rows: the line of the file of each row with data, its numbers.
 
-    Parameters
-    ----------
-    rows : sequence of str
-        Rows that `split_table` returned.
-    delimiter : str
-        Delimiter of columns; if it is no comma, numbers may have decimal commas.
-    names : sequence of str
-        Names in the first line.
-    wanted : list of int
-        Indices of the columns to read.
-    gaps : bool, optional
-        Whether cells may be empty or ``n/a``, which is NaN.
-
-    Returns
-    -------
-    list of int, ndarray
-        Line of the file of each row that holds data, and its numbers.
-
-    Raises
-    ------
-    ValueError
-        If a cell is no number, or a row has more fields than the first line or too few for the
-        wanted columns; the message names the line and the column.
+    If the delimiter is no comma, numbers may have decimal commas. With `gaps` cells may be empty or
+    ``n/a``, which is NaN.
 
     Examples
     --------

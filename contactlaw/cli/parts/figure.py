@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic, style
+from contactlaw._readable import drawn, scale_of
 from contactlaw.cli.parts import plots
 from contactlaw.cli.parts.layout import AXES, Answers, Ask, Layout, is_logarithmic, layout
-from contactlaw.cli.parts.plots import Kind, colour_of, curve, dashes_of, kinds_of
-from contactlaw.cli.parts.quantities import LENGTH, formatted
+from contactlaw.cli.parts.plots import FlagLook, colour_of, curve, dashes_of, kinds_of
 from contactlaw.physical.validity import Validity
 
 if TYPE_CHECKING:
@@ -46,11 +46,6 @@ def save(
     The other arguments, and what is refused, are those of `layout`. Bands are shaded, first yield
     is marked, and parts that exceed limits of `Validity.ACCURACY` are dashed, in maps hatched, each
     kind in its own way.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; the message says how to install it.
     """
     plan = layout(given, along, across)
     found = ask(plan.grid())
@@ -73,7 +68,7 @@ def named(name: str, value: float) -> str:
         case "thickness":
             return plots.plate_of(value)
         case "radius":
-            return f"radius {plots.length_of(value)}"
+            return f"radius {drawn(value)}"
         case "friction":
             return f"friction {value:g}"
     return f"{value:g}{'°' if name == 'angle' else ' m/s'}"
@@ -119,7 +114,9 @@ def _finite(values: Array) -> Array:
     return values[values < math.inf]
 
 
-def _draw(axes: Axes, x: Array, found: Answers, kinds: dict[Validity, Kind], colour: Any) -> None:
+def _draw(
+    axes: Axes, x: Array, found: Answers, kinds: dict[Validity, FlagLook], colour: Any
+) -> None:
     """Draw a curve with its band and first yield; what follows the finite x is a thin line."""
     parts: list[Any] = [part[: x.size] for part in found[:5]]
     value, flags, overload, low, high = parts
@@ -210,7 +207,7 @@ def _figure(width: float, height: float, plan: Layout, found: Answers, subject: 
     return figure
 
 
-def _keys(kinds: dict[Validity, Kind], width: float, hatched: bool) -> list[Any]:
+def _keys(kinds: dict[Validity, FlagLook], width: float, hatched: bool) -> list[Any]:
     """Show a sample of each kind of dashes or hatches with the limit that it stands for."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -231,7 +228,7 @@ def _keys(kinds: dict[Validity, Kind], width: float, hatched: bool) -> list[Any]
 def _unit(name: str, values: Array) -> tuple[str, float]:
     """Name an axis with its unit, for lengths that of the largest; and units per SI unit."""
     label, quantity, _ = AXES[name]
-    unit = formatted(_finite(values)[-1], LENGTH).split()[1] if quantity is LENGTH else quantity.si
+    unit, _ = scale_of(_finite(values)[-1], quantity.si)
     shown = unit.translate({ord("u"): "µ"}).replace("deg", "° from the normal")
     return f"{label} [{shown}]", 1.0 / float(quantity.units[unit])
 

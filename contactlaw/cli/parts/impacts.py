@@ -22,6 +22,7 @@ from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.table import file
@@ -61,42 +62,34 @@ COLUMNS = (
 class ImpactTable:
     """Impacts and their results in SI units; all columns have the same length.
 
-    Attributes
-    ----------
-    columns : dict of str to ndarray
-        For normal impacts speed, radius, thickness, the fields of a `Rebound` except its flags,
-        and the yield speed, which is inf if nothing yields or an impact at yield is outside the
-        table. Ends of a range that is not known are NaN: "-", an empty cell or null.
-    flags : ndarray of int64
-        `Validity` limits that an impact exceeds.
-    asked : dict of str to str
-        What was asked: names of the sphere, the plate and the law, and sizes of all impacts.
+    The yield speed is inf if nothing yields or an impact at yield is outside the table. Ends of a
+    range that is not known are NaN: "-", an empty cell or null.
     """
 
     columns: dict[str, Array]
     flags: NDArray[np.int64]
-    asked: dict[str, str]
+    asked: dict[str, Any]
 
     def __len__(self) -> int:
         """Count the impacts."""
         return len(self.flags)
 
 
-def asked(model: ImpactModel, **sizes: float) -> dict[str, str]:
+def asked(model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
     law, (sphere, plate) = model.force_law, model.pair.given
     name = law.family if law.from_pair else law.name
     named = units() | {"mass": "kg"}
-    numbers = {f"{size}_{named[size]}": f"{value!r}" for size, value in sizes.items()}
+    numbers = {f"{n}_{named[n]}": size for n, size in sizes.items() if size is not None}
     return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
 
 
-def in_words(asked: dict[str, str]) -> str:
+def in_words(asked: dict[str, Any]) -> str:
     """Write what was asked as a title.
 
     Examples
     --------
-    >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": "0.001"})
+    >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
     'glass on pom, law fem, radius 0.001 m'
     """
     sphere, plate, law, *_ = asked.values()
@@ -113,41 +106,19 @@ def tabulate(
     solve: bool = False,
     mass: float | None = None,
 ) -> ImpactTable:
-    """Look up every combination, or integrate it.
+    """Look up every combination of speeds, radii and thicknesses [m/s, m, m], or `solve` it.
 
-    Parameters
-    ----------
-    model : ImpactModel
-        Model of the pair of materials.
-    speeds, radii, thicknesses : sequence of float
-        Impact speeds [m/s], bead radii [m] and plate thicknesses [m]; along the rows, speeds change
-        fastest.
-    solve : bool, optional
-        Whether to integrate the equation instead of using the table.
-    mass : float, optional
-        Mass that answers at the contact [kg], for beads that are no solid spheres.
-
-    Raises
-    ------
-    ValueError
-        If there are more than a million impacts, or the model refuses one.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> table = tabulate(model, [1.0, 5.0], [0.9e-3], [0.5e-3, math.inf])
-    >>> table.columns["restitution"].round(4)
-    array([0.7592, 0.6854, 1.    , 1.    ])
+    Along the rows, speeds change fastest.
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:
-        raise ValueError(
-            f"speed, radius, thickness: every combination of them is {count} impacts, and "
-            f"{_MOST} is the most: give fewer values"
+        raise ArgumentError(
+            "speed, radius, thickness",
+            f"every combination of them is {count} impacts, and "
+            f"{_MOST} is the most: give fewer values",
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
-    with wording.naming_impact(v, r, h):
+    with wording.naming_impact(v, r, h, mass=mass):
         if not solve and _integrates(model):
             limited = model.outside == "raise"
             by = _solver(model, limited)
@@ -160,7 +131,7 @@ def tabulate(
     return ImpactTable(
         {column.name: found[column.name] for column in COLUMNS},
         found["flags"],
-        asked(model, **({} if mass is None else {"mass": mass})),
+        asked(model, mass=mass),
     )
 
 
@@ -184,13 +155,6 @@ def yield_speeds(
     """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
 
     Other impacts on the same plate may be inside the table.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> yield_speeds(model, np.array([1e-3, 1e-3]), np.array([1e-3, 0.05e-3])).round(2)
-    array([7.92,  inf])
     """
     try:
         if _integrates(model):
@@ -205,20 +169,7 @@ def yield_speeds(
 
 
 def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[str]:
-    """Lines for a terminal: what was asked, names, units, impacts, and the meaning of the flags.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> for line in text(tabulate(model, [1.0, 5.0], [0.9e-3], [1e-3])):
-    ...     print(line[:46])
-    gamma-alumina on glass, law myc
-    speed  radius  thickness     COR   time  force
-    [m/s]    [mm]       [mm]     [-]   [us]    [N]
-        1     0.9          1  0.9324  6.692  1.426
-        5     0.9          1  0.9081  4.864  9.688
-    """
+    """Lines for a terminal: what was asked, names, units, impacts, and the meaning of the flags."""
     shown = [column for column in columns if column.title]
     cells = [[column.title, f"[{column.shown}]", *_cells(table, column)] for column in shown]
     cells.append(["flags", "", *map(", ".join, map(flag_names, table.flags))])
@@ -254,13 +205,7 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
 
 
 def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
-    """Lines with the meaning of each flag and its number of impacts; none without flags.
-
-    Examples
-    --------
-    >>> [line[:24] for line in explained({Validity.FAST_IMPACT: 3}, 7)]
-    ['', 'FAST_IMPACT, 3 of 7: fas']
-    """
+    """Lines with the meaning of each flag and its number of impacts; none without flags."""
     if flags:
         yield ""
     for flag, count in sorted(flags.items()):
@@ -269,20 +214,7 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
 
 
 def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUMNS) -> None:
-    """Write rows with every digit; the header has names and SI units.
-
-    Examples
-    --------
-    >>> import io
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> out = io.StringIO()
-    >>> write_csv(tabulate(model, [60.0], [0.9e-3], [1e-3]), out)
-    >>> for line in out.getvalue().splitlines():
-    ...     print(*line.split(",")[:3], line.split(",")[-1])
-    speed_m/s radius_m thickness_m flags
-    60.0 0.0009 0.001 FAST_IMPACT
-    """
+    """Write rows with every digit; the header has names and SI units."""
     writer = csv.writer(out, lineterminator="\n")
     names = [f"{column.name}_{column.unit}" if column.unit else column.name for column in columns]
     writer.writerow([*names, *table.asked, "flags"])
@@ -294,16 +226,7 @@ def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUM
 
 
 def records(table: ImpactTable) -> list[dict[str, object]]:
-    """Rows for JSON, which has no inf: an infinite yield speed or thickness is None.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
-    >>> (row,) = records(tabulate(model, [1.0], [1e-3], [math.inf]))
-    >>> row["thickness"], row["yield_speed"], row["flags"]
-    (None, None, [])
-    """
+    """Rows for JSON, which has no inf: an infinite yield speed or thickness is None."""
     values = zip(*(column.tolist() for column in table.columns.values()), strict=True)
     return [
         {
@@ -316,22 +239,10 @@ def records(table: ImpactTable) -> list[dict[str, object]]:
 
 
 def units() -> dict[str, str]:
-    """SI units of the columns, "" for a column without one.
-
-    Examples
-    --------
-    >>> units()["peak_force"], units()["restitution"]
-    ('N', '')
-    """
+    """SI units of the columns, "" for a column without one."""
     return {column.name: column.unit for column in COLUMNS}
 
 
 def flag_names(flags: int) -> list[str]:
-    """Names of the limits in a sum of flags.
-
-    Examples
-    --------
-    >>> flag_names(Validity.THIN_PLATE | Validity.DAMAGE)
-    ['THIN_PLATE', 'DAMAGE']
-    """
+    """Names of the limits in a sum of flags."""
     return [str(flag.name) for flag in Validity(int(flags))]

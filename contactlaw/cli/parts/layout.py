@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.cli.parts.quantities import ANGLE, FRICTION, LENGTH, SPEED, Quantity
+from contactlaw.physical.arguments import ArgumentError
 
 Array = NDArray[np.float64]
 
@@ -67,69 +68,41 @@ Ask = Callable[[dict[str, Array]], Answers]
 
 
 def is_logarithmic(name: str, least: float, largest: float) -> bool:
-    """Whether a range is so wide that it is spaced and drawn logarithmically.
-
-    Examples
-    --------
-    >>> is_logarithmic("speed", 1.0, 10.0), is_logarithmic("speed", 0.1, 10.0)
-    (False, True)
-    """
+    """Whether a range is so wide that it is spaced and drawn logarithmically."""
     return AXES[name].logarithmic and largest >= 20.0 * least
 
 
 def can_be_axis(values: Sequence[float]) -> bool:
-    """Whether a list has two finite values, between which there is something to draw.
-
-    Examples
-    --------
-    >>> can_be_axis((1e-3, 2e-3)), can_be_axis((1e-3, math.inf))
-    (True, False)
-    """
+    """Whether a list has two finite values, between which there is something to draw."""
     return len({value for value in values if value < math.inf}) > 1
 
 
 def layout(given: Mapping[str, Sequence[float]], along: int, across: int) -> Layout:
-    """Choose what is drawn over what.
+    """Choose what is drawn over what, along an axis, as curves and in panels.
 
     A list of more than 8 values is an axis, and two of them are those of a map. Otherwise the axis
-    is the first list in the order of `given`. The next one makes curves, and a third one panels.
-
-    Parameters
-    ----------
-    given : mapping of str to sequence of float
-        Values of each quantity of `AXES` that the plot knows, in SI units and degrees.
-    along, across : int
-        Number of values along the axis of a curve, and along each axis of a map.
-
-    Raises
-    ------
-    ValueError
-        If no list has two finite values, or there is too much for one figure.
-
-    Examples
-    --------
-    >>> found = layout({"speed": [1.0, 2.0], "thickness": [1e-3, math.inf]}, 5, 5)
-    >>> found.axis, found.curve, found.values["speed"]
-    ('speed', 'thickness', array([1.  , 1.25, 1.5 , 1.75, 2.  ]))
+    is the first list in the order of `given`. The next one makes curves, and a third one panels. An
+    axis of a curve has `along` values, one of a map `across`.
     """
     values = {name: sorted(set(listed)) for name, listed in given.items()}
     lists = [name for name in values if len(values[name]) > 1]
     many = [name for name in lists if len(values[name]) > _MOST_CURVES]
     axes = many or [name for name in lists if can_be_axis(values[name])][:1]
     if not axes:
-        raise ValueError(
-            f"plot: got no two values of {', '.join(values)} to draw between: give a range of one"
+        raise ArgumentError(
+            "plot", f"got no two values of {', '.join(values)} to draw between: give a range of one"
         )
     curves = [name for name in lists if name not in axes]
     is_map, counts = len(axes) > 1, [len(values[name]) for name in curves]
     if len(axes) > 2 or len(curves) > 2 * (not is_map) or max(counts[1:], default=0) > _MOST_PANELS:
-        raise ValueError(
-            f"{', '.join(lists)}: got {', '.join(str(len(values[name])) for name in lists)} "
+        raise ArgumentError(
+            ", ".join(lists),
+            f"got {', '.join(str(len(values[name])) for name in lists)} "
             f"values, too many for one picture: give one list, {_MOST_CURVES} values at most of a "
-            f"second and {_MOST_PANELS} of a third, or for a map two lists alone"
+            f"second and {_MOST_PANELS} of a third, or for a map two lists alone",
         )
     if is_map and "thickness" in axes and values["thickness"][-1] == math.inf:
-        raise ValueError("thickness: got inf, which no axis of a map reaches: leave it out")
+        raise ArgumentError("thickness", "got inf, which no axis of a map reaches: leave it out")
     for name in axes:
         values[name] = _samples(name, values[name], across if is_map else along)
     axis, curve, panel = [*axes, *curves, "", ""][:3]

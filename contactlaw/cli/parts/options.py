@@ -91,10 +91,8 @@ def add_materials(command: argparse.ArgumentParser) -> None:
 def _materials(path: str) -> dict[str, Material]:
     try:
         return read_materials(path)
-    except OSError as error:
-        raise argparse.ArgumentTypeError(f"{path}: {error.strerror}") from None
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    except (OSError, ValueError) as error:
+        raise argparse.ArgumentTypeError(wording.sentence(error, ())) from None
 
 
 def add_sizes(

@@ -37,14 +37,7 @@ _LIKELY = {
 
 
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
-    """Material of an option: a name of the catalogue or of the user's own, or numbers.
-
-    Examples
-    --------
-    >>> bead = material_of("sphere", "E=2.8GPa nu=0.35 rho=1.41g/cm3 name=POM", {})
-    >>> bead.density, bead.name
-    (1410.0, 'POM')
-    """
+    """Material of an option: a name of the catalogue or of the user's own, or numbers."""
     try:
         if "=" not in text:
             return find(text, own)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts.quantities import LENGTH, formatted
+from contactlaw._readable import drawn
 from contactlaw.physical.validity import Validity, count_flags, limits_in_words
 
 if TYPE_CHECKING:
@@ -17,24 +17,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_HALF_SPACE = "half-space"
 SUFFIXES = ".png", ".svg", ".pdf"
 
 
 def plate_of(thickness: float) -> str:
-    """Name a plate by its thickness [m].
-
-    Examples
-    --------
-    >>> plate_of(1e-3), plate_of(math.inf)
-    ('plate 1 mm', 'half-space')
-    """
-    return _HALF_SPACE if thickness == math.inf else f"plate {length_of(thickness)}"
-
-
-def length_of(length: float) -> str:
-    """Write a length [m] in a suitable unit; an infinite one is that of a half-space."""
-    return _HALF_SPACE if length == math.inf else formatted(length, LENGTH).replace("um", "µm")
+    """Name a plate by its thickness [m]."""
+    return drawn(thickness) if thickness == math.inf else f"plate {drawn(thickness)}"
 
 
 def colour_of(n: int, count: int) -> Any:
@@ -44,7 +32,7 @@ def colour_of(n: int, count: int) -> Any:
     return colormaps["viridis"](0.82 * n / max(count - 1, 1))
 
 
-class Kind(NamedTuple):
+class FlagLook(NamedTuple):
     """How a limit of accuracy is drawn where it is exceeded, and its words."""
 
     stroke: float  # length of the dashes, in widths of the line
@@ -56,7 +44,7 @@ _GAP, _STROKES = 1.4, (3.2, 1.0, 6.5, 2.0, 10.0, 4.5)
 _HATCHES = "///", "\\\\\\", "...", "|||", "---", "ooo"
 
 
-def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, Kind]:
+def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, FlagLook]:
     """Limits of accuracy that some impacts exceed, each drawn in its own way; frequent ones first.
 
     Examples
@@ -69,12 +57,12 @@ than the finite elements that the law is made of')]
     counts = count_flags(flags & Validity.ACCURACY)
     looks = itertools.cycle(zip(_STROKES, _HATCHES, strict=True))
     return {
-        flag: Kind(*look, *limits_in_words(flag))
+        flag: FlagLook(*look, *limits_in_words(flag))
         for flag, look in zip(sorted(counts, key=lambda flag: -counts[flag]), looks, strict=False)
     }
 
 
-def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
+def dashes_of(flags: int, kinds: dict[Validity, FlagLook]) -> Any:
     """Line style of impacts with some flags: each kind has a stroke in it, so that all are seen.
 
     Examples
@@ -88,7 +76,7 @@ def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
 
 
 def curve(
-    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, Kind],
+    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, FlagLook],
     **options: Any,
 ) -> None:  # fmt: skip
     """Draw a curve: dashed by kind where it exceeds limits of accuracy, otherwise solid."""

@@ -33,25 +33,20 @@ class Quantity(NamedTuple):
         return next(iter(self.units))
 
 
-_METRES = {"m": "1", "cm": "0.01", "mm": "1e-3", "um": "1e-6", "nm": "1e-9"}
-LENGTH = Quantity("length", {unit: Decimal(size) for unit, size in _METRES.items()})
-SPEED = Quantity(
-    "speed",
-    {"m/s": Decimal(1), "cm/s": Decimal("0.01"), "mm/s": Decimal("1e-3"),
-     "km/h": Decimal(1000) / Decimal(3600)},
-)  # fmt: skip
-TIME = Quantity(
-    "time",
-    {"s": Decimal(1), "ms": Decimal("1e-3"), "us": Decimal("1e-6"), "ns": Decimal("1e-9")},
-)
-FORCE = Quantity(
-    "force", {"N": Decimal(1), "kN": Decimal(1000), "mN": Decimal("1e-3"), "uN": Decimal("1e-6")}
-)
-MASS = Quantity(
-    "mass",
-    {"kg": Decimal(1), "g": Decimal("1e-3"), "mg": Decimal("1e-6"), "ug": Decimal("1e-9")},
-)
-SHARE = Quantity("share", {"-": Decimal(1), "1": Decimal(1), "%": Decimal("0.01")})
+def _quantity(name: str, units: str) -> Quantity:
+    """Quantity from its units and their sizes in SI units."""
+    sizes = (unit.split() for unit in units.split(", "))
+    return Quantity(name, {unit: Decimal(size) for unit, size in sizes})
+
+
+LENGTH = _quantity("length", "m 1, cm 0.01, mm 1e-3, um 1e-6, nm 1e-9")
+SPEED = _quantity("speed", "m/s 1, cm/s 0.01, mm/s 1e-3, km/h 0.2777777777777777777777777778")
+TIME = _quantity("time", "s 1, ms 1e-3, us 1e-6, ns 1e-9")
+FORCE = _quantity("force", "N 1, kN 1000, mN 1e-3, uN 1e-6")
+MASS = _quantity("mass", "kg 1, g 1e-3, mg 1e-6, ug 1e-9")
+STRESS = _quantity("stress", "Pa 1, kPa 1000, MPa 1e6, GPa 1e9")
+DENSITY = _quantity("density", "kg/m3 1, g/m3 1e-3, g/cm3 1000")
+SHARE = _quantity("share", "- 1, 1 1, % 0.01")
 ANGLE = Quantity(
     "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)}
 )
@@ -59,13 +54,6 @@ FRICTION = SHARE._replace(name="coefficient of friction")
 SPIN = Quantity(
     "spin",
     {"rad/s": Decimal(1), "rpm": Decimal(math.pi) / 30, "deg/s": Decimal(math.pi) / 180},
-)
-STRESS = Quantity(
-    "stress",
-    {"Pa": Decimal(1), "kPa": Decimal(1000), "MPa": Decimal("1e6"), "GPa": Decimal("1e9")},
-)
-DENSITY = Quantity(
-    "density", {"kg/m3": Decimal(1), "g/m3": Decimal("1e-3"), "g/cm3": Decimal(1000)}
 )
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
@@ -78,31 +66,15 @@ class _Item(NamedTuple):
 def values(text: str, quantity: Quantity) -> tuple[float, ...]:
     """Read a list of numbers and ranges, each with its unit or all in SI units.
 
-    Parameters
-    ----------
-    text : str
-        Items with commas between them: a number, or a range start:stop:count of evenly spaced
-        values that include both ends; ``log`` after the count spaces them logarithmically.
-    quantity : Quantity
-        `LENGTH`, `SPEED` or another of this module.
-
-    Returns
-    -------
-    tuple of float
-        Values in SI units, in the order given, without rounding by the unit: 0.9mm is 0.9e-3 to
-        the last bit. Any sign, ``inf`` and ``nan`` are read: limits are for the caller to check.
-
-    Raises
-    ------
-    ValueError
-        If the text cannot be read, a unit is of another quantity, or only some numbers have units.
+    Items stand between commas: a number, or a range start:stop:count of evenly spaced values that
+    include both ends; ``log`` after the count spaces them logarithmically. The values are not
+    rounded by their unit: 0.9mm is 0.9e-3 to the last bit. Any sign, ``inf`` and ``nan`` are read:
+    limits are for the caller to check.
 
     Examples
     --------
-    >>> values("0.5mm, 1mm, inf", LENGTH)
-    (0.0005, 0.001, inf)
-    >>> values("0.1:10:3log", SPEED)
-    (0.1, 1.0, 10.0)
+    >>> values("0.5mm, 1mm, inf", LENGTH), values("0.1:10:3log", SPEED)
+    ((0.0005, 0.001, inf), (0.1, 1.0, 10.0))
     """
     items = [[_item(part, quantity) for part in _ends(item)] for item in text.split(",")]
     _check_units(text, [number for item in items for number in item], quantity)
@@ -114,13 +86,7 @@ def values(text: str, quantity: Quantity) -> tuple[float, ...]:
 
 
 def value(text: str, quantity: Quantity) -> float:
-    """Read one number with its unit, or in the SI unit.
-
-    Examples
-    --------
-    >>> value("36 km/h", SPEED)
-    10.0
-    """
+    """Read one number with its unit, or in the SI unit."""
     found = values(text, quantity)
     if len(found) > 1:
         raise ValueError(f"got {text!r}, expected one {quantity.name}")
@@ -128,32 +94,8 @@ def value(text: str, quantity: Quantity) -> float:
 
 
 def decimal_comma(text: str) -> str:
-    """Write a text with a decimal point if it may be one number with a comma; otherwise "".
-
-    Examples
-    --------
-    >>> decimal_comma("0,9mm"), decimal_comma("1,5,10")
-    ('0.9mm', '')
-    """
+    """Write a text with a decimal point if it may be one number with a comma; otherwise ""."""
     return text.replace(",", ".") if re.fullmatch(r"\s*\d+,\d+\s*\D*", text) else ""
-
-
-def formatted(size: float, quantity: Quantity) -> str:
-    """Write a value with six digits, a length in a suitable unit.
-
-    Examples
-    --------
-    >>> formatted(0.9e-3, LENGTH), formatted(5.0, SPEED)
-    ('0.9 mm', '5 m/s')
-    """
-    if not math.isfinite(size):
-        return f"{size:g}"
-    unit = quantity.si
-    if quantity is LENGTH:
-        # from 0.1 mm to 1 m in mm, because plates are usually given in mm
-        unit = next((u for u, least in (("m", 1.0), ("mm", 1e-4), ("um", 1e-7)) if size >= least),
-                    "nm")  # fmt: skip
-    return f"{size / float(quantity.units[unit]):g} {unit}"
 
 
 def _ends(item: str) -> list[str]:

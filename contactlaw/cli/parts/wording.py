@@ -7,7 +7,6 @@ command line arguments are options of the same name, and the remedy is another o
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,13 +15,13 @@ from pathlib import PurePath
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlaw._readable import in_unit
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
-from contactlaw.cli.parts.quantities import LENGTH, SPEED, formatted
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
-_ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
-
 _OTHER_NAMES = {
+    "meshes": "mesh",
     "path": "plot",
     "priors": "prior",
     "restitution": "cor",
@@ -37,23 +36,14 @@ class Refused(ValueError):
 
 
 def sentence(error: Exception, options: Container[str]) -> str:
-    r"""Write the message of an error with options in place of arguments.
+    """Write the message of an error with options in place of arguments.
 
-    Parameters
-    ----------
-    error : Exception
-        Error that the library raised.
-    options : container of str
-        Names of the options of the command; arguments of other names keep theirs.
+    Arguments that are not among the `options` of the command keep their names.
 
     Examples
     --------
-    >>> sentence(ValueError("radius, speed: shapes do not broadcast"), {"radius", "speed"})
-    '--radius, --speed: shapes do not broadcast'
-    >>> sentence(ValueError("constant_cor: must lie between 0 and 1"), {"constant_cor"})
+    >>> sentence(ArgumentError("constant_cor", "must lie between 0 and 1"), {"constant_cor"})
     '--constant-cor: must lie between 0 and 1'
-    >>> sentence(UnknownMaterialError("glas", ("glass",)), {})  # doctest: +ELLIPSIS
-    'unknown material \'glas\': did you mean \'glass\'? `contactlaw materials` lists all; ...
     """
     match error:
         case UnknownMaterialError():
@@ -70,28 +60,22 @@ def sentence(error: Exception, options: Container[str]) -> str:
             return f"{path}: {reason}"
         case OSError(strerror=str(reason)):
             return reason
-    message = str(error)
-    arguments = _ARGUMENTS.match(message)
-    if arguments:
-        names = [_OTHER_NAMES.get(name, name) for name in arguments[0].split(", ")]
-        if all(name in options for name in names):
-            return f"--{', --'.join(names)}".replace("_", "-") + message[arguments.end() :]
-    return message
+    # laws, tables, answers and fits say the argument in the message alone
+    given, _, what = str(error).partition(": ")
+    if isinstance(error, ArgumentError):
+        given, what = error.name, error.what
+    names = [_OTHER_NAMES.get(name, name) for name in given.split(", ")]
+    if what and all(name in options for name in names):
+        return f"--{', --'.join(names)}: ".replace("_", "-") + what
+    return str(error)
 
 
 def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str]) -> None:
-    """Refuse a file whose suffix names none of some formats.
-
-    Examples
-    --------
-    >>> check_suffix("path", "cor.xyz", (".png", ".svg", ".pdf"))
-    Traceback (most recent call last):
-    ValueError: path: got 'cor.xyz', must end in .png, .svg or .pdf
-    """
+    """Refuse a file whose suffix names none of some formats."""
     if PurePath(path).suffix.lower() not in suffixes:
         *others, last = suffixes
-        raise ValueError(
-            f"{name}: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
+        raise ArgumentError(
+            name, f"got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
         )
 
 
@@ -108,48 +92,17 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 @contextmanager
-def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
-    """Name the option and the file that could not be written.
+def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> Iterator[None]:
+    """Name the option and the file, or the folder, that could not be written.
 
     A missing folder is refused before the body of the ``with`` statement runs.
-
-    Examples
-    --------
-    >>> with file_of("plot", "nowhere/cor.png"):
-    ...     print("not reached")
-    Traceback (most recent call last):
-    contactlaw.cli.parts.wording.Refused: --plot: there is no folder nowhere
     """
-    path = os.fspath(path)
-    if os.path.isdir(path):
-        raise Refused(f"--{option}: {path} is a folder")
-    with _writing(option, path):
-        yield
-
-
-@contextmanager
-def folder_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
-    """Name the option and the folder that could not be made or written into.
-
-    Examples
-    --------
-    >>> with folder_of("out", "nowhere/liggghts"):
-    ...     print("not reached")
-    Traceback (most recent call last):
-    contactlaw.cli.parts.wording.Refused: --out: there is no folder nowhere
-    """
-    path = os.path.normpath(path)
-    if os.path.lexists(path) and not os.path.isdir(path):
-        raise Refused(f"--{option}: {path} is no folder")
-    with _writing(option, path):
-        yield
-
-
-@contextmanager
-def _writing(option: str, path: str) -> Iterator[None]:
-    folder = os.path.dirname(path)
-    if folder and not os.path.isdir(folder):
-        raise Refused(f"--{option}: there is no folder {folder}")
+    path = os.path.normpath(path) if folder else os.fspath(path)
+    if os.path.lexists(path) and os.path.isdir(path) != folder:
+        raise Refused(f"--{option}: {path} is {'no' if folder else 'a'} folder")
+    parent = os.path.dirname(path)
+    if parent and not os.path.isdir(parent):
+        raise Refused(f"--{option}: there is no folder {parent}")
     try:
         yield
     except OSError as error:  # its file name may be that of a temporary file: not shown
@@ -157,27 +110,19 @@ def _writing(option: str, path: str) -> Iterator[None]:
 
 
 @contextmanager
-def naming_impact(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterator[None]:
-    """Name the impact that an error within is about by its speed, radius and thickness.
-
-    Examples
-    --------
-    >>> with naming_impact(1e4, 0.9e-3, [1e-3, 2e-3]):
-    ...     raise UnsolvedError(1, "lambda = 120", "too many steps")
-    Traceback (most recent call last):
-    contactlaw.cli.parts.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation \
-did not solve at lambda = 120: too many steps
-    """
+def naming_impact(
+    speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, *, mass: float | None = None
+) -> Iterator[None]:
+    """Name the impact that an error within is about by its speed, sizes, and mass if given."""
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
         v, r, h = (
             values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness)
         )
-        impact = (
-            f"{formatted(v, SPEED)}, radius {formatted(r, LENGTH)}, "
-            f"thickness {formatted(h, LENGTH)}"
-        )
+        impact = f"{in_unit(v, 'm/s')}, radius {in_unit(r, 'm')}, thickness {in_unit(h, 'm')}"
+        if mass is not None:
+            impact += f", mass {in_unit(mass, 'kg')}"
         if isinstance(error, UnsolvedError):
             what = f"the equation did not solve at {error.where}: {error.reason}"
         else:

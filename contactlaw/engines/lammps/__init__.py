@@ -12,16 +12,7 @@ Simulation
     models, records and errors are in SI units, whatever LAMMPS's are. Contacts between beads are
     LAMMPS's own: ``pair_style granular`` and the line that `pair_coeff` writes.
 Walls
-    `Plate` is a rectangle, `Mesh` any triangles: from a file, from arrays, a cylinder, cone or
-    disc. Each wall may have its own material, motion (`Translation`, `Rotation`, `Vibration`,
-    `Tabulated`) and thickness, and so may each triangle have its own thickness. Beads touch a wall
-    from either side. The facets near a bead are found by a grid that moves with the wall. Near its
-    `edges` a wall gives way more or less; without them it does so as an endless plate. Each wall
-    knows its own edges only.
-Dump
-    ``d_contactlaw_restitution`` is the COR of each bead's last impact on a wall, 0 before the first
-    one. ``d2_contactlaw[1]`` and so on are the state of its contacts, which is of no use in a dump
-    (rows of `contactlaw.stepping.contact.CONTACT`, see `contactlaw.engines.lammps.memory`).
+    See docs/lammps.md. Beads touch a wall from either side; each wall knows its own edges only.
 Time step
     A contact lasts some microseconds and takes at least 20 steps:
     `contactlaw.softsphere.time_step` gives the longest step. An impact too fast for the step ends
@@ -33,8 +24,9 @@ Thin plates
     integrates it instead.
 Walls that meet
     Facets that meet within 1e-4 of a bead's radius are one surface, on which the bead has one
-    contact. It is with the facet whose nearest point is on the face, else on an edge, else at a
-    corner (on the seam itself with the first facet), and moves on from facet to facet. The same
+    contact. A facet whose nearest point is on its face has the contact; if there is none, one whose
+    nearest point is on an edge, then at a corner (on a seam: the first). The contact moves on from
+    facet to facet. The same
     holds for faces that meet at less than 20 degrees, as in a tessellated cylinder: the contact is
     with the deepest one. Of more than eight contacts of a bead the deepest are kept;
     `LammpsPlates.left_out` counts the others.
@@ -45,10 +37,6 @@ Motion
     the record are relative to the wall, and ``wall_work`` is the work of the wall's motion on the
     bead: the kinetic energy after an impact, with that of the spin, is that before, plus this work,
     less the energies that the record says are lost.
-Several ranks
-    Every rank makes its LAMMPS object, attaches the same plates and gives the same commands. Beads
-    that touch plates alone follow the same path, to the last bit, on 1 and 2 ranks and in one run
-    or many.
 Restart
     ``read_restart``, then the fixes of your own, then `attach` with the same plates and friction:
     the contacts go on where they were. The record of impacts begins anew. ``reset_timestep`` and

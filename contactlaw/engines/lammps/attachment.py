@@ -27,9 +27,11 @@ from contactlaw.engines.lammps.memory import (
     SLIDING,
     WIDTH,
 )
-from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
+from contactlaw.record.columns import IMPACT
+from contactlaw.record.file import Record
+from contactlaw.reporting.files import report
 from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.plate_rows import SOLID
@@ -46,17 +48,20 @@ _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6,
 _ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
 _HALT_EVERY = 100  # steps between searches for errors, each one a reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
-_PARTS = (  # parts of an attachment in LAMMPS: kind, name, command that removes it; in this order
-    ("fix", HISTORY, f"unfix {HISTORY}"),
-    ("group", HISTORY, f"group {HISTORY} delete"),
-    ("fix", f"{HISTORY}_force", f"unfix {HISTORY}_force"),
-    ("variable", f"{HISTORY}_errors", f"variable {HISTORY}_errors delete"),
-    ("compute", f"{HISTORY}_error", f"uncompute {HISTORY}_error"),
-    ("variable", f"{HISTORY}_error", f"variable {HISTORY}_error delete"),
-    ("fix", f"{HISTORY}_halt", f"unfix {HISTORY}_halt"),
-)
-
-
+# Parts of an attachment in LAMMPS, in the order in which they are made: kind, name, settings. The
+# variable is not a compute property/atom, which would read freed memory once the fix is removed.
+_PARTS = (
+    ("fix", HISTORY, f"all property/atom d2_{HISTORY} {{columns}} d_{_LAST} ghost no"),
+    ("group", HISTORY, "empty"),
+    ("fix", f"{HISTORY}_force", f"{HISTORY} external pf/callback 1 1"),
+    ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
+    ("compute", f"{HISTORY}_error", f"all reduce max v_{HISTORY}_errors"),
+    ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
+    ("fix", f"{HISTORY}_halt",
+     f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+)  # fmt: skip
+_REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete",
+            "variable": "variable {} delete"}  # fmt: skip
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
@@ -219,9 +224,9 @@ def _check_simulation(lmp: lammps) -> None:
 
 def _remove(lmp: lammps) -> None:
     """Remove from LAMMPS all parts of an attachment that are left."""
-    for kind, name, command in reversed(_PARTS):
+    for kind, name, _ in reversed(_PARTS):
         if lmp.has_id(kind, name):
-            lmp.command(command)
+            lmp.command(_REMOVED[kind].format(name))
 
 
 def _address(lmp: lammps, name: str) -> int:
@@ -254,11 +259,6 @@ class LammpsPlates:
             warn_of_metres("radius", radius, stacklevel=3)
         self._contacts = WallContacts(
             walls, models, radius, records, friction=friction, types=types
-        )
-        self._subject = ", ".join(sorted({one.pair.sphere.name for one in models.values()}))
-        own = (by_type(wall.model, types) or models for wall in walls)
-        self._materials = tuple(
-            "/".join(sorted({one.pair.plate.name for one in found.values()})) for found in own
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
@@ -299,18 +299,8 @@ class LammpsPlates:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
-        for command in (
-            f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
-            f"group {HISTORY} empty",
-            f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
-            # not by compute property/atom, which would read freed memory once the fix is removed
-            f"variable {HISTORY}_errors atom d2_{HISTORY}[1]",
-            f"compute {HISTORY}_error all reduce max v_{HISTORY}_errors",
-            f"variable {HISTORY}_error equal c_{HISTORY}_error",
-            f"fix {HISTORY}_halt all halt {_HALT_EVERY} v_{HISTORY}_error > 0 "
-            "error continue message no",
-        ):
-            self._lmp.command(command)
+        for kind, name, settings in _PARTS:
+            self._lmp.command(f"{kind} {name} {settings.format(columns=columns)}")
         self._clear_marks()
         self._check_memory(columns)
         self._shared = self._share(columns)
@@ -537,46 +527,42 @@ class LammpsPlates:
         whole: NDArray[np.void] = np.concatenate(parts)
         return whole[np.lexsort((whole["bead"], whole["time"]))]
 
-    def report(self, out: str | os.PathLike[str]) -> Path:
-        """Write a page about the impacts of all ranks, with figures and an energy map of the walls.
+    def record(self) -> Record | None:
+        """Record of all ranks, with the materials, law and walls: on rank 0, None on the others.
+
+        Every rank has to call it.
+        """
+        rows = self.gather()
+        if rows is None:
+            return None
+        return self._contacts.record(rows, engine="LAMMPS", version_engine=self._lmp.version())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the record of all ranks to a file, see `contactlaw.Record.save`.
 
         Every rank has to call it; rank 0 writes.
-
-        Parameters
-        ----------
-        out : path-like
-            Folder to write into; it is made if its parent exists.
-
-        Returns
-        -------
-        Path
-            The page, index.html, which needs no other file. Beside it are its figures,
-            summary.txt, record.npy, and the map as energy.vtk and energy.ply.
-
-        Raises
-        ------
-        ImportError, ValueError, OSError
-            Without matplotlib; without an impact; if a file cannot be written, of which no part is
-            left behind then.
         """
-        from contactlaw.report import files
-        from contactlaw.report.run import Run
-        from contactlaw.report.surface import Surface
-        from contactlaw.walls.rest import at_rest
+        self._on_first_rank(lambda record: record.save(path))
 
-        rows, page, error = self.gather(), Path(out) / "index.html", None
-        if rows is not None:
+    def report(self, out: str | os.PathLike[str]) -> Path:
+        """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.
+
+        Every rank has to call it; rank 0 writes. The walls are in the energy map.
+        """
+        self._on_first_rank(lambda record: report(record, out))
+        return Path(out) / "index.html"
+
+    def _on_first_rank(self, write: Callable[[Record], object]) -> None:
+        """Let rank 0 write; all ranks raise what goes wrong there."""
+        record, error = self.record(), None
+        if record is not None:
             try:
-                subject = f"{self._subject} on {', '.join(sorted({*self._materials}))}, in LAMMPS"
-                scene = self._contacts.scene
-                surface = Surface(*at_rest(scene.facets, scene.frames, rows))
-                files.write(out, Run(rows, subject, self._materials, surface))
+                write(record)
             except Exception as found:  # the other ranks wait to hear of it
                 error = found
         error = self._comm.bcast(error)
         if error is not None:
             raise error
-        return page
 
     def detach(self) -> None:
         """Remove the plates from the simulation; the record stays readable.

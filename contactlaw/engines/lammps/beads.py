@@ -16,11 +16,6 @@ def hertz_material(
     """Write a contact model of LAMMPS's ``pair_style granular`` with a given COR.
 
     Of LAMMPS's damping models, ``coeff_restitution`` alone gives that COR at any speed.
-
-    Examples
-    --------
-    >>> hertz_material(7e10, 0.9, 0.3, "linear_nohistory 0 0")
-    'hertz/material 7e+10 0.9 0.3 tangential linear_nohistory 0 0 damping coeff_restitution'
     """
     return (
         f"hertz/material {youngs_modulus:g} {restitution:.6g} {poissons_ratio:g} "

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import tempfile
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,17 +31,11 @@ _WALL = re.compile(r"\]:\s*(\S+),\s*style = (wall/gran\S*),")  # in what `info f
 
 def read(given: Any) -> list[list[str]]:
     """Words of each command of a text, or of a list of commands, up to a `clear`."""
-    return list(_commands(given if isinstance(given, str) else "\n".join(map(str, given or ()))))
-
-
-def _commands(text: str) -> Iterator[list[str]]:
+    text = given if isinstance(given, str) else "\n".join(map(str, given or ()))
     text = re.sub(r'"""[\s\S]*?"""', '""', text)  # a quoted text may have lines of its own
-    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
-        words = line.partition("#")[0].split()
-        if words[:1] == ["clear"]:
-            return
-        if words:
-            yield words
+    lines = re.sub(r"&[ \t]*\n", " ", text).splitlines()
+    words = (line.partition("#")[0].split() for line in lines)
+    return [*itertools.takewhile(lambda one: one[0] != "clear", filter(None, words))]
 
 
 def check(commands: Iterable[list[str]], own: Collection[str]) -> None:

@@ -18,19 +18,10 @@ Beads and plates
     first registered: a floor of many pieces is one surface. The attachment keeps no shape alive: it
     forgets shapes that neither the space nor the user holds any more. `remove_bead` and
     `remove_plate` forget others. An index in the record is never given again.
-Friction
-    ``add_plate(..., friction=0.2)`` gives impacts the tangential rebound and spin of the model's
-    ``collide``, for beads with the moment of a solid sphere. The solver is given the sliding speed
-    after the impact as the surface velocity; contacts that rest have Coulomb's friction of the
-    engine with that coefficient. Elsewhere, and between beads, friction is the engine's: of rigid
-    bodies, with the product of the shapes' ``friction``, 0 unless set.
-Edges
-    ``add_plate(..., edge="free")`` (or ``"supported"``, ``"clamped"``) lets impacts near the ends
-    of a segment, or of a polygon's side, have the COR of a plate that ends there. Plates that meet
-    at less than 30 degrees continue each other; a sharper fold or a corner with another plate is
-    supported. The nearest edge counts; impacts from which no wave comes back in time are answered
-    as without edges. Friction there is that far away, scaled with the normal impulse: within 0.06
-    of friction times speed at R/H = 0.9, 0.19 at R/H = 1.8.
+Friction and edges
+    docs/pymunk.md describes ``friction=`` and ``edge=``. Friction near an edge is that far away,
+    scaled with the normal impulse: within 0.06 of friction times speed at R/H = 0.9, 0.19 at
+    R/H = 1.8.
 Materials
     ``attach(space, [model, ...])`` takes a model for each pair of materials; ``material=`` gives
     the material of a bead or a plate. `beads` and `plates` list the materials by index.

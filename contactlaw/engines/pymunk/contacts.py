@@ -9,7 +9,7 @@ from contactlaw.engines.needs import CorBySpeed
 from contactlaw.engines.pymunk.edges import PlateEdges
 from contactlaw.engines.pymunk.friction import LOOSE, Rubbing, belt, check_moment, sliding
 from contactlaw.engines.pymunk.handlers import Callback, Hook, overridden
-from contactlaw.engines.pymunk.lookahead import tunnelling
+from contactlaw.engines.pymunk.lookahead import TunnellingError
 from contactlaw.engines.pymunk.record import Record
 from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, changed, unregistered
 from contactlaw.engines.pymunk.seams import belongs_to_neighbour
@@ -29,36 +29,17 @@ IMPACT, STRUCK = int(Kind.IMPACT), int(Kind.STRUCK)
 
 
 class Contacts:
-    """The contacts of one space, answered by two callbacks.
-
-    Attributes
-    ----------
-    beads, plates : dict
-        Registered beads and plates by the id of their shape.
-    record : Record
-        Record of all impacts.
-    edges : PlateEdges
-        Distances of impacts from edges of plates.
-    time, steps : float, int
-        Sum [s] and number of the steps so far.
-    resting : int
-        Number of contacts too slow for an impact.
-    error : BaseException or None
-        The first error in this step; an interrupt takes precedence over others.
-    stranger : str or None
-        Description of the last contact of a bead that stopped at a shape not registered.
-    """
+    """The contacts of one space, answered by two callbacks."""
 
     def __init__(self) -> None:
-        self.beads: dict[int, BeadShape] = {}
+        self.beads: dict[int, BeadShape] = {}  # by the id of the shape, as the plates
         self.plates: dict[int, PlateShape] = {}
         self.record = Record()
         self.edges = PlateEdges()
-        self.time = 0.0
-        self.steps = 0
-        self.resting = 0
-        self.error: BaseException | None = None
-        self.stranger: str | None = None
+        self.time, self.steps = 0.0, 0  # sum and number of the steps so far
+        self.resting = 0  # number of contacts too slow for an impact
+        self.error: BaseException | None = None  # the first one in this step, or an interrupt
+        self.stranger: str | None = None  # says what bead stopped last at a shape not registered
         self._resting_speed = 0.0
         self._anew = 0.0  # contacts that approach more slowly do not rest [m/s]
         self._fall = 0.0, 0.0  # change of the velocity in free fall in this step [m/s]
@@ -109,7 +90,7 @@ class Contacts:
                 ux, uy = plate.velocity_at(shape, x, y)
                 speed = (vx - ux) * nx + (vy - uy) * ny
                 if plate.passed(bead, nx, ny, self.steps):
-                    raise tunnelling(bead.index, plate.index, self.time, abs(speed), None)
+                    raise TunnellingError(bead.index, plate.index, self.time, abs(speed), None)
                 if speed <= self._resting_speed + RESTING * plate.shake:
                     self._rest(arbiter, speed)
                     if friction is not None:

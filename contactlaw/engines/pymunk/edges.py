@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from contactlaw.engines.needs import knows_edges
+from contactlaw.engines.needs import knows
 from contactlaw.engines.pymunk.models import ModelsByBead, Near
 from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
 from contactlaw.engines.pymunk.seams import SAME_END, place
@@ -64,7 +64,7 @@ def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) ->
     for kind in named:
         check_kind(kind)
     for model in models.values() if named else ():
-        if not knows_edges(model):
+        if not knows(model, "edge_kernel"):
             raise TypeError(
                 f"edge: {model!r} knows none, it has no edge_kernel(); leave edge=None, a plate "
                 "without edges, or give an ImpactModel"

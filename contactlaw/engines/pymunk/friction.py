@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from contactlaw.engines.needs import ObliqueModel
 from contactlaw.equation.tangential import POINT
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ SAME_MOMENT = 1e-3
 LOOSE = 2.0
 
 
-def slide_of(model: ObliqueModel, radius: float, thickness: float, friction: float) -> Slide:
+def slide_of(model: Any, radius: float, thickness: float, friction: float) -> Slide:
     """Sliding speed after impacts of beads of a radius [m] on a plate of a thickness [m].
 
     One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for

@@ -20,48 +20,23 @@ class Handlers:
     key of the adapter becomes a hook that the adapter's calls first. One for a wildcard, or for the
     two types in the other order, is called by pymunk after the adapter's, when the restitution is
     set and the impact recorded: the adapter wraps it, to notice what it changes.
-
-    Parameters
-    ----------
-    space : pymunk.Space
-        Space of the handlers.
-    own : dict
-        For each key, a function that makes the adapter's callback from the list of user's hooks.
-    late : tuple of keys
-        Keys whose callbacks pymunk calls after the adapter's.
-    keep : callable
-        Called with an error of a late callback.
-    is_ours : callable
-        Whether the adapter answers a contact.
-    undo, rub : callable
-        Called with a contact that a late callback has switched off, or whose friction or
-        ``surface_velocity`` it has changed.
-    stranger : callable
-        Called as a ``post_solve`` with a contact of a bead and a shape that is not registered.
     """
 
-    def __init__(
-        self,
-        space: pymunk.Space,
-        own: dict[Key, Callable[[list[Hook]], Callback]],
-        late: tuple[Key, ...],
-        keep: Callable[[BaseException], None],
-        is_ours: Callable[[pymunk.Arbiter], bool],
-        undo: Callable[[pymunk.Arbiter], None],
-        rub: Callable[[pymunk.Arbiter], None],
-        stranger: Callback | None,
-    ) -> None:
-        self._space = space
-        self._keep, self._is_ours, self._undo, self._rub = keep, is_ours, undo, rub
-        self._stranger = stranger
+    def __init__(self, space: pymunk.Space, contacts: Any, bead: int, plate: int) -> None:
+        self._space, self._contacts, self._bead = space, contacts, bead
+        self._stranger: Callback | None = contacts.meet_stranger
         self._keys = 0  # keys of the space whose types are watched
         self._strange: set[int] = set()
-        self._late = late
+        # keys whose callbacks pymunk calls after the adapter's
+        self._late = (None, None), (bead, None), (plate, None), (plate, bead)
         self._watched: dict[Key, Hook] = {}
         self._replaced = vars(space).get("on_collision")
         self._engine = space.on_collision
-        self._hooks: dict[Key, list[Hook]] = {key: [] for key in own}
-        self._own = {key: make(self._hooks[key]) for key, make in own.items()}
+        self._hooks: dict[Key, list[Hook]] = {(bead, plate): [], (bead, bead): []}
+        self._own: dict[Key, Callback] = {
+            (bead, plate): contacts.on_plates(self._hooks[bead, plate]),
+            (bead, bead): contacts.on_beads(self._hooks[bead, bead]),
+        }
         earlier = space._handlers.get((None, None))  # the only key that can be older than ours
         if earlier is not None and earlier.pre_solve is not None:
             self.on_collision(
@@ -114,13 +89,12 @@ class Handlers:
 
         A handler for two types costs nothing in other contacts, as one for any type would.
         """
-        bead = next(iter(self._own))[0]
         own = {kind for key in self._own for kind in key}
         kinds = {0, *(kind for key in self._space._handlers for kind in key)} - own - {None}
         for kind in kinds - self._strange:
-            known = self._space._handlers.get((bead, kind))
+            known = self._space._handlers.get((self._bead, kind))
             if known is None or known.post_solve is None:
-                self._engine(bead, kind, post_solve=stranger)
+                self._engine(self._bead, kind, post_solve=stranger)
             self._strange.add(kind)
         self._keys = len(self._space._handlers)
 
@@ -128,10 +102,9 @@ class Handlers:
         """Stop watching for shapes that are not registered."""
         import pymunk
 
-        bead = next(iter(self._own))[0]
         for kind in self._strange:
-            if self._space._handlers[bead, kind].post_solve == self._stranger:
-                self._engine(bead, kind, post_solve=pymunk.empty_callback)
+            if self._space._handlers[self._bead, kind].post_solve == self._stranger:
+                self._engine(self._bead, kind, post_solve=pymunk.empty_callback)
         self._stranger = None
 
     def replaced(self) -> bool:
@@ -155,22 +128,24 @@ class Handlers:
 
     def _watch(self, key: Key, callback: Callback) -> Callback:
         """Wrap a user's callback, to notice what it changes in a contact of the adapter's."""
+        contacts = self._contacts
 
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             try:
                 processed, restitution = arbiter.process_collision, arbiter.restitution
                 rubbing = arbiter.friction, arbiter.surface_velocity
                 callback(arbiter, space, data)
-                if arbiter.restitution != restitution and self._is_ours(arbiter):
+                if not contacts.is_ours(arbiter):
+                    return
+                if arbiter.restitution != restitution:
                     given, arbiter.restitution = arbiter.restitution, restitution
                     raise overridden(key, "restitution", given)
-                if processed and not arbiter.process_collision and self._is_ours(arbiter):
-                    self._undo(arbiter)
+                if processed and not arbiter.process_collision:
+                    contacts.undo(arbiter)
                 elif rubbing != (arbiter.friction, arbiter.surface_velocity):
-                    if self._is_ours(arbiter):
-                        self._rub(arbiter)
+                    contacts.rub(arbiter)
             except BaseException as error:
-                self._keep(error)
+                contacts.keep(error)
 
         return pre_solve
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import math
 import os
 import sys
@@ -26,8 +27,8 @@ from contactlaw.engines.pymunk.lookahead import LookAhead
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
+    BeadKind,
     BeadShape,
-    Kind,
     Mount,
     PlateShape,
     body_of,
@@ -36,10 +37,11 @@ from contactlaw.engines.pymunk.registry import (
     ends,
     friction_of,
     radius_of,
-    scalar,
 )
 from contactlaw.engines.pymunk.seams import Seams
-from contactlaw.physical.arguments import warn_of_metres
+from contactlaw.physical.arguments import scalars, warn_of_metres
+from contactlaw.record.file import Record
+from contactlaw.reporting.files import report
 
 if TYPE_CHECKING:
     import pymunk
@@ -71,7 +73,7 @@ class PymunkImpacts:
         self._contacts = Contacts()
         self._bodies: dict[int, BeadShape] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
-        self._kinds: Counter[Kind] = Counter()  # numbers of present beads by kind
+        self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
         self._seams = Seams()
@@ -83,20 +85,7 @@ class PymunkImpacts:
         self._replaced = vars(space).get("step")
         self._engine_step = space.step
         vars(space)["step"] = self._step
-        bead, plate = self.bead_type, self.plate_type
-        self._handlers = Handlers(
-            space,
-            own={
-                (bead, plate): self._contacts.on_plates,
-                (bead, bead): self._contacts.on_beads,
-            },
-            late=((None, None), (bead, None), (plate, None), (plate, bead)),
-            keep=self._contacts.keep,
-            is_ours=self._contacts.is_ours,
-            undo=self._contacts.undo,
-            rub=self._contacts.rub,
-            stranger=self._contacts.meet_stranger,
-        )
+        self._handlers = Handlers(space, self._contacts, self.bead_type, self.plate_type)
 
     @property
     def time(self) -> float:
@@ -239,7 +228,7 @@ class PymunkImpacts:
         import pymunk
 
         body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
-        thickness = scalar(thickness=thickness)
+        thickness = float(scalars(thickness=thickness)[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
             raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")
@@ -325,39 +314,26 @@ class PymunkImpacts:
             impact, or 3 if the bead was struck while it touched); if every model is a
             `ReboundModel`, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
             peak_force, plastic_energy, wave_energy, other_energy, friction_energy, wall_work (0,
-            unknown to the engine), radius, mass, thickness, triangle (-1) and flags. Energies are
-            those of solid spheres, bead on bead of the relative motion. What friction took of a
-            bead that has left the space within the step, and how it slides on, is NaN where the
-            engine's friction acted.
+            unknown to the engine), radius, mass, material, thickness, triangle (-1) and flags.
+            Energies are those of solid spheres, bead on bead of the relative motion. What friction
+            took of a bead that has left the space within the step, and how it slides on, is NaN
+            where the engine's friction acted.
         """
         return self._contacts.record.read(self._register)
 
+    def record(self) -> Record:
+        """Every impact so far, with the materials and law of each."""
+        rows = self.collisions()
+        made = {"engine": "pymunk", "version_engine": importlib.metadata.version("pymunk")}
+        return Record(rows, *self._register.bodies(rows), None, made)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the record to a file, see `contactlaw.Record.save`."""
+        self.record().save(path)
+
     def report(self, out: str | os.PathLike[str]) -> Path:
-        """Write a page about the impacts so far, with figures, into a folder.
-
-        Parameters
-        ----------
-        out : path-like
-            Folder to write into; it is made if its parent exists.
-
-        Returns
-        -------
-        Path
-            The page, index.html, which needs no other file. Beside it are its figures,
-            summary.txt and record.npy, the record.
-
-        Raises
-        ------
-        ImportError, ValueError, OSError
-            Without matplotlib; without an impact on a plate, or with a model that is no
-            `ReboundModel`; if a file cannot be written, of which no part is left behind then.
-        """
-        from contactlaw.report import files
-        from contactlaw.report.run import Run
-
-        beads, plates = (np.unique(t["material"]) for t in (self.beads(), self.plates()))
-        subject = f"{', '.join(beads)} on {', '.join(plates)}, in pymunk"
-        return files.write(out, Run(self.collisions(), subject, tuple(self.plates()["material"])))
+        """Write a page about the impacts so far into a folder, see `contactlaw.report`."""
+        return report(self.record(), out)
 
     def detach(self) -> None:
         """Restore the space as it was; the record stays readable. A second call has no effect.

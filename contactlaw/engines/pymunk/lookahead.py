@@ -37,11 +37,22 @@ class TunnellingError(RuntimeError):
         bit by bit, because of overlaps or too few iterations.
     """
 
-    bead: int
-    plate: int
-    time: float
-    speed: float
-    safe_step: float | None
+    def __init__(
+        self, bead: int, plate: int, time: float, speed: float, safe_step: float | None
+    ) -> None:
+        super().__init__(bead, plate, time, speed, safe_step)  # the arguments as given, for pickle
+        self.bead, self.plate, self.time = bead, plate, time
+        self.speed, self.safe_step = speed, safe_step
+
+    def __str__(self) -> str:
+        what, remedy = "was pressed through", "use smaller steps, or more space.iterations"
+        if self.safe_step is not None:
+            what = "would pass unnoticed through"
+            remedy = f"use steps below {self.safe_step:.3g} s"
+        return (
+            f"bead {self.bead} {what} plate {self.plate} in the step to t = {self.time:.9g} s, "
+            f"at a normal speed of {self.speed:.6g} m/s: {remedy}"
+        )
 
 
 class Line(NamedTuple):
@@ -134,7 +145,7 @@ class LookAhead:
                         found.append((safe_step, beads[n].index, plate.index, speed[n]))
         if found:
             safe_step, bead, plate_index, velocity = min(found)
-            raise tunnelling(bead, plate_index, time + dt, float(velocity), float(safe_step))
+            raise TunnellingError(bead, plate_index, time + dt, float(velocity), float(safe_step))
 
 
 def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
@@ -149,47 +160,12 @@ def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
         yield Line(start, end, pivot, velocity, spin)
 
 
-def tunnelling(
-    bead: int, plate: int, time: float, speed: float, safe_step: float | None
-) -> TunnellingError:
-    """Make the error with its message and attributes."""
-    if safe_step is None:
-        text = "was pressed through", "use smaller steps, or more space.iterations"
-    else:
-        text = "would pass unnoticed through", f"use steps below {safe_step:.3g} s"
-    error = TunnellingError(
-        f"bead {bead} {text[0]} plate {plate} in the step to t = {time:.9g} s, "
-        f"at a normal speed of {speed:.6g} m/s: {text[1]}"
-    )
-    error.bead, error.plate, error.time = bead, plate, time
-    error.speed, error.safe_step = speed, safe_step
-    return error
-
-
 def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
-    """Distance and speed of beads that cross a plate's centre line within a step.
+    """Distance and speed of beads that cross a plate's centre line within a step of length dt [s].
 
-    Parameters
-    ----------
-    positions, velocities : array (n, 2)
-        Centres of the beads at the start of the step [m], and their velocities [m/s].
-    line : Line
-        The plate at the start of the step.
-    dt : float
-        Length of the step [s].
-
-    Returns
-    -------
-    distance, speed : array (n,)
-        Distance from the line at the start of the step [m] and mean normal speed in it [m/s];
-        speed 0 for those that do not cross the line between its two ends.
-
-    Examples
-    --------
-    >>> plate = Line((-1.0, 0.0), (1.0, 0.0), pivot=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.0)
-    >>> distance, speed = approach(np.array([[0.0, 0.1]]), np.array([[0.0, -3.0]]), plate, dt=0.1)
-    >>> distance.tolist(), speed.round(6).tolist()
-    ([0.1], [3.0])
+    Positions [m] and the line are those at the start of the step, and so is the distance [m]. The
+    speed is the mean normal one in the step [m/s]; 0 for beads that do not cross the line between
+    its two ends.
     """
     (ax, ay), (bx, by), (px, py), (vx, vy), spin = line
     length = math.hypot(bx - ax, by - ay)

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
-from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows_beads
+from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
 from contactlaw.physical.rate import rated
 
 Near = tuple[str, float]  # kind of an edge, and the distance from it [m]
@@ -63,30 +63,7 @@ class ModelsByBead(dict[int, RestitutionModel]):
 
 
 class Models:
-    """The models of one space, one per pair of materials; the first has the default materials.
-
-    Parameters
-    ----------
-    given : RestitutionModel or sequence of RestitutionModel
-        The models that `attach` was given.
-
-    Attributes
-    ----------
-    all : list of RestitutionModel
-        The models in the order in which they were given.
-    spheres : list
-        Materials of beads; None for a model without a pair.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> pairs = [cl.Pair(bead, "glass") for bead in ("gamma-alumina", "carbon-steel")]
-    >>> models = Models([cl.ImpactModel(pair, law="myc") for pair in pairs])
-    >>> [sphere.name for sphere in models.spheres]
-    ['gamma-alumina', 'carbon-steel-1020']
-    >>> models.bead("carbon-steel")
-    1
-    """
+    """The models of one space, one per pair of materials; the first has the default materials."""
 
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
@@ -159,10 +136,12 @@ class Models:
     def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
         """Restitution by speed of two beads, each of a radius [m] and a material."""
         (radius, number), (other_radius, other) = one, two
-        model = self.of_bead(number)
-        if not knows_beads(model):
+        model: Any = self.of_bead(number)
+        if not knows(model, "sphere_sphere_curve"):
             raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-        return model.sphere_sphere_curve(radius, other_radius, *self.extra_arguments(number, other))
+        more = self.extra_arguments(number, other)
+        curve: CorBySpeed = model.sphere_sphere_curve(radius, other_radius, *more)
+        return curve
 
     def density(self, number: int) -> float | None:
         """Density of a bead's material [kg/m3], None if the model does not have it."""

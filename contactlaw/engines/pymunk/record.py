@@ -14,6 +14,8 @@ from contactlaw.engines.needs import RestitutionModel, knows_rebounds
 from contactlaw.engines.pymunk.models import Models, ModelsByBead, Near
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.pair import Pair
+from contactlaw.record.file import Bodies, bodies_of
 
 # What a run gives of each impact; of friction_energy that over the mass [m2/s2]
 SEEN = (*OBSERVED, "sliding_speed_after", "spin_z", "friction_energy")
@@ -64,6 +66,24 @@ class Register:
             found |= {id(model): model for model in models.values()}
         return list(found.values())
 
+    def bodies(self, rows: NDArray[np.void]) -> tuple[list[Bodies], NDArray[np.int64]]:
+        """Materials and laws of impacts, and the number of these for each row; -1: no pair."""
+        found: list[Bodies] = []
+        which = np.full(len(rows), -1)
+        material = np.append(self.materials, -1)
+        on_beads = np.stack([material[rows["bead"]], material[rows["other"]]], axis=1)
+        for one, other in np.unique(on_beads[rows["other"] >= 0], axis=0).tolist():
+            model: Any = self.models.of_bead(one)
+            if hasattr(model, "pair"):
+                pair = Pair(self.models.spheres[one], self.models.spheres[other])
+                found.append(bodies_of(model)._replace(pair=pair))
+                which[(on_beads == (one, other)).all(axis=1)] = len(found) - 1
+        for model, own in self.by_model(rows):
+            if hasattr(model, "pair"):
+                found.append(bodies_of(model))
+                which[own] = len(found) - 1
+        return found, which
+
     def by_model(self, rows: NDArray[np.void]) -> list[tuple[Any, NDArray[np.bool_]]]:
         """Models, each with a mask of the impacts on plates that it answers."""
         kinds = len(self.models.spheres)
@@ -105,11 +125,7 @@ class Record:
     def read(self, register: Register) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 
-        Parameters
-        ----------
-        register : Register
-            Beads, plates and their models; none may be missing since the last call. Unless every
-            model is a `ReboundModel`, there are only the columns of OBSERVED.
+        Unless every model is a `ReboundModel`, there are only the columns of OBSERVED.
         """
         whole = all(knows_rebounds(model) for model in register.every_model())
         seen = np.array(self._seen[len(self._rows) * WIDTH :]).reshape(-1, WIDTH)
@@ -135,7 +151,7 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, Near])
     bead, other = rows["bead"], rows["other"]
     rows["friction_energy"] *= mass[bead]
     radius = beads["radius"]
-    rows["radius"], rows["mass"] = radius[bead], mass[bead]
+    rows["radius"], rows["mass"], rows["material"] = radius[bead], mass[bead], material[bead]
     target = np.where(
         on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]
     )

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from contactlaw.engines.needs import CorBySpeed, knows_friction
+from contactlaw.engines.needs import CorBySpeed, knows
 from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 Edges = tuple[str | None, str | None]  # kinds of a plate's edges, at its start and its end
-Kind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
+BeadKind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
 # a shared end [m], in the body's coordinates, and the other plate
 Joint = tuple[float, float, "PlateShape"]
 # entry of `BeadShape.touched` for a plate that the bead has not touched
@@ -45,8 +45,9 @@ class BeadShape:
     body: weakref.ref[pymunk.Body]
     body_id: int  # pymunk may give it to another body after this one
     radius: float
-    kind: Kind
-    pair_curve: Callable[[Kind, Kind], CorBySpeed]  # COR by speed of two beads, the smaller first
+    kind: BeadKind
+    # COR by speed of two beads, the smaller first
+    pair_curve: Callable[[BeadKind, BeadKind], CorBySpeed]
     # by plate: the last step in which it touched, and the normal then
     touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
     # by plate: the last step in which a neighbour of the plate had the contact
@@ -75,8 +76,8 @@ class PlateShape:
     friction: float | None = None  # None: the engine's own
     edge: Edges | None = None  # None: endless
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
-    curves: dict[Kind, CorBySpeed] = field(default_factory=dict)
-    slides: dict[Kind, Slide] = field(default_factory=dict)
+    curves: dict[BeadKind, CorBySpeed] = field(default_factory=dict)
+    slides: dict[BeadKind, Slide] = field(default_factory=dict)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
     change: float = 0.0  # change of that velocity in the last step [m/s]
     shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
@@ -219,18 +220,9 @@ def body_of(
     return body
 
 
-def scalar(**argument: float) -> float:
-    """One number within the limits of the argument of that name."""
-    values, shape = broadcast(**argument)
-    check(**dict.fromkeys(argument, values))
-    if shape is not None:
-        raise ValueError(f"{next(iter(argument))}: expected one number, got shape {shape}")
-    return float(values[0])
-
-
 def radius_of(circle: pymunk.Circle) -> float:
     """Radius of a bead, in metres."""
-    radius = scalar(radius=circle.radius)
+    radius = float(scalars(radius=circle.radius)[0][0])
     if radius > LARGEST:
         raise ValueError(
             f"radius: {radius!r} m is above {LARGEST:g} m; are these pixels? Space, gravity, "
@@ -276,9 +268,9 @@ def friction_of(
     friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]
 ) -> float:
     """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
-    friction = scalar(friction=friction)
+    friction = float(scalars(friction=friction)[0][0])
     for model in models.values():
-        if not knows_friction(model):
+        if not knows(model, "oblique"):
             raise TypeError(
                 f"friction: {model!r} knows none, it has no oblique(); leave friction=None, which "
                 "is pymunk's own, or give an ImpactModel"

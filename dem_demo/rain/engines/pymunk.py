@@ -140,6 +140,8 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     recorder : Recorder
         Records every frame and all collisions.
     """
+    from dem_demo.rain.record import sized  # h5py, which help shall not wait for
+
     assert recorder is not None  # the only process is rank 0
     rain = Rain(scene, model)
     recorder.frame(rain.look())
@@ -148,6 +150,6 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
         rain.advance(scene.steps_per_frame)
         collisions = rain.impacts.collisions()
-        recorder.collisions(collisions[recorded:])
+        recorder.collisions(sized(scene, collisions[recorded:]))
         recorded = collisions.size
         recorder.frame(rain.look())

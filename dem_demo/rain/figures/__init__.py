@@ -1,8 +1,8 @@
-"""Figures of a rain: each file draws one, as `contactlaw.report.gallery` says."""
+"""Figures of a rain: each file draws one, as `contactlaw.reporting.gallery` says."""
 
 from __future__ import annotations
 
-from contactlaw.report.gallery import Gallery, Picture
+from contactlaw.reporting.gallery import Gallery, Picture
 
 __all__ = ["Picture", "draw", "module", "names"]
 

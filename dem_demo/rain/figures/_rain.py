@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.kit.beads import Floats
 from dem_demo.rain import paths
 from dem_demo.rain.measure import restitution_range

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from contactlaw import style
-from contactlaw.report.charts import wall_axis
-from contactlaw.report.limits import label
+from contactlaw.reporting.charts import wall_axis
+from contactlaw.reporting.limits import label
 from dem_demo.kit.beads import Floats
 from dem_demo.rain.figures._labels import ring, ringed, source
 from dem_demo.rain.measure import constant_beside_model, outside

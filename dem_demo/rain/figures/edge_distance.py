@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import radius_colours, ring, ringed, source
 from dem_demo.rain.measure import outside
 from dem_demo.rain.record import Run

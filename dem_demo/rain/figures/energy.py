@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.charts import KEPT, PARTS, bar, wall_axis
-from contactlaw.report.limits import label
+from contactlaw.reporting.charts import KEPT, PARTS, bar, wall_axis
+from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import source
 from dem_demo.rain.measure import model_shares, plate_rows
 from dem_demo.rain.record import Run

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 
 from dem_demo.kit.graphs import histograms
 from dem_demo.rain.record import Run
-from dem_demo.rain.report import title
 
 
 def draw(run: Run) -> Figure:
     """Draw histograms of all impacts on the plates."""
-    return histograms(run.modelled, title(run)[0], run.scene.plate_material.name)
+    return histograms(run.modelled, run.model.pair, run.law, run.engine)

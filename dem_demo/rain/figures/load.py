@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import load_signal, style
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import source
 from dem_demo.rain.record import Run
 

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.charts import wall_axis
-from contactlaw.report.limits import label
+from contactlaw.reporting.charts import wall_axis
+from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import ring, ringed, source
 from dem_demo.rain.measure import Rebounds, first_rebounds
 from dem_demo.rain.record import Run

@@ -13,7 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.charts import density_bar, density_scale, sheet
+from contactlaw.reporting.charts import density_bar, density_scale, sheet
 from dem_demo.kit.graphs import MM, panels, source
 from dem_demo.kit.runs import Run, Runs
 from dem_demo.sieve.measure import density, on_sheet

@@ -9,10 +9,11 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from dem_demo.kit.graphs import histograms, source
+from dem_demo.kit.graphs import histograms
 from dem_demo.kit.runs import Runs
 
 
 def draw(runs: Runs[Any]) -> Figure:
     """Draw histograms of all impacts on the walls."""
-    return histograms(runs.law.collisions, source(runs), runs.law.scene.plate_material.name)
+    run = runs.law
+    return histograms(run.collisions, run.pair, run.law, run.engine)

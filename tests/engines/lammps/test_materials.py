@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, lost, quiet
+from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, quiet
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Mesh, Rotation, Translation
@@ -211,36 +211,3 @@ def test_units_are_converted_at_the_border(units, model):
     for one, other in zip(outcomes["si"][1:], outcomes[units][1:], strict=True):
         assert np.asarray(other) == pytest.approx(np.asarray(one), rel=1e-9, abs=1e-12)
     assert math.isclose(outcomes[units][4], 7e-5, rel_tol=1e-9)
-
-
-@pytest.mark.parametrize("units", ["si", "cgs", "micro"])
-def test_energies_in_the_record_are_those_of_lammpss_temperature(units, model):
-    """Kinetic energy is 3/2 k T in all units, before and after a bead has fallen on a plate.
-
-    It falls with LAMMPS's own gravity, so that its clock and its lengths are in it too.
-    """
-    length, time, _ = units_of(units)
-    height, gravity = 2e-4, 1e4
-    lmp = scene(units, 1, [(1, above(height), (0, 0, 0), DENSITY)])
-    walls = attach(lmp, model, [flat(1e-3)])
-    lmp.commands_string(f"""
-        compute kelvin all temp
-        compute_modify kelvin extra/dof 0
-        fix fall all gravity {gravity * time**2 / length!r} vector 0 0 -1""")
-    fall = math.sqrt(2 * height / gravity)
-    lmp.command(f"run {round(0.99 * fall / 1e-7)}")
-    lmp.command("unfix fall")
-    before = lmp.extract_compute("kelvin", 0, 0)
-    lmp.command("run 400")
-    taken = 1.5 * constants("si")[2] * (before - lmp.extract_compute("kelvin", 0, 0))
-    (row,) = walls.collisions()
-    assert row["approach_speed"] == pytest.approx(0.99 * gravity * fall, rel=1e-3)
-    assert row["time"] == pytest.approx(fall, rel=1e-3)
-    assert lost(row) == pytest.approx(taken, rel=1e-6)
-    assert taken == pytest.approx(before * 1.5 * constants("si")[2] * (1 - row["restitution"] ** 2))
-
-
-def test_units_without_a_meaning_are_refused(model):
-    lmp = quiet("units lj\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box")
-    with pytest.raises(ValueError, match="lmp: needs 'units si', 'cgs' or 'micro', has 'lj'"):
-        attach(lmp, model, [flat(1e-3)])

@@ -202,31 +202,6 @@ def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
     assert seconds[1] < 10 * seconds[0]
 
 
-def sheet_about(place):
-    """Triangles of all sizes and shapes around a place."""
-    rng = np.random.default_rng(9)
-    size = 10 ** rng.uniform(-4, -1, (300, 1, 1))
-    return place + size * rng.uniform(-1, 1, (300, 3, 3)) * [1, 1, 0.01]
-
-
-@pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])
-def test_a_cell_lists_whatever_a_bead_in_it_may_touch(turn):
-    """Beads at random points of facets' surroundings, against the distances to a dense cloud."""
-    triangles = sheet_about([0.01, 0.02, 0.03]) @ turn.T
-    grid = FacetGrid(triangles[:, [0, 1, 2, 2]], 0, R)
-    rng = np.random.default_rng(10)
-    share = rng.dirichlet([0.5, 0.5, 0.5], (300, 40))
-    points = np.einsum("nmk,nkd->nmd", share, triangles)
-    away = rng.normal(size=points.shape)
-    away *= 1.1 * R * rng.uniform(0, 1, (300, 40, 1)) / np.linalg.norm(away, axis=2)[..., None]
-    cells = np.floor((points + away - grid.origin) * grid.per_length).astype(int)
-    at = np.ravel_multi_index(tuple(np.moveaxis(cells, 2, 0)), grid.cells)
-    for n, m in np.ndindex(at.shape):
-        here = at[n, m]
-        assert n in grid.entries[grid.starts[here] : grid.starts[here + 1]]
-        assert grid.busy[here >> 3] >> (here & 7) & 1
-
-
 @pytest.mark.parametrize("binary", [True, False])
 @pytest.mark.parametrize("kind", ["stl", "ply", "obj"])
 def test_files_are_read(tmp_path, kind, binary):

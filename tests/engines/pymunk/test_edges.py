@@ -2,7 +2,6 @@
 
 import math
 
-import polymer
 import pymunk
 import pymunk_room as room
 import pytest
@@ -84,13 +83,6 @@ def test_the_record_has_the_answer_near_the_edge(model):
     assert lost == pytest.approx((1.0 - row["restitution"] ** 2) * energy, abs=1e-4 * energy)
 
 
-def test_a_bead_at_the_very_end(model):
-    row, _ = hit(model, 0.1 * H, [LONG], "supported")
-    expected = model.restitution(row["approach_speed"], R, H, "supported", 0.1 * H)
-    assert row["restitution"] == pytest.approx(expected, abs=1e-3)
-    assert row["flags"] & cl.Validity.NEAR_EDGE
-
-
 def test_plates_that_come_later_continue_a_plate(model):
     space = make_space(0.0)
     impacts = attach(space, model)
@@ -114,13 +106,6 @@ def test_friction_follows_the_normal_impulse(model, sliding):
     assert row["sliding_speed_after"] == pytest.approx(
         float(expected.sliding_speed), abs=least * mu * speed
     )
-
-
-def test_a_pair_with_a_rate_of_strain_has_its_own_answer():
-    model = polymer.MODELS[2]
-    row, _ = hit(model, NEAR, [LONG], "free")
-    expected = model.restitution(row["approach_speed"], R, H, "free", NEAR)
-    assert row["restitution"] == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

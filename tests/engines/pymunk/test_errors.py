@@ -55,16 +55,6 @@ def test_the_first_of_several_errors_or_the_interrupt_is_raised(errors, raised):
     assert not left
 
 
-def test_model_error_says_where():
-    def answer(speed):
-        raise ValueError("outside the table")
-
-    space, _, _ = drop(Stub(answer), speed=2.0, gravity=0.0)
-    with pytest.raises(ValueError, match="outside the table") as caught:
-        space.step(DT)
-    assert "bead 0 on plate 0 at 2 m/s" in caught.value.__notes__[0]
-
-
 @pytest.mark.parametrize("answer", [math.nan, -0.1, 1.0001, math.inf])
 def test_bad_restitution_never_reaches_the_engine(answer):
     space, body, impacts = drop(Stub(answer), speed=2.0, gravity=0.0)

@@ -234,14 +234,6 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
     assert len(impacts.collisions()) == 0
 
 
-def test_an_answer_that_is_refused_says_where(model):
-    space, bead, _, _ = scene(model, (2e5, -2.0))
-    bead.position = (0, 0.999 * R)
-    with pytest.raises(ValueError, match="sliding_speed") as caught:
-        space.step(1e-6)
-    assert "bead 0 on plate 0 at" in caught.value.__notes__[0]
-
-
 @pytest.mark.parametrize("late", [False, True])
 def test_a_friction_of_the_users_is_refused_where_the_model_answers(model, late):
     space, _, _, impacts = scene(model)
@@ -301,13 +293,6 @@ def test_beads_have_the_engines_friction(friction):
     lost = before - energy(*bodies) - 0.5 * reduced * 2.0**2 * (1.0 - 0.8**2)
     assert row["friction_energy"] * 0.879 == pytest.approx(lost, rel=1e-6, abs=1e-18)
     assert (row["friction_energy"] > 0.0) == (friction > 0.0)
-
-
-def test_without_friction_sliding_and_spin_are_as_they_were():
-    space, bead, _, impacts = scene(Full(0.5), spin=-3000.0, friction=None)
-    row, _, _ = hit(space, impacts, bead)
-    assert row["sliding_speed"] == row["sliding_speed_after"] == pytest.approx(1.7, abs=EXACT)
-    assert (row["spin_z"], row["friction_energy"]) == (-3000.0, 0.0)
 
 
 def test_what_friction_took_of_a_bead_that_is_gone_is_not_known():

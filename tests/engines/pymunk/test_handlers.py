@@ -5,8 +5,6 @@ import pymunk_room as room
 import pytest
 from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
 
-from contactlaw.engines.pymunk import attach
-
 # Every way to name the contact of a bead and a plate in pymunk.
 KEYS = {
     "own": lambda i: (i.bead_type, i.plate_type),
@@ -53,15 +51,6 @@ def test_other_phases_are_as_they_were(key, phase):
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
     assert seen[0] == "mine"
-
-
-def test_two_beads_too():
-    space, _, impacts = room.meet(Stub(0.8))
-    seen = []
-    space.on_collision(impacts.bead_type, impacts.bead_type, pre_solve=lambda *a: seen.append(a[2]))
-    room.steps(space, 3)
-    assert impacts.collisions()["restitution"].tolist() == [0.8]
-    assert seen
 
 
 def test_a_handler_for_any_type_that_was_there_before():
@@ -208,22 +197,3 @@ def test_detach_leaves_the_users_handlers(key):
     space.step(DT)
     assert seen == [3] and body.velocity.y == pytest.approx(2 * 0.25, abs=EXACT)
     assert len(impacts.collisions()) == 0
-
-
-def test_an_on_collision_of_the_users_own_is_kept():
-    space = make_space(0.0)
-    calls = []
-
-    def own(*args, **kwargs):
-        calls.append(args)
-        pymunk.Space.on_collision(space, *args, **kwargs)
-
-    space.on_collision = own
-    impacts = attach(space, Stub())
-    wrapped = space.on_collision
-    space.on_collision = lambda *a, **k: wrapped(*a, **k)
-    with pytest.raises(RuntimeError, match="on_collision has been replaced"):
-        impacts.detach()
-    space.on_collision = wrapped
-    impacts.detach()
-    assert calls and space.on_collision is own

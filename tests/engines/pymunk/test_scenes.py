@@ -208,17 +208,6 @@ def test_a_sloping_side_of_a_turning_polygon():
     )
 
 
-def test_a_bead_rests_on_a_box():
-    space = make_space()
-    box = pymunk.Poly.create_box(space.static_body, (0.04, 0.02))
-    circle = make_bead(space, (0, 0.01 + 1.5 * R))
-    space.add(box)
-    impacts = room.registered(space, Stub(0.5), [circle], [box])
-    room.steps(space, 3000)
-    assert circle.body.position.y == pytest.approx(0.01 + R, abs=0.1 * R)
-    assert 1 < len(impacts.collisions()) < 20 and impacts.resting > 0
-
-
 @pytest.mark.parametrize("ratio", [1.5, 3.0, 30.0])
 def test_a_bead_never_jumps_into_or_over_a_box(ratio):
     space = make_space(0.0)

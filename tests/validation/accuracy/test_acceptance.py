@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import contactlaw as cl
@@ -173,39 +172,3 @@ def test_everyday_pairs():
     assert (found.refused, found.outside) == (0.0, 0.0)
     assert found.inaccurate < MOST_FLAGGED
     assert found.inside > 0.9
-
-
-def test_the_law_of_the_paper_is_not_made_for_them():
-    found = bench.count("myc", each=4, tables=False)
-    kinds = [cl.material(sphere).yield_strength is None for sphere, _ in census.pairs()]
-    assert found.refused == pytest.approx(np.mean(kinds))
-    assert found.inside < 0.1
-    assert found.flags[Validity.OTHER_LAW] > 0.4
-
-
-def test_tables_answer_what_integration_does(monkeypatch):
-    """Compare a few pairs, among them those with the widest tables."""
-    some = [
-        ("bearing-steel-52100", "soda-lime-glass"),
-        ("tungsten-carbide", "aluminium-2024-t3"),
-        ("glass", "gamma-alumina"),
-        ("copper-c11000", "zirconia"),
-    ]
-    monkeypatch.setattr(census, "pairs", lambda: some)
-    looked_up, integrated = (bench.count("fem", 200, tables) for tables in (True, False))
-    assert looked_up._replace(warned=0) == integrated
-    assert (looked_up.refused, looked_up.outside) == (0.0, 0.0)
-
-
-def test_the_table_ends_where_the_census_says():
-    pair = cl.Pair("bearing-steel-52100", "soda-lime-glass")
-    model = cl.ImpactModel(pair, law="fem")
-    extent = bench.settings(model.force_law)
-    thickness = np.geomspace(0.1e-3, 1e-3, 30)
-    lam = np.asarray(model.solve(5.0, 1e-3, thickness).inelasticity)
-    inside = lam <= extent.largest_inelasticity
-    assert 0 < inside.sum() < 30
-    assert np.isfinite(model.restitution(5.0, 1e-3, thickness[inside])).all()
-    for outside in thickness[~inside]:
-        with pytest.raises(ValueError, match="outside the table"):
-            model.restitution(5.0, 1e-3, outside)

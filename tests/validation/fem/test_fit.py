@@ -89,19 +89,6 @@ def test_thin_plates_are_those_of_their_seed():
     assert census.drawn(census.THIN) == census.draw_thin(census.THIN_SEED)
 
 
-def test_the_campaign_covers_what_it_says():
-    jobs = campaign.presses()
-    ratios = {max(j.sphere if j.sphere < math.inf else 0, j.plate if j.plate < math.inf else 0)
-              for j in jobs}  # fmt: skip
-    assert len(campaign.DEPTHS) >= 10 and {11.0, 2000.0} <= ratios
-    deepest = {
-        r: max(j.depth for j in jobs if r in (j.sphere, j.plate)) for r in (23.0, 100.0, 2000.0)
-    }
-    assert deepest[23.0] == pytest.approx(0.25, rel=0.01)
-    assert deepest[100.0] == pytest.approx(0.1, rel=0.01)
-    assert deepest[2000.0] == pytest.approx(0.1, rel=0.01)
-
-
 @pytest.mark.parametrize("yielding", campaign.YIELDING)
 def test_a_coarse_indentation_again(yielding):
     """On a mesh half as fine, three times as fast, it is within 3 % of the stored one."""

@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import contactlaw as cl
-from validation.fem import elements, polymers, prony, solver, store
+from validation.fem import elements, prony, solver
 from validation.fem.cases import material
 from validation.fem.impact import impact
 from validation.fem.viscoelastic import ELASTIC_PEAK, ELASTIC_TIME, power_law, rebound
@@ -79,35 +78,14 @@ def test_impact_of_lossy_bodies_is_hertzs_with_memory(branches, monkeypatch):
     assert found.restitution**2 + shares == pytest.approx(1.0, abs=2e-3)
 
 
-def kuwabara_kono(a):
-    """COR with F = d^1.5 + 1.5 A sqrt(d) d', until the force is zero."""
-
-    def motion(_, state):
-        d, v = state
-        return v, -(max(d, 0.0) ** 1.5) - 1.5 * a * math.sqrt(max(d, 0.0)) * v
-
-    def force(_, state):
-        return state[0] + 1.5 * a * state[1]
-
-    force.terminal, force.direction = True, -1
-    found = solve_ivp(motion, (0.0, 50.0), (1e-9, 1.0), events=force, rtol=1e-9, atol=1e-12)
-    return -found.y[1, -1]
-
-
 def test_weak_viscosity_is_kuwabaras_and_konos():
-    """COR 1 - C x, x = 1.5 A V^0.2 (Ramirez et al., Phys. Rev. E 60 (1999) 4465), and its Pade.
+    """COR 1 - C x, x = 1.5 A V^0.2 (Ramirez et al., Phys. Rev. E 60 (1999) 4465).
 
-    C from the loss of an elastic impact, 3 A times the integral of sqrt(d) d'. The Pade is that of
-    Mueller & Poeschel, Phys. Rev. E 84 (2011) 021302, in sqrt(x).
+    C from the loss of an elastic impact, 3 A times the integral of sqrt(d) d'.
     """
     beta = math.gamma(0.6) * math.gamma(1.5) / math.gamma(2.1)
     first = 2.0 * 1.25**0.6 * 0.4 * beta
     assert first == pytest.approx(1.15344, abs=2e-4)
-    for x in (0.02, 0.1):
-        u = math.sqrt(x)
-        pade = 1.0 + 0.501086 * u
-        pade /= pade + 1.15345 * x + 0.577977 * u**3 + 0.532178 * x**2
-        assert kuwabara_kono(x / 1.5) == pytest.approx(pade, abs=1e-4)
     loss = []
     for x in (0.01, 0.02):
         # errors of the first order in the step: the dashpot's force is that of half a step before
@@ -135,12 +113,3 @@ def test_constant_loss_of_a_hertz_impact():
             return (found.whole - found.moduli.sum()) * t + found.moduli * found.times @ branches
 
         assert rebound(relaxed, 1000).restitution == pytest.approx(cor, rel=2e-3)
-
-
-@pytest.mark.parametrize("name", polymers.SEEDS)
-def test_stored_impacts_account_for_their_energy(name):
-    data = store.read(name).data
-    parts = "plastic", "wave", "vibration", "friction_loss", "touching_loss", "viscous"
-    total = data["restitution"] ** 2 + sum(data[part] for part in parts)
-    assert data["balance"].max() < 5e-3
-    assert total == pytest.approx(1.0, abs=5e-3)

@@ -1,0 +1,1 @@
+"""Records of impacts: their columns, and one self-describing file that every engine writes."""

@@ -1,0 +1,433 @@
+"""The record of a run: its rows, and which bodies, law and walls they are about.
+
+A file of HDF5 has all of it. Each dataset has a unit and a description:
+
+    /impacts    the columns of `contactlaw.record.columns`, and `bodies`, the number of a pair
+    /bodies/N   the law of a pair, and its materials /bodies/N/sphere and /bodies/N/plate
+    /surface    the walls as triangles, and where on them each row is
+
+Groups of other names belong to whoever has added them, such as the frames of `dem_demo`.
+"""
+
+from __future__ import annotations
+
+import datetime
+import io
+import json
+import os
+import platform
+import tokenize
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import _atomic
+from contactlaw._content import content_of
+from contactlaw._version import VERSION
+from contactlaw.physical.kind import Kind, only_impacts
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.validity import Validity
+from contactlaw.record import hdf5
+from contactlaw.record.columns import COLUMNS, IMPACT, typed
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Rows = NDArray[np.void]
+
+FORMAT, SCHEMA = "contactlaw record", 1
+HDF5 = ".h5", ".hdf5"
+_BODIES = "sphere", "plate"
+_UNITS = "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own"
+# Fields of a material that are texts, and lists of numbers; the others are numbers.
+_TEXTS = "name", "source", "kind", "uncertainty"
+_LISTS = "hardening", "rate", "loss_factor"
+_REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
+_CORNERS = tuple((f"corner_{axis}", "corners, three by triangle") for axis in "xyz")
+_POINTS = tuple((f"point_{axis}", "where on the wall each row is") for axis in "xyz")
+
+
+class Bodies(NamedTuple):
+    """Materials and law of some impacts.
+
+    Attributes
+    ----------
+    pair : Pair
+        Materials of bead and wall, or of two beads.
+    law : str
+        Name of the law, for `ImpactModel`; empty where it is unknown.
+    """
+
+    pair: Pair
+    law: str
+
+    @property
+    def materials(self) -> tuple[Material, Material]:
+        """Material of the bead, and of what it has hit."""
+        return self.pair.sphere, self.pair.plate
+
+
+def bodies_of(model: Any) -> Bodies:
+    """Materials and law of a model; the family's name where the pair gives the law's numbers."""
+    law = getattr(model, "force_law", None)
+    return Bodies(model.pair, "" if law is None else law.family if law.from_pair else law.name)
+
+
+class Surface(NamedTuple):
+    """Walls as triangles in their places at the start, and where impacts hit them.
+
+    Attributes
+    ----------
+    corners
+        Corners of the triangles, shape (m, 3, 3) [m].
+    wall
+        Number of the wall of each triangle, shape (m,).
+    triangle
+        Number of the triangle for each row of a record, shape (n,); -1: on none of them.
+    point
+        The contact point on it, shape (n, 3) [m]; None if unknown, as on walls that move.
+    """
+
+    corners: Floats
+    wall: Integers
+    triangle: Integers
+    point: Floats | None
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """The contacts of a run with walls and with each other, and what they were between.
+
+    Parameters
+    ----------
+    rows : structured array (n,)
+        Contacts by time, with columns of `contactlaw.engines.record.IMPACT`.
+    bodies : sequence of Bodies
+        Pairs of materials with their laws; empty where they are unknown.
+    which : array of int (n,), optional
+        Number in `bodies` of each row, -1 where it is unknown; by default 0 if there is one pair.
+    surface : Surface, optional
+        The walls as triangles, and where the rows hit them.
+    made : mapping
+        What else is known: engine, versions, friction; texts and numbers.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.engines.record import IMPACT
+    >>> record = cl.Record(np.zeros(2, IMPACT), [cl.Bodies(cl.Pair("glass", "glass"), "fem")])
+    >>> record.impacts.size, record.lacks
+    (2, 'the surface of the walls')
+    """
+
+    rows: Rows
+    bodies: Sequence[Bodies] = ()
+    which: Integers = field(default_factory=lambda: np.empty(0, np.int64))
+    surface: Surface | None = None
+    made: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.which.size != self.rows.size:
+            known = 0 if len(self.bodies) == 1 else -1
+            object.__setattr__(self, "which", np.full(self.rows.size, known))
+
+    @cached_property
+    def impact(self) -> NDArray[np.bool_]:
+        """Whether each row is an impact: of other contacts COR and speed mean nothing."""
+        return self._only_impacts[0]
+
+    @property
+    def impacts(self) -> Rows:
+        """Rows that are impacts."""
+        found: Rows = self.rows[self.impact]
+        return found
+
+    @property
+    def left_out(self) -> str:
+        """Which rows are no impacts, and how many; empty if all are."""
+        return self._only_impacts[1]
+
+    @cached_property
+    def _only_impacts(self) -> tuple[NDArray[np.bool_], str]:
+        known = "kind" in (self.rows.dtype.names or ())  # else a table of an older version
+        return only_impacts(self.rows["kind"] if known else np.zeros(self.rows.size))
+
+    @property
+    def lacks(self) -> str:
+        """What the record does not say; empty for a complete one."""
+        missing = [name for name in IMPACT.names or () if name not in (self.rows.dtype.names or ())]
+        parts = [f"the column{'s' * (len(missing) > 1)} {', '.join(missing)}"] if missing else []
+        parts += [] if self.bodies else ["materials and law"]
+        return "; ".join(parts + ([] if self.surface else ["the surface of the walls"]))
+
+    @property
+    def points(self) -> Floats:
+        """Contact points, shape (n, 3) [m]."""
+        return np.stack([self.rows[name] for name in "xyz"], axis=1)
+
+    def part(self, some: Any) -> Record:
+        """Return the rows of a mask or of indices."""
+        on = self.surface
+        if on is not None:
+            point = None if on.point is None else on.point[some]
+            on = on._replace(triangle=on.triangle[some], point=point)
+        return replace(self, rows=self.rows[some], which=self.which[some], surface=on)
+
+    def to_pandas(self) -> Any:
+        """Return a `pandas.DataFrame` with a row for each contact; kinds and flags are words.
+
+        The materials of bead and target are in the columns ``sphere`` and ``target``.
+
+        Raises
+        ------
+        ImportError
+            Without pandas.
+        """
+        import pandas as pd
+
+        table = pd.DataFrame({name: self.rows[name] for name in self.rows.dtype.names or ()})
+        if "kind" in table:
+            table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
+        if "flags" in table:
+            table["flags"] = [
+                ", ".join(str(flag.name).lower() for flag in Validity(one))
+                for one in table["flags"]
+            ]
+        for n, name in enumerate(("sphere", "target")):
+            names = [one.materials[n].name for one in self.bodies]
+            table[name] = np.array([*names, ""])[self.which]
+        return table
+
+    def content(self, more: Any = None) -> bytes:
+        """Return the file's content; `more(file)` adds groups of its own to the open file."""
+        image = io.BytesIO()
+        with h5py.File(image, "w") as file:
+            file.attrs.update({
+                "format": FORMAT, "schema": SCHEMA, "units": _UNITS,
+                "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+                "version_contactlaw": VERSION, "version_numpy": np.__version__,
+                "version_python": platform.python_version(), **self.made,
+            })  # fmt: skip
+            table = file.create_group("impacts")
+            for name, _, unit, text in COLUMNS:
+                if name in (self.rows.dtype.names or ()):
+                    write(table, name, self.rows[name], unit, text)
+            write(table, "bodies", self.which, "1", "number of the group in /bodies, -1: unknown")
+            for n, one in enumerate(self.bodies):
+                file.create_group(f"bodies/{n}").attrs["law"] = one.law
+                for name, material in zip(_BODIES, one.materials, strict=True):
+                    _write_material(file, f"bodies/{n}/{name}", material)
+            if self.surface is not None:
+                _write_surface(file.create_group("surface"), self.surface)
+            if more is not None:
+                more(file)
+        return image.getvalue()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a file of HDF5, which appears complete or not at all.
+
+        Raises
+        ------
+        ValueError
+            If the name does not end in ``.h5`` or ``.hdf5``.
+        OSError
+            If the file cannot be written.
+        """
+        if Path(path).suffix.lower() not in HDF5:
+            raise ValueError(f"path: got {os.fspath(path)!r}, must end in {' or '.join(HDF5)}")
+        _atomic.write(path, self.content())
+
+
+def read_record(*paths: str | os.PathLike[str]) -> Record:
+    """Read the record of a run; several files of one run are put together by time.
+
+    Parameters
+    ----------
+    *paths : path-like
+        Files of `Record.save` (``.h5``), or rows that ``np.save`` has written (``.npy``): these
+        know neither materials nor law, see `Record.lacks`. Rows that two files have are taken once.
+
+    Returns
+    -------
+    Record
+        All rows by time.
+
+    Raises
+    ------
+    TypeError
+        Without a path.
+    ValueError
+        If a file is damaged, of another kind, or of a run with other walls than those before.
+    OSError
+        If a file cannot be read.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> import tempfile
+    >>> from contactlaw.engines.record import IMPACT
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     cl.Record(np.zeros(2, IMPACT)).save(f"{folder}/run.h5")
+    ...     cl.read_record(f"{folder}/run.h5").rows.size
+    2
+    """
+    if not paths:
+        raise TypeError("read_record: expected the path of a file, or several")
+    whole, *others = (_read(Path(path)) for path in paths)
+    for path, one in zip(paths[1:], others, strict=True):
+        whole = _joined(whole, one, path)
+    if others:  # a run that went on after a save has the rows of before in both files
+        as_bytes = np.ascontiguousarray(whole.rows).view(f"V{whole.rows.itemsize}")
+        whole = whole.part(np.unique(as_bytes, return_index=True)[1])
+    keys = [whole.rows[name] for name in ("bead", "time") if name in (whole.rows.dtype.names or ())]
+    return whole.part(np.lexsort(keys))
+
+
+def opened(content: bytes) -> Any:
+    """Open the content of a file of this format; what is none is a ValueError."""
+    return hdf5.opened(content)
+
+
+def read_from(file: h5py.File) -> Record:
+    """Read the record of an open file.
+
+    Raises
+    ------
+    ValueError
+        If the file has another format, or lacks a part, or has one that cannot be read.
+    """
+    form, schema = (str(file.attrs.get(name)) for name in ("format", "schema"))
+    if (form, schema) != (FORMAT, str(SCHEMA)):
+        raise ValueError(
+            f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again"
+        )
+    group = hdf5.group(file, "impacts")
+    size = hdf5.numbers(group, "time").size
+    columns = {n: hdf5.numbers(group, n, size) for n in IMPACT.names or () if n in group}
+    table = np.empty(size, [(name, column.dtype) for name, column in columns.items()])
+    for name, column in columns.items():
+        table[name] = column
+    pairs = hdf5.group(file, "bodies") if "bodies" in file else {}
+    bodies = [_read_bodies(hdf5.group(file, f"bodies/{n}")) for n in range(len(pairs))]
+    which = hdf5.indices(group, "bodies", len(bodies), size).astype(np.int64)
+    surface = _read_surface(hdf5.group(file, "surface"), size) if "surface" in file else None
+    return Record(typed(table), bodies, which, surface, dict(file.attrs))
+
+
+def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
+    """Write an array with its unit and description."""
+    data = np.asarray(values)
+    dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
+    dataset.attrs.update({"units": units, "description": description})
+
+
+def _read(path: Path) -> Record:
+    try:
+        content = content_of(path)
+        if path.suffix.lower() == ".npy":
+            rows = typed(saved(content))
+            if "time" not in (rows.dtype.names or ()):
+                raise ValueError("its rows have no column time")
+            return Record(rows)
+        with hdf5.opened(content) as file:
+            return read_from(file)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def saved(content: bytes) -> NDArray[np.void]:
+    """Read rows with named columns from the content of a file of ``np.save``.
+
+    Raises
+    ------
+    ValueError
+        If it is another file, a damaged one, or one of other arrays.
+    """
+    if not content.startswith(b"\x93NUMPY"):
+        raise ValueError("no file of np.save")
+    try:
+        rows = np.load(io.BytesIO(content), allow_pickle=False)
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
+            tokenize.TokenError) as error:  # fmt: skip
+        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
+    if rows.dtype.names is None or rows.ndim != 1:
+        raise ValueError(
+            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
+            "columns, as the record of an engine has"
+        )
+    found: NDArray[np.void] = rows
+    return found
+
+
+def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
+    """Put the rows of two records of one run together."""
+    if one.rows.dtype != two.rows.dtype:
+        raise ValueError(f"{path}: has other columns than the file before it")
+    if bool(one.bodies) != bool(two.bodies):
+        raise ValueError(f"{path}: one of the files knows the materials, the other does not")
+    surface = one.surface
+    if (surface is None) != (two.surface is None):
+        raise ValueError(f"{path}: one of the files knows the walls, the other does not")
+    if surface is not None and two.surface is not None:
+        if not np.array_equal(surface.corners, two.surface.corners):
+            raise ValueError(f"{path}: is of another run: its walls are others")
+        triangle = np.concatenate([surface.triangle, two.surface.triangle])
+        points = surface.point, two.surface.point
+        known = [each for each in points if each is not None]
+        point = np.concatenate(known) if len(known) == len(points) else None
+        surface = surface._replace(triangle=triangle, point=point)
+    bodies = [*one.bodies, *(each for each in two.bodies if each not in one.bodies)]
+    number = np.array([*(bodies.index(each) for each in two.bodies), -1])
+    rows = np.concatenate([one.rows, two.rows])
+    return Record(rows, bodies, np.r_[one.which, number[two.which]], surface, one.made)
+
+
+def _write_material(file: h5py.File, name: str, material: Material) -> None:
+    values = asdict(material) | {"uncertainty": json.dumps(dict(material.uncertainty))}
+    values |= {"units": "Pa (moduli, strength, hardness), kg/m3"}
+    group = file.create_group(name)
+    group.attrs.update({key: value for key, value in values.items() if value is not None})
+
+
+def _read_bodies(group: h5py.Group) -> Bodies:
+    sphere, plate = (_material(hdf5.group(group, body)) for body in _BODIES)
+    return Bodies(Pair(sphere, plate), hdf5.attribute(group, "law", str))
+
+
+def _material(group: h5py.Group) -> Material:
+    names = [one.name for one in fields(Material)]
+    stored: dict[str, Any] = {
+        name: hdf5.number_or_list(group, name)
+        if name in _LISTS
+        else hdf5.attribute(group, name, str if name in _TEXTS else float)
+        for name in names
+        if name in _REQUIRED or name in group.attrs
+    }
+    stored["uncertainty"] = json.loads(stored.get("uncertainty", "{}"))
+    return Material(**stored)
+
+
+def _write_surface(group: h5py.Group, surface: Surface) -> None:
+    write(group, "wall", surface.wall, "1", "number of the wall of each triangle")
+    write(group, "triangle", surface.triangle, "1", "number of the triangle of each row, -1: none")
+    for names, points in (_CORNERS, surface.corners.reshape(-1, 3)), (_POINTS, surface.point):
+        for (name, text), values in zip(names, () if points is None else points.T, strict=False):
+            write(group, name, values, "m", f"{text}, at the start of the run")
+
+
+def _read_surface(group: h5py.Group, size: int) -> Surface:
+    wall = hdf5.numbers(group, "wall").astype(np.int64)
+    triangle = hdf5.indices(group, "triangle", wall.size, size).astype(np.int64)
+    corners = _points(group, _CORNERS, 3 * wall.size).reshape(-1, 3, 3)
+    point = _points(group, _POINTS, size) if _POINTS[0][0] in group else None
+    return Surface(corners, wall, triangle, point)
+
+
+def _points(group: h5py.Group, names: Sequence[tuple[str, str]], size: int) -> Floats:
+    return np.stack([hdf5.numbers(group, name, size) for name, _ in names], axis=1)

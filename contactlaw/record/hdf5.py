@@ -1,0 +1,124 @@
+"""Reading of HDF5 files that other programs may have written: every part is checked.
+
+h5py answers what a file does not have with KeyError, TypeError, OSError or RuntimeError, and takes
+the memory that a dataset's shape asks for before it looks at what is stored: 15 kB may ask for
+hundreds of gigabytes. Every refusal here is a ValueError with the part's name, what it is and what
+was expected.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
+# Errors that h5py raises for what it cannot read.
+_DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
+
+
+@contextmanager
+def opened(content: bytes) -> Iterator[h5py.File]:
+    """Open a file that is in memory; what h5py cannot read of it is a ValueError."""
+    try:
+        file = h5py.File(io.BytesIO(content), "r")
+    except _DAMAGED:
+        raise ValueError("no HDF5 file, or a damaged one") from None
+    with file:
+        try:
+            yield file
+        except ValueError:  # a refusal, which has its message already
+            raise
+        except _DAMAGED as error:
+            raise ValueError(f"a damaged HDF5 file: {error}") from None
+
+
+def group(parent: h5py.Group, name: str) -> h5py.Group:
+    """Return a group within another."""
+    return _member(parent, name, h5py.Group, "a group")
+
+
+def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[Any]:
+    """Read a column of numbers, of `size` rows if that is given and of `LARGEST` at most."""
+    dataset = _member(parent, name, h5py.Dataset, "a dataset")
+    where = f"dataset {dataset.name[1:]}"
+    if dataset.shape is None or dataset.ndim != 1:
+        raise ValueError(f"{where} has the shape {dataset.shape}, expected a column of numbers")
+    if dataset.dtype.kind not in "iuf":
+        text = dataset.dtype.kind in "OSU"
+        what = "text or objects" if text else f"values of type {dataset.dtype}"
+        raise ValueError(f"{where} holds {what}, expected numbers")
+    if dataset.size > LARGEST:
+        raise ValueError(f"{where} has {dataset.size} rows, expected {LARGEST} at most")
+    if size is not None and dataset.size != size:
+        raise ValueError(
+            f"{where} has {dataset.size} rows, expected {size} as in the other columns"
+        )
+    try:
+        found = np.asarray(dataset[()])  # limits of numbers would overflow in two bytes
+        return found.astype(np.float64) if found.dtype.kind == "f" else found
+    except _DAMAGED as error:
+        raise ValueError(f"{where} is damaged: {error}") from None
+
+
+def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
+    """Read a column of whole numbers from 0 to `count` - 1, or -1 for none."""
+    found = numbers(parent, name, size)
+    # not (...) also for NaN
+    wrong = np.flatnonzero(~((found >= -1) & (found < count) & (found == np.floor(found))))
+    if wrong.size:
+        raise ValueError(
+            f"dataset {parent.name[1:]}/{name} has {found[wrong[0]]} in row {wrong[0]}, expected a "
+            f"whole number from 0 to {count - 1}, or -1 for none"
+        )
+    return found.astype(np.intp)
+
+
+def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
+    """Read an attribute that is a string or a number."""
+    expected = "text" if kind is str else "a number"
+    value = parent.attrs.get(name)
+    if value is None:
+        raise ValueError(f"{_place(parent)} has no attribute {name}, expected {expected}")
+    if isinstance(value, np.generic) and value.dtype.kind in "iuf":
+        value = value.item()
+    if not isinstance(value, (int, float) if kind is float else kind):
+        raise ValueError(
+            f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}"
+        )
+    return kind(value)
+
+
+def number_or_list(parent: h5py.Group, name: str) -> float | list[float]:
+    """Read an attribute that is a number or a list of numbers."""
+    value = parent.attrs.get(name)
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and value.ndim == 1:
+        return [float(number) for number in value]
+    return float(attribute(parent, name, float))
+
+
+def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
+    path = f"{parent.name}/{name}".replace("//", "/")[1:]
+    found = parent.get(name)
+    if found is None:
+        raise ValueError(f"it has no {path}, expected {expected}")
+    if not isinstance(found, kind):
+        raise ValueError(f"{path} is a {type(found).__name__.lower()}, expected {expected}")
+    return found
+
+
+def _words(value: object) -> str:
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and type {value.dtype}"
+    return (
+        repr(value) if isinstance(value, (str, int, float)) else f"of type {type(value).__name__}"
+    )
+
+
+def _place(parent: h5py.Group) -> str:
+    return f"group {parent.name[1:]}" if parent.name != "/" else "the file"

@@ -1,8 +1,0 @@
-"""Figures of any run: each file draws one of a `contactlaw.report.run.Run`."""
-
-from __future__ import annotations
-
-from contactlaw.report.gallery import Gallery
-
-_GALLERY = Gallery(__name__, __path__)
-names, module, draw = _GALLERY.names, _GALLERY.module, _GALLERY.draw

@@ -1,0 +1,105 @@
+"""Charts that the figures of several kinds of runs have: bars by cause, and energy on a sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from contactlaw import style
+
+DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
+PARTS = KEPT, *_ = (
+    ("kept by the bead", style.PALE),
+    ("bending wave in the plate", style.BLUE),
+    ("plastic flow at the contact", style.ORANGE),
+    ("micro-slip and vibration", style.GREEN),
+    ("friction along the plate", style.SKY),
+)
+_DARK = style.BLUE, style.MUTED, style.GREEN
+_WIDE = 6.0  # [%], the width of a number with room around it
+_ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
+_READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
+             style.SKY: "#1F6E9C", style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
+
+
+def bar(
+    axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]],
+    room: bool = True,
+) -> None:  # fmt: skip
+    """Stack the shares with their numbers; those of small ones are beside, if there is room."""
+    bottom = beside = 0.0
+    for (name, colour), share in parts:
+        height = 100.0 * share
+        if height < 0.05:
+            continue
+        axes.bar(x, height, width, bottom, color=colour, label=name, edgecolor="white")
+        middle = bottom + 0.5 * height
+        text = f"{height:.0f}" if height >= 9.5 else f"{height:.1f}"
+        if height >= _ROOM:
+            ink = "white" if colour in _DARK else style.INK
+            axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
+        elif room:
+            beside = max(middle, beside + _ROOM)
+            axes.text(
+                x + 0.5 * width, beside, f" {text}", va="center", color=_READABLE[colour],
+                fontsize=11, fontweight="bold",
+            )  # fmt: skip
+        bottom += height
+
+
+def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> None:
+    """Stack shares from left to right, with the numbers of those that have room for theirs."""
+    begins = 0.0
+    for (name, colour), share in parts:
+        length = 100.0 * share
+        if length < 0.05:
+            continue
+        axes.barh(y, length, 0.7, begins, color=colour, label=name, edgecolor="white")
+        if length >= _WIDE:
+            ink = "white" if colour in _DARK else style.INK
+            axes.text(begins + 0.5 * length, y, f"{length:.0f}", ha="center", va="center",
+                      color=ink, fontsize=11)  # fmt: skip
+        begins += length
+
+
+def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") -> None:
+    """Give every wall a column, with its name below."""
+    crowded = len(labels) > style.pick(10, 6)
+    axes.set_xticks(range(len(labels)), labels, rotation=60 if crowded else 0)
+    axes.set_xlim(-0.55, len(labels) - 0.45)
+    axes.set_xlabel(what)
+    axes.grid(visible=False, axis="x")
+
+
+def density_scale(values: Sequence[NDArray[np.float64]]) -> LogNorm:
+    """Scale of the colours for energies per area [J/m2]; all of the least energies are dark."""
+    most = max(float(np.quantile(value, 0.999)) for value in values) or 1.0
+    return LogNorm(most / _SPAN, most, clip=True)
+
+
+def sheet(
+    axes: Axes, corners: NDArray[np.floating], value: NDArray[np.float64], scale: LogNorm
+) -> PolyCollection:
+    """Draw triangles (n, 3, 2) in the colours of their energies per area [J/m2]."""
+    drawn = PolyCollection(
+        list(corners), array=value, cmap=DENSITY, norm=scale, edgecolors="none", antialiased=False
+    )  # smoothed edges would show the triangles, and more than double the file
+    drawn.set_rasterized(True)
+    axes.add_collection(drawn)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    return drawn
+
+
+def density_bar(figure: Figure, drawn: Any, axes: Sequence[Axes]) -> None:
+    """Explain the colours of a `sheet` below some axes."""
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=0.06, pad=0.03, aspect=50)
+    bar.set_label("dissipated energy [J/m²]")
+    style.decades(bar.ax.xaxis, (1.0, 2.0, 5.0))

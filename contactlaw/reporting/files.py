@@ -1,0 +1,104 @@
+"""The folder of a report."""
+
+from __future__ import annotations
+
+import datetime
+import html
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from contactlaw import _atomic, style
+from contactlaw._version import VERSION
+from contactlaw.record.file import Record
+from contactlaw.reporting import figures, page, summary
+from contactlaw.reporting.gallery import Picture
+from contactlaw.reporting.limits import exceeded
+from contactlaw.reporting.meshes import with_meshes
+from contactlaw.reporting.run import Run
+from contactlaw.reporting.surface import ply, vtk
+from contactlaw.walls.mesh import Mesh
+
+_MAPS = "energy.vtk", "energy.ply"
+_LEDE = (
+    "What the beads did to the walls: each impact had the coefficient of restitution (COR) that "
+    "follows from its speed, the bead and the wall."
+)
+
+
+def report(
+    record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()
+) -> Path:
+    """Write a page about a run, with figures and, if the walls are known, an energy map.
+
+    Parameters
+    ----------
+    record : Record
+        The run, with all columns of `contactlaw.engines.record.IMPACT`.
+    out : path-like, optional
+        Folder to write into; it is made if its parent exists. Files of an earlier report in it are
+        replaced, other files are left alone.
+    meshes : sequence of contactlaw.walls.Mesh, optional
+        Meshes of walls, in the order of their numbers, for a record that does not know them.
+
+    Returns
+    -------
+    Path
+        The page, index.html, which needs no other file. Beside it are its figures, summary.txt,
+        record.h5, and the map as energy.vtk and energy.ply.
+
+    Raises
+    ------
+    ValueError
+        Without any contact on a wall; if the record lacks a column, has a number that cannot be, or
+        does not fit the meshes.
+    ImportError
+        Without matplotlib; the message says how to install it.
+    OSError
+        If a file cannot be written; nothing is left behind then.
+    """
+    run = Run(with_meshes(record, meshes) if meshes else record)
+    if not run.rows.size:
+        raise ValueError("record: has no impact on a wall yet: simulate longer")
+    with style.applied(), _atomic.folder(out) as folder:
+        pictures = {name: figures.draw(name, run) for name in figures.names()}
+        for name, picture in pictures.items():
+            (folder / f"{name}.png").write_bytes(picture.wide)
+        (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
+        run.record.save(folder / "record.h5")
+        if run.map is not None:
+            from contactlaw.reporting.figures.places import colours
+
+            shown = colours(run.map)
+            for name, form in zip(_MAPS, (vtk, ply), strict=True):
+                (folder / name).write_bytes(form(run.map, shown))
+        (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
+    if run.map is None:
+        for name in _MAPS:  # of an earlier report
+            (Path(out) / name).unlink(missing_ok=True)
+    return Path(out) / "index.html"
+
+
+def _page(run: Run, pictures: dict[str, Picture]) -> str:
+    made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    body = page.template(__package__, "body.html").substitute(
+        impacts=summary.as_html(summary.impacts(run)),
+        constant=summary.CONSTANT,
+        energies=summary.as_html(summary.energies(run)),
+        energy=summary.ENERGY,
+        limits=page.exceeded(exceeded(run.impacts["flags"]), ""),
+        figures=page.shown(figures.module, pictures),
+        maps=_MAP_NOTE if run.map is not None else "",
+        made=page.made(made, {"contactlaw": VERSION}),
+    )
+    left_out = f" {html.escape(run.left_out)}." if run.left_out else ""
+    return page.whole(
+        body, title=f"Impacts on walls: {html.escape(run.subject)}", heading="Impacts on walls",
+        lede=_LEDE, facts=f"<b>{html.escape(summary.counts(run))}.</b>{left_out}",
+    )  # fmt: skip
+
+
+_MAP_NOTE = (
+    "<code>energy.vtk</code>, the energy map for ParaView and OVITO; <code>energy.ply</code>, the "
+    "same for ParaView, MeshLab and Blender; "
+)

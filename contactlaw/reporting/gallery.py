@@ -1,0 +1,48 @@
+"""Figures as files of a folder: each file whose name does not begin with ``_`` draws one figure.
+
+The file has a function ``draw(run) -> Figure``, and its name is the name of the picture. To add a
+figure, add a file.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any, NamedTuple
+
+
+class Picture(NamedTuple):
+    """One figure, as PNG files."""
+
+    wide: bytes
+    """For a slide or a screen."""
+    narrow: bytes
+    """For a phone."""
+
+
+class Gallery:
+    """The figures in the folder of a package, whose ``__path__`` is `path`."""
+
+    def __init__(self, package: str, path: Sequence[str]) -> None:
+        self._package, self._path = package, path
+
+    def names(self) -> list[str]:
+        """Names of all figures, sorted."""
+        found = (module.name for module in pkgutil.iter_modules(self._path))
+        return sorted(name for name in found if not name.startswith("_"))
+
+    def module(self, name: str) -> ModuleType:
+        """Import the module that draws a figure; its docstring is the caption."""
+        return importlib.import_module(f"{self._package}.{name}")
+
+    def draw(self, name: str, run: Any) -> Picture:
+        """Draw a figure by its name, of a run as the figures of this folder take it."""
+        from contactlaw import style  # matplotlib is loaded when a figure is drawn
+
+        drawn = []
+        for narrow in (False, True):
+            with style.applied(narrow=narrow):
+                drawn.append(style.png(self.module(name).draw(run)))
+        return Picture(*drawn)

@@ -1,0 +1,189 @@
+"""What a report says of a run: its impacts, and the energy that they took, wall by wall."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._readable import drawn
+from contactlaw.answers.constant import Constant, constant
+from contactlaw.physical.kind import only_impacts
+from contactlaw.physical.materials import Material
+from contactlaw.record.file import Record
+from contactlaw.reporting.surface import EnergyMap, energy_map
+from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
+from contactlaw.walls.motion import FARTHEST
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.void]
+
+CAUSES = "wave", "plastic", "other", "friction"
+_CAUSED = tuple(f"{cause}_energy" for cause in CAUSES)
+_NEEDED = (
+    "approach_speed", "restitution", "sliding_speed", "kind", "plate", "triangle", "x", "y", "z",
+    "flags", "radius", "mass", "thickness", *_CAUSED,
+)  # fmt: skip
+# Least and largest numbers that can be; in contacts that are no impacts of the energies alone.
+_LIMITS = {
+    "approach_speed": (V_MIN, V_MAX), "restitution": (-1.0, 2.0), "sliding_speed": (-V_MAX, V_MAX),
+    "radius": (R_MIN, R_MAX), "mass": (1e-40, 1e40), "thickness": (R_MIN, math.inf),
+    **dict.fromkeys("xyz", (-FARTHEST, FARTHEST)), **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
+}  # fmt: skip
+_MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
+OTHERS = "other walls"
+
+
+class WallRow(NamedTuple):
+    """What happened on one wall."""
+
+    name: str  # number of the wall, its thickness, and its material where that is known
+    rows: Rows  # contacts on it
+    impacts: Rows  # those of them that are impacts
+    best: Constant | None  # one COR for all of the impacts; None without any
+
+
+class Shares(NamedTuple):
+    """Shares of the energy that impacts bring, which sum to 1.
+
+    Without friction it is the kinetic energy of the normal motion, with friction that of the
+    contact point, m v_n^2/2 + m v_s^2/7 with the sliding speed v_s: an impact changes no other.
+    """
+
+    kept: float
+    wave: float
+    plastic: float
+    other: float
+    friction: float
+
+
+def shares(rows: Rows, mass: Floats, friction: bool) -> Shares:
+    """Find where the energy of impacts went; `mass` is that of the bead of each [kg]."""
+    total = 0.5 * float((mass * rows["approach_speed"] ** 2).sum())
+    if friction:
+        total += float((mass * rows["sliding_speed"] ** 2).sum()) / 7.0
+    lost = (by_cause(rows) / total).tolist()
+    return Shares(1.0 - sum(lost), *lost)
+
+
+def by_cause(rows: Rows) -> Floats:
+    """Energy that contacts took from the beads by each of the causes [J]."""
+    return np.array([np.nansum(rows[f"{cause}_energy"]) for cause in CAUSES])
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """The impacts of a run, whose record has all columns of `contactlaw.engines.record.IMPACT`."""
+
+    record: Record
+
+    def __post_init__(self) -> None:
+        """Refuse a record from which no report can be made."""
+        rows = self.record.rows
+        missing = [name for name in _NEEDED if name not in (rows.dtype.names or ())]
+        if missing:
+            raise ValueError(
+                f"record: has no column {', '.join(missing)}: a report needs all columns that the "
+                "engines record, with an ImpactModel and this version of contactlaw; simulate again"
+            )
+        on_walls, impacts = rows["plate"] >= 0, self.record.impact
+        for name, (least, most) in _LIMITS.items():
+            values = rows[name]
+            unknown = np.isnan(values) if name in _CAUSED else ~impacts
+            wrong = on_walls & ~((least <= values) & (values <= most) | unknown)
+            if wrong.any():
+                row = int(np.argmax(wrong))
+                raise ValueError(
+                    f"record: {name} of row {row} is {float(values[row])!r}: leave the row out; "
+                    f"it must lie between {least:g} and {most:g}"
+                )
+
+    @cached_property
+    def on_walls(self) -> Record:
+        """Contacts on walls, also those that are no impacts."""
+        return self.record.part(self.record.rows["plate"] >= 0)
+
+    @property
+    def rows(self) -> Rows:
+        """Rows of `on_walls`."""
+        return self.on_walls.rows
+
+    @property
+    def left_out(self) -> str:
+        """Which contacts are no impacts, and how many; empty if all are impacts."""
+        return self.on_walls.left_out
+
+    @property
+    def impacts(self) -> Rows:
+        """Impacts on walls; COR and speed of other contacts mean nothing."""
+        return self.on_walls.impacts
+
+    @cached_property
+    def subject(self) -> str:
+        """What the run is: the materials and the engine, as far as they are known."""
+        spheres, plates = ({pair[n].name for pair in self._materials} for n in range(2))
+        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(plates))}" if spheres else ""
+        engine = self.record.made.get("engine")
+        return ", ".join([pair] * bool(pair) + [f"in {engine}"] * bool(engine)) or "unknown beads"
+
+    @cached_property
+    def walls(self) -> list[WallRow]:
+        """Walls by number and thickness; the least of very many are counted as one."""
+        rows = self.rows
+        found = np.empty(rows.size, [("plate", "i8"), ("thickness", "f8"), ("bodies", "i8")])
+        found["plate"], found["thickness"] = rows["plate"], rows["thickness"]
+        found["bodies"] = self.on_walls.which
+        keys, which = np.unique(found, return_inverse=True)
+        names = [self._name(*key) for key in keys.tolist()]
+        if len(names) > _MOST:
+            order = np.argsort(-np.bincount(which, taken(rows)))
+            rank = np.empty(len(names), int)
+            rank[order] = np.minimum(np.arange(len(names)), _MOST - 1)
+            names = [names[n] for n in order[: _MOST - 1]] + [OTHERS]
+            which = rank[which]
+        return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
+
+    def _name(self, plate: int, thickness: float, bodies: int) -> str:
+        """Name a wall; materials are told if there are several, else the run's subject has them."""
+        name = f"{plate}: {drawn(thickness, digits=4)}"
+        if bodies < 0:
+            return name
+        several = [len({pair[n] for pair in self._materials}) > 1 for n in range(2)]
+        sphere, wall = self.record.bodies[bodies].materials
+        return name + f" {wall.name}" * several[1] + f", {sphere.name}" * several[0]
+
+    @cached_property
+    def _materials(self) -> list[tuple[Material, Material]]:
+        """Materials of beads and walls that meet."""
+        used = np.unique(self.on_walls.which)
+        return [self.record.bodies[n].materials for n in used[used >= 0].tolist()]
+
+    @cached_property
+    def map(self) -> EnergyMap | None:
+        """Energy on the surface of the walls, if that is known."""
+        surface = self.record.surface
+        if surface is None or not (surface.triangle >= 0).any():
+            return None
+        return energy_map(surface, taken(self.record.rows))
+
+
+def taken(rows: Rows) -> Floats:
+    """Energy that each contact took from the bead [J], by all causes."""
+    found: Floats = np.nansum([rows[f"{cause}_energy"] for cause in CAUSES], axis=0)
+    return found
+
+
+def _wall(name: str, rows: Rows) -> WallRow:
+    hits = rows[only_impacts(rows["kind"])[0]]
+    size = np.cbrt(hits["mass"])  # in place of the radius: beads may differ in density, too
+    best = None
+    if hits.size:
+        best = constant(
+            hits["approach_speed"], size, np.ones(hits.size), hits["restitution"], hits["flags"],
+            "energy",
+        )  # fmt: skip
+    return WallRow(name, rows, hits, best)

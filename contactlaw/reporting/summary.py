@@ -1,0 +1,84 @@
+"""The numbers of a run in words: two tables, as text and as HTML."""
+
+from __future__ import annotations
+
+import html
+
+import numpy as np
+
+from contactlaw._readable import drawn, relative
+from contactlaw.reporting import page
+from contactlaw.reporting.limits import exceeded, limits_lines
+from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
+
+Table = list[tuple[str, ...]]
+
+ENERGY = (
+    "Energy that contacts took from the beads, by where it went: into bending waves of the wall, "
+    "lost at the contact, into micro-slip and vibration (other), to friction. All contacts count."
+)
+CONSTANT = (
+    "The constant is the one COR with which these impacts take the same energy in all. With it, "
+    "95 of 100 beads rebound to a height within the next column of their own; with the plain mean "
+    "of the CORs the wall takes too much or too little energy by the last one. Another COR causes "
+    "other impacts: where beads bounce again and again, repeat with its record."
+)
+
+
+def counts(run: Run) -> str:
+    """Say in one line how many impacts there are, on how many walls, and of what."""
+    walls, count = len(np.unique(run.rows[["plate", "thickness"]])), run.impacts.size
+    return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}, {run.subject}"
+
+
+def text(run: Run) -> str:
+    """Write the summary for a text file."""
+    lines = [counts(run), *([run.left_out] if run.left_out else [])]
+    for table, note in ((impacts(run), CONSTANT), (energies(run), ENERGY)):
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        lines += [
+            "",
+            *(
+                "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])])
+                for row in table
+            ),
+        ]
+        lines += ["", note]  # fmt: skip
+    return "\n".join([*lines, "", *limits_lines(exceeded(run.impacts["flags"]))])
+
+
+def impacts(run: Run) -> Table:
+    """Impacts, their speeds and CORs, and one constant for each wall."""
+    head = ("wall", "impacts", "speed", "COR", "nine in ten", "constant", "rebound", "mean: energy")
+    return [head, *(_impacts(wall) for wall in run.walls)]
+
+
+def _impacts(wall: WallRow) -> tuple[str, ...]:
+    best, rows = wall.best, wall.impacts
+    if best is None:
+        return (wall.name, "0", *["-"] * 6)
+    low, middle, high = np.quantile(rows["restitution"], [0.05, 0.5, 0.95])
+    return (
+        wall.name, f"{rows.size}", f"{np.median(rows['approach_speed']):.3g} m/s", f"{middle:.3f}",
+        f"{low:.3f}-{high:.3f}", f"{best.restitution:.4f}", relative(best.rebound_error),
+        relative(best.mean_energy_error, "+z.1%"),
+    )  # fmt: skip
+
+
+def energies(run: Run) -> Table:
+    """Energy that each wall and each cause took, and the sums."""
+    found: Table = [("wall", "contacts", *CAUSES, "in all", "share")]
+    whole = by_cause(run.rows).sum() or 1.0
+    for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
+        parts = by_cause(rows)
+        shown = (drawn(part, "J", 3) for part in (*parts, parts.sum()))
+        found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
+    return found
+
+
+def as_html(table: Table) -> str:
+    """Make a table of a page."""
+    head, *rows = table
+    cells = "".join(f"<th>{html.escape(name)}</th>" for name in head)
+    body = "".join(page.row(head, row) for row in rows)
+    return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"

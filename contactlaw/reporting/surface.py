@@ -1,0 +1,157 @@
+"""The surface of the walls: how much energy each part of it takes, and files for other programs."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.record.file import Surface
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_FEW = 3.0  # impacts in a square whose side is the reach of the average
+_FINEST, _COARSEST = 1.0 / 60.0, 1.0 / 12.0  # limits of this reach [largest extent of the walls]
+_GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most cells
+
+
+class EnergyMap(NamedTuple):
+    """Energy that parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
+
+    The density is energy over area [J/m2], an average over the neighbourhood on the same wall.
+    """
+
+    corners: Floats
+    impacts: Integers  # number of contacts on each triangle
+    energy: Floats  # that these took [J]
+    density: Floats
+
+
+def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
+    """Sum up energies [J] by parts of a surface, which are small where triangles are large."""
+    corners, hit = surface.corners, surface.triangle >= 0
+    extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    reach = math.sqrt(_FEW * areas(corners).sum() / max(1, np.count_nonzero(hit)))
+    reach = min(max(reach, _FINEST * extent), _COARSEST * extent)
+    where, wall = surface.triangle[hit], surface.wall
+    if surface.point is not None:
+        corners, where, whole = refined(corners, where, surface.point[hit], 0.7 * reach)
+        wall = wall[whole]
+    count, density = len(corners), np.empty(len(corners))
+    taken: Floats = np.bincount(where, energy[hit], count).astype(float)
+    for one in np.unique(wall):
+        here = wall == one
+        density[here] = averaged(corners[here], taken[here], reach)
+    return EnergyMap(corners, np.bincount(where, minlength=count), taken, density)
+
+
+def areas(corners: NDArray[np.floating]) -> Floats:
+    """Areas of triangles [m2], from their corners (n, 3, 3) [m]."""
+    edge = np.diff(corners.astype(float), axis=1)
+    area: Floats = 0.5 * np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1)
+    return area
+
+
+def refined(
+    corners: Floats, triangle: Integers, point: Floats, longest: float
+) -> tuple[Floats, Integers, Integers]:
+    """Halve triangles until no side is longer than `longest`; find that of each point again.
+
+    Returns the corners, the triangle of each point, and the number of the triangle of which each
+    is a part.
+    """
+    whole = np.arange(len(corners))
+    while True:
+        side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        long = np.flatnonzero(side.max(axis=1) > longest)
+        if not long.size:
+            return corners, triangle, whole
+        # Roll each triangle until its longest side is from a to b; c is the corner opposite.
+        turn = (side[long].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.moveaxis(corners[long[:, None], turn], 1, 0)
+        middle = 0.5 * (a + b)
+        cut = c - middle
+        across = (b - a) - ((b - a) * cut).sum(1, keepdims=True) / (cut**2).sum(1)[:, None] * cut
+        place = np.full(len(corners), -1)
+        place[long] = np.arange(long.size)
+        moved = np.flatnonzero(place[triangle] >= 0)
+        n = place[triangle[moved]]
+        beyond = ((point[moved] - middle[n]) * across[n]).sum(axis=1) > 0.0
+        triangle = triangle.copy()
+        triangle[moved[beyond]] = len(corners) + n[beyond]
+        corners = corners.copy()
+        corners[long] = np.stack((a, middle, c), axis=1)
+        corners = np.concatenate((corners, np.stack((middle, b, c), axis=1)))
+        whole = np.concatenate((whole, whole[long]))
+
+
+def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Floats:
+    """Energy per area [J/m2] of triangles, averaged over their neighbourhood.
+
+    It is energy over area, both weighted by a Gaussian whose standard deviation is `reach` [m].
+    """
+    middle = corners.mean(axis=1, dtype=float)
+    middle -= middle.min(axis=0)
+    width = middle.max(axis=0) / reach + 1.0
+    dimensions = max(1, int((width > 2.0).sum()))
+    grid = max(_GRID, (float(width.prod()) / _CELLS) ** (1.0 / dimensions))
+    cell = (middle // (grid * reach)).astype(int)
+    shape = tuple(cell.max(axis=0) + 1)
+    window = np.arange(-math.ceil(3.0 / grid), math.ceil(3.0 / grid) + 1)
+    weight = np.exp(-0.5 * (window * grid) ** 2)
+
+    def spread(values: Floats) -> Floats:
+        found = np.zeros(shape)
+        np.add.at(found, tuple(cell.T), values)
+        for axis in range(3):
+            found = np.apply_along_axis(np.convolve, axis, found, weight)
+            found = np.take(found, np.arange(shape[axis]) + window.size // 2, axis=axis)
+        return np.asarray(found[tuple(cell.T)])
+
+    return spread(energy) / spread(areas(corners))
+
+
+def vtk(found: EnergyMap, colours: Floats) -> bytes:
+    """Write a map in VTK's legacy text format, which ParaView and OVITO read.
+
+    OVITO shows the colours, red, green and blue from 0 to 1, shape (k, 3).
+    """
+    n = len(found.corners)
+    lines = ["# vtk DataFile Version 3.0", "contactlaw: energy by wall [m, J]", "ASCII"]
+    lines += ["DATASET UNSTRUCTURED_GRID", f"POINTS {3 * n} double"]
+    lines += _rows(found.corners.reshape(-1, 3))
+    lines += [f"CELLS {n} {4 * n}", *_faces(n), f"CELL_TYPES {n}", *["5"] * n, f"CELL_DATA {n}"]
+    columns = ("impacts", found.impacts), ("energy_J", found.energy), ("J_per_m2", found.density)
+    for name, values in columns:
+        lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *_rows(values[:, None])]
+    lines += ["COLOR_SCALARS color 3", *_rows(colours)]  # last, or some readers lose the others
+    return "\n".join([*lines, ""]).encode()
+
+
+def ply(found: EnergyMap, colours: Floats) -> bytes:
+    """Write a map as PLY text, with the colours of `vtk`, for viewers of meshes."""
+    n = len(found.corners)
+    corner = [f"property {kind}" for kind in ("double x", "double y", "double z")]
+    corner += [f"property uchar {name}" for name in ("red", "green", "blue")]
+    head = ["ply", "format ascii 1.0", "comment contactlaw: energy by wall [m, J]"]
+    head += [f"element vertex {3 * n}", *corner, f"element face {n}"]
+    head += ["property list uchar int vertex_indices", "property double energy_J"]
+    head += ["property double J_per_m2", "end_header"]
+    values = _rows(np.column_stack((found.energy, found.density)))
+    shades = np.repeat((255.0 * colours).round().astype(int), 3, axis=0).tolist()
+    points = (f"{p} {r} {g} {b}" for p, (r, g, b) in
+              zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))  # fmt: skip
+    faces = (f"{face} {value}" for face, value in zip(_faces(n), values, strict=True))
+    return "\n".join([*head, *points, *faces, ""]).encode()
+
+
+def _rows(values: NDArray[np.generic]) -> list[str]:
+    return [" ".join(f"{value:.9g}" for value in row) for row in values.tolist()]
+
+
+def _faces(count: int) -> list[str]:
+    """Triangles that share no corner, so that each may have a colour of its own."""
+    return [f"3 {n} {n + 1} {n + 2}" for n in range(0, 3 * count, 3)]

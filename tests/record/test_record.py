@@ -1,0 +1,140 @@
+"""Files of records: what engines save is what is read, and what a table says of it."""
+
+import dataclasses
+import os
+
+import numpy as np
+import pytest
+from pymunk_room import make_bead, make_plate, make_space, steps
+
+import contactlaw as cl
+from contactlaw.cli import main
+from contactlaw.engines.pymunk import attach
+from contactlaw.engines.record import IMPACT
+
+MODELS = [
+    cl.ImpactModel(cl.Pair(sphere, plate))
+    for sphere in ("gamma-alumina", "glass") for plate in ("glass", "carbon-steel-1020")
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run():
+    """Beads of two materials that fall on plates of two materials, and two that meet."""
+    space = make_space(0.0)
+    impacts = attach(space, MODELS)
+    for n, plate in enumerate(("glass", "carbon-steel-1020")):
+        shape = make_plate(space, (0.1 * n, 0), (0.1 * n + 0.09, 0))
+        impacts.add_plate(shape, 1e-3, material=plate)
+        for k, sphere in enumerate(("gamma-alumina", "glass", "glass")):
+            density = cl.material(sphere).density
+            bead = make_bead(space, (0.1 * n + 0.02 * k, 2e-3), (0, -2.0 - k), density=density)
+            impacts.add_bead(bead, material=sphere)
+    for side, sphere in ((-1, "gamma-alumina"), (1, "glass")):
+        density = cl.material(sphere).density
+        bead = make_bead(space, (1 + 1e-3 * side, 1), (-side, 0), density=density)
+        impacts.add_bead(bead, material=sphere)
+    steps(space, 20)
+    return space, impacts
+
+
+def test_what_is_saved_is_read(run, tmp_path):
+    run[1].save(tmp_path / "run.h5")
+    found = cl.read_record(tmp_path / "run.h5")
+    rows = run[1].collisions()
+    assert found.rows.tolist() == rows[np.lexsort((rows["bead"], rows["time"]))].tolist()
+    assert found.lacks == "the surface of the walls" and found.rows.size == 7
+    assert (found.made["engine"], found.made["version_contactlaw"]) == ("pymunk", cl.__version__)
+    spheres, plates = (table["material"] for table in (run[1].beads(), run[1].plates()))
+    for row, n in zip(found.rows, found.which, strict=True):
+        pair, law = found.bodies[n]
+        on = plates[row["plate"]] if row["plate"] >= 0 else spheres[row["other"]]
+        assert (pair.sphere.name, pair.plate.name) == (spheres[row["bead"]], on)
+        if row["plate"] >= 0:
+            again = cl.ImpactModel(pair, law)
+            size = row["approach_speed"], row["radius"], row["thickness"]
+            assert again.restitution(*map(float, size)) == row["restitution"]
+
+
+def test_a_table_of_pandas_has_words(run):
+    pandas = pytest.importorskip("pandas")
+    table = run[1].record().to_pandas()
+    assert isinstance(table, pandas.DataFrame) and table.shape == (7, len(IMPACT) + 2)
+    assert set(table["kind"]) == {"impact"}
+    assert sorted(set(table["sphere"])) == ["gamma-alumina", "glass"]
+    rows = run[1].collisions()
+    for words, flags in zip(table["flags"], rows["flags"], strict=True):
+        assert len(words.split(", ")) * bool(words) == int(flags).bit_count()
+
+
+def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures):
+    path = str(tmp_path / "run.h5")
+    run[1].save(path)
+    assert main(["report", path, "--out", str(tmp_path / "out")]) == 0
+    text = (tmp_path / "out/summary.txt").read_text()
+    for plate, name in enumerate(("glass", "carbon-steel-1020")):
+        for sphere, count in (("gamma-alumina", 1), ("glass", 2)):
+            wall = f"{plate}: 1 mm {name}, {sphere}"
+            own = next(one for one in text.splitlines() if one.startswith(wall))
+            assert own.removeprefix(wall).split()[0] == str(count)
+    capsys.readouterr()
+    assert main(["constant", "--record", path, "--csv"]) == 0
+    head, *rows = (line.split(",") for line in capsys.readouterr().out.splitlines())
+    found = {tuple(row[head.index(name)] for name in ("sphere", "plate")): row for row in rows}
+    rows = run[1].collisions()
+    assert len(found) == 4
+    for (sphere, plate), row in found.items():
+        own = (run[1].beads()["material"][rows["bead"]] == sphere) & (rows["plate"] >= 0)
+        own &= run[1].plates()["material"][rows["plate"]] == plate
+        weight = rows["approach_speed"][own] ** 2 * rows["radius"][own] ** 3
+        best = np.sqrt(np.average(rows["restitution"][own] ** 2, weights=weight))
+        assert float(row[head.index("restitution")]) == pytest.approx(best, rel=1e-6)
+    assert main(["constant", "--record", path, "--lammps"]) == 1
+    assert "has impacts of several pairs" in capsys.readouterr().err
+    chosen = ["--sphere", "glass", "--plate", "glass"]
+    assert main(["constant", "--record", path, "--lammps", *chosen]) == 0
+    assert main(["constant", "--record", path, "--sphere", "PMMA"]) == 1
+    assert "--sphere: the record has gamma-alumina, glass, got PMMA" in capsys.readouterr().err
+
+
+def test_several_files_of_a_run_are_one(run, tmp_path):
+    """Also where a run went on after a save: rows that are in both files are taken once."""
+    whole = run[1].record()
+    first, second = tmp_path / "1.h5", tmp_path / "2.h5"
+    order = np.lexsort((whole.rows["bead"], whole.rows["time"]))
+    whole.part(order[4:]).save(first)
+    whole.part(order[:5]).save(second)
+    for paths in ((first, second), (second, first)):
+        found = cl.read_record(*paths)
+        assert found.rows.tolist() == whole.rows[order].tolist()
+        bodies = [whole.bodies[n] for n in whole.which[order]]
+        assert [found.bodies[n] for n in found.which] == bodies
+    np.save(tmp_path / "3.npy", whole.rows)
+    with pytest.raises(ValueError, match=r"3\.npy: one of the files knows the materials"):
+        cl.read_record(first, tmp_path / "3.npy")
+    with pytest.raises(TypeError, match="expected the path of a file"):
+        cl.read_record()
+
+
+def test_every_field_of_a_material_is_kept(tmp_path):
+    more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
+    more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}}
+    sphere = dataclasses.replace(cl.material("gamma-alumina"), **more)
+    plate = cl.Material("steel", 207e9, 0.3, 7850, kind="metal", hardness="62 HRC", hardening=0.1)
+    assert None not in dataclasses.astuple(sphere)
+    bodies = [cl.Bodies(cl.Pair(sphere, plate), "fem")]
+    cl.Record(np.zeros(1, IMPACT), bodies).save(tmp_path / "run.h5")
+    assert list(cl.read_record(tmp_path / "run.h5").bodies) == bodies
+
+
+def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
+    record = cl.Record(np.zeros(1, IMPACT))
+    with pytest.raises(ValueError, match=r"path: got .*run.txt', must end in .h5 or .hdf5"):
+        record.save(tmp_path / "run.txt")
+    record.save(tmp_path / "run.h5")
+    before = (tmp_path / "run.h5").read_bytes()
+    monkeypatch.setattr(os, "fsync", lambda handle: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        record.save(tmp_path / "run.h5")
+    assert (tmp_path / "run.h5").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
