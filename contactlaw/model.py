@@ -267,7 +267,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         Raises
         ------
         RuntimeError
-            If the integration takes too many steps (lambda far above 100).
+            Too many steps: lambda far above 100, or above 20 with a body of next to no strength.
 
         Examples
         --------

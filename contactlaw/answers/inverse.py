@@ -15,6 +15,7 @@ from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.answers.uncertainty import Band, Uncertain
+from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity
@@ -25,7 +26,6 @@ Array = NDArray[np.float64]
 _SAMPLES = 1500  # values between which a COR is searched, 2 % apart or less
 _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the same to six digits
 _SLOWEST = 1e-4  # [m/s]: slower beads of millimetres stick by adhesion
-_ROUNDS = 60  # of bisection
 _ROUNDING = 1e-5  # how far `ImpactModel.restitution` may be from the integrated COR
 _SHARES = 1e-6, 1.0 - 1e-6  # of a COR; nearer to the ends beads stick, or are elastic at any speed
 
@@ -122,12 +122,8 @@ class _Curve:
         nearest = int(np.argmin(np.abs(self.e - wanted)))
         if not at.size:  # a COR that was looked up may just miss the largest one
             return self.x[[nearest]][np.abs(self.e[[nearest]] - wanted) < _ROUNDING]
-        a, b = self.x[at], self.x[at + 1]
-        for _ in range(_ROUNDS):
-            middle = 0.5 * (a + b)
-            beyond = (self.restitution(middle) > wanted) != above[at]
-            a, b = np.where(beyond, a, middle), np.where(beyond, middle, b)
-        return 0.5 * (a + b)
+        ends = self.x[at], self.x[at + 1]
+        return bisect(lambda x: (self.restitution(x) > wanted) == above[at], *ends)
 
     def leaves(self, wanted: float, start: float, least: float, most: float, up: bool) -> float:
         """First place above or below a solution at which the COR leaves a range; else the last."""

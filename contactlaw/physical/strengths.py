@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from contactlaw.equation import force
 from contactlaw.equation.force import STRENGTHS
 from contactlaw.laws import Law, Strengths, fem, laid_out_alike
+from contactlaw.laws._branches import bisect
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -190,12 +191,8 @@ def knots(
     assert flow is not None
     least, most = (math.log(rate.largest_factor(flow, one)) for one in (slowest, fastest))
     most = last = max(most, least + _NARROWEST)
-    if not _yields(pair, last):  # where does that begin?
-        low = least
-        while last - low > _CLOSE:
-            middle = 0.5 * (low + last)
-            low, last = (middle, last) if _yields(pair, middle) else (low, middle)
-        last = low
+    if not _yields(pair, last):  # up to where does one?
+        last = bisect(lambda one: _yields(pair, one), least, last)
     logs = np.linspace(least, last, 2 + int((last - least) / _TRIED))
     inner: list[float] = []
     for values in np.array([_corners(pair, one) for one in logs]).T:
