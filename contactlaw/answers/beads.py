@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers.solver import RTOL, within
-from contactlaw.answers.tabulated import Border, Tabulated, extent
+from contactlaw.answers.solver import RTOL, solved_within
+from contactlaw.answers.tabulated import Border, TableLookup, extent
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.bodies import TwoSpheres
@@ -38,21 +38,21 @@ class Beads:
         typed in its name hold here as they do on a plate.
     border : Border
         What to do with impacts outside the table.
-    plates : Tabulated, optional
+    plates : TableLookup, optional
         Impacts on plates whose table serves here, too, if it fits the law; else it is the law's
         own.
     """
 
     def __init__(
         self, sphere: Material | str, other: Material | str, law: str | Law, border: Border,
-        plates: Tabulated | None = None,
+        plates: TableLookup | None = None,
     ) -> None:  # fmt: skip
         pair = Pair(sphere, other)
         weak, strong = (one.strength or math.inf for one in (pair.plate, pair.sphere))
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)
-        self._bulk = Tabulated(TwoSpheres(self.pair, self.law), None, border)
+        self._bulk = TableLookup(TwoSpheres(self.pair, self.law), None, border)
         if plates is not None:
             self._bulk.given = plates.given_for(self._bulk.law)
 
@@ -78,7 +78,7 @@ class Beads:
         enable_caching()
         impacts = self._impacts(speed, radius, other_radius)
         units = self._bulk.bodies.numbers(self._bulk.bodies.impact(impacts))
-        found = within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
+        found = solved_within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
         return shaped(found.restitution, impacts.shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
@@ -94,7 +94,7 @@ class Beads:
         return Impacts(v, size, np.full_like(size, math.inf), shape, mass=mass)
 
 
-def beads_of(tabulated: Tabulated, other: Other) -> Beads:
+def beads_of(tabulated: TableLookup, other: Other) -> Beads:
     """Impacts of a model's sphere on another sphere."""
     sphere, law = tabulated.bodies.pair.sphere, tabulated.bodies.law
     takes = law.family if law.from_pair else law

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._readable import scale_of
 from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Border, Tabulated
+from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.uncertainty import Band, Uncertain
 from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
@@ -81,7 +81,7 @@ class Solutions:
 class _Curve:
     """COR over the reciprocal of the unknown, where the table reaches, but integrated."""
 
-    def __init__(self, by: Backend, border: Tabulated, sizes: tuple[float | None, ...]) -> None:
+    def __init__(self, by: Backend, border: TableLookup, sizes: tuple[float | None, ...]) -> None:
         self.by, self.sizes = by, sizes
         slowest, radius = _SLOWEST, sizes[1] or 0.0
         x = 1.0 / np.geomspace(slowest, lookup.V_MAX, _SAMPLES)
@@ -94,13 +94,13 @@ class _Curve:
             self._refuse(border, x)
         self.e = self.restitution(self.x)
 
-    def _refuse(self, border: Tabulated, x: Array) -> None:
+    def _refuse(self, border: TableLookup, x: Array) -> None:
         """Say why even the impact that is nearest to the table is outside of it."""
         name, where, nearest = "speed", "on a half-space", x[-1:]
         if self.sizes[0] is None:
             name, where, nearest = "thickness", f"at {_SLOWEST:g} m/s", x[:1]
         try:
-            strict = Tabulated(border.bodies, border.given, Border("raise"))
+            strict = TableLookup(border.bodies, border.given, Border("raise"))
             strict.rebounds(self.impacts(nearest))
         except OutsideTableError as error:
             said = f"{name}: even {where} the impact is outside the table, {error.reason}"
@@ -141,7 +141,7 @@ class _Curve:
 class Inverse(Uncertain):
     """Thicknesses and speeds that give a COR, by one model."""
 
-    _tabulated: Tabulated
+    _tabulated: TableLookup
 
     def thickness(
         self, restitution: ArrayLike, speed: ArrayLike, radius: ArrayLike, *,
@@ -211,7 +211,7 @@ class Inverse(Uncertain):
     ) -> Solutions | NDArray[np.object_]:  # fmt: skip
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
-        border = Tabulated(self._bodies, self._tabulated.given, Border("clamp"))
+        border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
         curve = functools.cache(functools.partial(_Curve, by, border))
         found = np.empty(wanted.size, dtype=object)
         for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):

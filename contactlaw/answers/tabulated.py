@@ -108,7 +108,7 @@ def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     )
 
 
-class Tabulated:
+class TableLookup:
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:

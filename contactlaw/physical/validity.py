@@ -15,7 +15,7 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import REACH, largest_factor, rated, strengthened
+from contactlaw.physical.rate import REACH, flow_with_rate, largest_factor, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
 from contactlaw.physical.strengths import without_curves
 
@@ -308,7 +308,7 @@ def limits_by_strength(pair: Pair, law: Law) -> Array:
 
     Flags that begin at a strength between two rows begin at the higher one.
     """
-    flow = rated(pair, law)
+    flow = flow_with_rate(pair, law)
     if not law.yields or flow is None:
         return alone(limits(pair, law))
     rows = []
