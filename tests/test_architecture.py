@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_347,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 687,
     "contactlaw/reporting": 1_064,
-    "contactlaw/stepping": 1_979,
+    "contactlaw/stepping": 1_977,
     "contactlaw/table": 2_993,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_962,
     "contactlaw templates": 1_083,  # sources of other languages, and pages
