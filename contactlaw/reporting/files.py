@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import html
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,10 +19,6 @@ from contactlaw.reporting.surface import ply, vtk
 from contactlaw.walls.mesh import Mesh
 
 _MAPS = "energy.vtk", "energy.ply"
-_LEDE = (
-    "What the beads did to the walls: each impact had the coefficient of restitution (COR) that "
-    "follows from its speed, the bead and the wall."
-)
 
 
 def report(
@@ -81,24 +76,15 @@ def report(
 
 def _page(run: Run, pictures: dict[str, Picture]) -> str:
     made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    body = page.template(__package__, "body.html").substitute(
-        impacts=summary.as_html(summary.impacts(run)),
+    return page.template(__package__, "report.html").render(
+        subject=run.subject,
+        facts=[summary.counts(run), *[run.left_out] * bool(run.left_out)],
+        impacts=summary.impacts(run),
         constant=summary.CONSTANT,
-        energies=summary.as_html(summary.energies(run)),
+        limits=exceeded(run.impacts["flags"]),
+        energies=summary.energies(run),
         energy=summary.ENERGY,
-        limits=page.exceeded(exceeded(run.impacts["flags"]), ""),
         figures=page.shown(figures.module, pictures),
-        maps=_MAP_NOTE if run.map is not None else "",
+        map=run.map is not None,
         made=page.made(made, {"contactlaw": VERSION}),
     )
-    left_out = f" {html.escape(run.left_out)}." if run.left_out else ""
-    return page.whole(
-        body, title=f"Impacts on walls: {html.escape(run.subject)}", heading="Impacts on walls",
-        lede=_LEDE, facts=f"<b>{html.escape(summary.counts(run))}.</b>{left_out}",
-    )  # fmt: skip
-
-
-_MAP_NOTE = (
-    "<code>energy.vtk</code>, the energy map for ParaView and OVITO; <code>energy.ply</code>, the "
-    "same for ParaView, MeshLab and Blender; "
-)

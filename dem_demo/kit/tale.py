@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -140,31 +139,19 @@ def page(
     what, how = title(tale, runs)
     columns = [dict(facts(tale, one)) for one in runs.every]
     head, *names = columns[0]
-    body = common.template("dem_demo.kit", "bed.html").substitute(
+    return common.template("dem_demo.kit", "bed.html").render(
         tale.page,
+        title=f"{tale.page['heading']}: what contactlaw gives a particle simulation",
+        facts=(what, how),
+        partial=(progress(runs), runs.reason) if runs.reason else (),
         name=run.scene.NAME,
         film=f"data:image/gif;base64,{base64.b64encode(film()).decode('ascii')}",
-        head="".join(f"<th>{html.escape(text)}</th>" for text in ["", *(c[head] for c in columns)]),
-        rows="".join(
-            common.row(
-                ["", *(c[head] for c in columns)],
-                [name.strip(), *(c.get(name, "") for c in columns)],
-            )
-            for name in names
-        ),
-        limits=common.exceeded(exceeded(run.impacts["flags"]), ""),
+        head=["", *(c[head] for c in columns)],
+        rows=[[name.strip(), *(c.get(name, "") for c in columns)] for name in names],
+        limits=exceeded(run.impacts["flags"]),
         figures=common.shown(tale.figures.module, pictures),
-        command=html.escape(run.command),
-        law=html.escape(run.law),
-        source=html.escape(ImpactModel(run.pair, run.law).force_law.source),
+        command=run.command,
+        law=run.law,
+        source=ImpactModel(run.pair, run.law).force_law.source,
         made=common.made(run.created, run.versions),
-    )
-    heading = tale.page["heading"]
-    return common.whole(
-        body,
-        title=f"{heading}: what contactlaw gives a particle simulation",
-        heading=heading,
-        lede=tale.page["lede"],
-        facts=f"<b>{html.escape(what)}.</b> {html.escape(how)}.",
-        partial=common.partial(progress(runs), runs.reason),
     )

@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import json
 import math
 from collections.abc import Mapping
@@ -57,29 +56,23 @@ def page(run: Run, pictures: Mapping[str, Picture]) -> str:
     str
         HTML.
     """
-    first, second = title(run)
-    body = common.template(__package__, "page.html").substitute(
-        script=common.template("contactlaw.export", "drawing.js").template
-        + common.template(__package__, "player.js").template,
+    return common.template(__package__, "page.html").render(
+        title="Beads rain on plates: what contactlaw gives a particle simulation",
+        heading="Beads rain on plates",
+        lede=_LEDE,
+        facts=title(run),
+        partial=(progress(run), run.reason) if run.reason else (),
         data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         sample=_sample(run),
         other=_other(run),
         rows="".join(_row(row, run.scene.friction > 0.0) for row in plate_rows(run)),
         **_words(run),
-        limits=common.exceeded(limits(run), ", and ringed in the animation and in the figures"),
+        limits=limits(run),
         figures=common.shown(figures.module, pictures),
-        command=html.escape(run.command),
-        law=html.escape(run.law),
-        source=html.escape(run.model.force_law.source),
+        command=run.command,
+        law=run.law,
+        source=run.model.force_law.source,
         made=common.made(run.created, run.versions),
-    )
-    return common.whole(
-        body,
-        title="Beads rain on plates: what contactlaw gives a particle simulation",
-        heading="Beads rain on plates",
-        lede=_LEDE,
-        facts=f"<b>{html.escape(first)}.</b> {html.escape(second)}.",
-        partial=common.partial(progress(run), run.reason),
     )
 
 
