@@ -11,7 +11,6 @@ from contactlaw import _atomic, style
 from contactlaw._version import VERSION
 from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
-from contactlaw.reporting.gallery import Picture
 from contactlaw.reporting.limits import exceeded
 from contactlaw.reporting.meshes import with_meshes
 from contactlaw.reporting.run import Run
@@ -58,7 +57,7 @@ def report(
     with style.applied(), _atomic.folder(out) as folder:
         pictures = {name: figures.draw(name, run) for name in figures.names()}
         for name, picture in pictures.items():
-            (folder / f"{name}.png").write_bytes(picture.wide)
+            (folder / f"{name}.png").write_bytes(picture)
         (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
         run.record.save(folder / "record.h5")
         if run.map is not None:
@@ -74,7 +73,7 @@ def report(
     return Path(out) / "index.html"
 
 
-def _page(run: Run, pictures: dict[str, Picture]) -> str:
+def _page(run: Run, pictures: dict[str, bytes]) -> str:
     made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     return page.template(__package__, "report.html").render(
         subject=run.subject,

@@ -11,27 +11,25 @@ from types import ModuleType
 from typing import NamedTuple
 
 from contactlaw._template import template as template  # also for the demo
-from contactlaw.reporting.gallery import Picture
 
 
 class Figure(NamedTuple):
-    """A figure within a page: two images as text, for a screen and a phone, and its caption."""
+    """A figure within a page: its image as text, and its caption."""
 
     name: str
-    wide: str
-    narrow: str
+    image: str
     caption: str
     more: str
 
 
-def shown(module: Callable[[str], ModuleType], pictures: Mapping[str, Picture]) -> list[Figure]:
+def shown(module: Callable[[str], ModuleType], pictures: Mapping[str, bytes]) -> list[Figure]:
     """Prepare figures for a page, with the docstrings of their modules for captions."""
     found = []
     for name, picture in pictures.items():
         caption, _, more = str(module(name).__doc__).strip().partition("\n\n")
-        images = (f"data:image/png;base64,{base64.b64encode(png).decode()}" for png in picture)
+        image = f"data:image/png;base64,{base64.b64encode(picture).decode()}"
         texts = (" ".join(text.split()) for text in (caption, more))
-        found.append(Figure(name, *images, *texts))
+        found.append(Figure(name, image, *texts))
     return found
 
 

@@ -37,11 +37,7 @@ class Drum(Bed):
         Revolutions per second [1/s].
     """
 
-    NAME, SCHEMA = "drum", 1
-    AXES = (
-        "one row per impact on the drum; bead is a row of /beads, plate one of /plates: 0 the "
-        "shell, 1 and 2 the ends; the drum turns about y, z points up"
-    )
+    NAME, SCHEMA = "drum", 2
     NUMBERS = "thickness", "drum", "length", "turns", "friction", "duration", "seed"
     FRAME_RATE = defaults.FRAME_RATE
 

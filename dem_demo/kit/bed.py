@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from contactlaw import Material
     from contactlaw.walls import Mesh
 
-ENGINE, EXTRAS = "lammps", "demo,lammps"  # no other engine of the demo has mesh walls
+EXTRAS = "demo,lammps"
 
 Corners = tuple[tuple[float, float, float], tuple[float, float, float]]
 
@@ -49,8 +49,6 @@ class Bed(ABC):
         Seed that the beads were drawn with.
     NAME, SCHEMA : str, int
         Name of the scene, and version of the layout of its record.
-    AXES : str
-        What the columns of the table of impacts mean in the record of this scene.
     NUMBERS : tuple of str
         Attributes of the scene that the record stores as attributes of the file.
     FRAME_RATE : float
@@ -59,7 +57,6 @@ class Bed(ABC):
 
     NAME: ClassVar[str]
     SCHEMA: ClassVar[int]
-    AXES: ClassVar[str]
     NUMBERS: ClassVar[tuple[str, ...]]
     FRAME_RATE: ClassVar[float]
 

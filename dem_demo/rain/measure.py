@@ -3,54 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import edge_distance
-from contactlaw.reporting.limits import Limit, exceeded
 from contactlaw.reporting.run import Shares, shares
 from dem_demo.kit.beads import FLYING, GRAVITY, Floats
 from dem_demo.rain.record import Run
-
-_NOTHING = math.nan, math.nan, math.nan, math.nan
-
-
-@dataclass(frozen=True)
-class PlateRow:
-    """What happened on one plate.
-
-    Attributes
-    ----------
-    thickness : float
-        Thickness [m].
-    impacts : int
-        Number of impacts; the other numbers are NaN if it is 0.
-    speed, restitution, lowest, highest : float
-        Mean normal speed [m/s]; mean, smallest and largest COR.
-    shares : Shares
-        Shares of the total energy of the impacts. In the baseline all but ``kept`` are NaN: a
-        constant COR does not say where the energy went.
-    outside : int
-        Number of impacts that exceed a limit of the model.
-    """
-
-    thickness: float
-    impacts: int
-    speed: float
-    restitution: float
-    lowest: float
-    highest: float
-    shares: Shares
-    outside: int
-
-
-def on_plate(run: Run, plate: int) -> NDArray[np.void]:
-    """Impacts on one plate."""
-    rows: NDArray[np.void] = run.impacts[run.impacts["plate"] == plate]
-    return rows
 
 
 def bead_on_bead(run: Run) -> NDArray[np.void]:
@@ -59,33 +20,11 @@ def bead_on_bead(run: Run) -> NDArray[np.void]:
     return rows
 
 
-def plate_rows(run: Run) -> list[PlateRow]:
-    """Measure every plate of a run."""
-    return [_plate_row(run, n) for n in range(len(run.scene.plates))]
-
-
-def _plate_row(run: Run, plate: int) -> PlateRow:
-    rows = on_plate(run, plate)
-    thickness = run.scene.plates[plate].thickness
-    if not rows.size:
-        return PlateRow(thickness, 0, *_NOTHING, Shares(*[math.nan] * 5), 0)
-    energy, cor = run.energy(rows), rows["restitution"]
-    kept = float((cor**2 * energy).sum() / energy.sum())
-    return PlateRow(
-        thickness=thickness,
-        impacts=rows.size,
-        speed=float(rows["approach_speed"].mean()),
-        restitution=float(cor.mean()),
-        lowest=float(cor.min()),
-        highest=float(cor.max()),
-        shares=Shares(kept, *[math.nan] * 4) if run.baseline else model_shares(run, plate),
-        outside=int(outside(run)[run.modelled["plate"] == plate].sum()),
-    )
-
-
-def model_shares(run: Run, plate: int) -> Shares:
-    """Shares of the energy by the model, also for the impacts of the baseline."""
+def plate_shares(run: Run, plate: int) -> Shares | None:
+    """Shares of the energy on a plate by the model, also for the impacts of the baseline."""
     rows = run.modelled[run.modelled["plate"] == plate]
+    if not rows.size:
+        return None
     return shares(rows, _masses(run)[rows["bead"]], run.scene.friction > 0.0)
 
 
@@ -159,11 +98,6 @@ def restitution_range(run: Run) -> tuple[float, float]:
     return float(run.impacts["restitution"][on].min(initial=0.99)), 1.0
 
 
-def limits(run: Run) -> list[Limit]:
-    """List the limits of the model that impacts on plates exceed."""
-    return exceeded(run.modelled["flags"])
-
-
 def outside(run: Run) -> NDArray[np.bool_]:
     """Mask of the impacts in `Run.modelled` that exceed a limit of the model."""
     found: NDArray[np.bool_] = run.modelled["flags"] != 0
@@ -204,7 +138,7 @@ def first_rebounds(run: Run, plate: int) -> Rebounds:
     index = np.tile(np.arange(rows.size), 2)[order]
     bead, time = bead[order], time[order]
     first = np.flatnonzero(np.r_[True, bead[1:] != bead[:-1]] & (bead >= 0))
-    first = first[((rows["plate"] == plate) & run.impact)[index[first]]]
+    first = first[((rows["plate"] == plate) & run.record.impact)[index[first]]]
     after = np.r_[np.where(bead[1:] == bead[:-1], time[1:], math.inf), math.inf][first]
     frame = np.searchsorted(run.time, time[first], side="right")
     ok = (frame < run.time.size) & (run.time[np.minimum(frame, run.time.size - 1)] < after)
@@ -212,7 +146,7 @@ def first_rebounds(run: Run, plate: int) -> Rebounds:
     flying = run.status[frame, n] == FLYING
     n, frame, row = n[flying], frame[flying], row[flying]
     far = np.zeros(rows.size, dtype=bool)
-    far[(rows["plate"] >= 0) & run.impact] = outside(run)
+    far[(rows["plate"] >= 0) & run.record.impact] = outside(run)
     speed = rows["approach_speed"][row]
     surface = run.scene.plates[plate].y + run.scene.beads.radius[n]
     upwards = run.velocity[frame, n, 1].astype(float)

@@ -13,54 +13,30 @@ from numpy.typing import NDArray
 from contactlaw import ImpactModel, Pair, Rebound
 from contactlaw.engines.record import IMPACT, fill
 from contactlaw.record.file import write
+from dem_demo.kit import recorder
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.reader import Recorded, checked, common
-from dem_demo.kit.recorder import Dataset, Making, Recorder
-from dem_demo.rain.nozzles import DEPTH
+from dem_demo.kit.recorder import Dataset, Making, Recorded, Recorder
 from dem_demo.rain.scene import Beads, Plate, Scene
 
-NAME, SCHEMA = "rain", 3
-
-# What the columns of impacts mean in this file, beside their descriptions for any engine.
-_AXES = (
-    "one row per impact; bead and other are rows of /beads, plate of /plates; x is horizontal, y "
-    "points up, z is the depth"
-)
+NAME, SCHEMA = "rain", 4
 
 
-def rain_recorder(
-    path: Path, scene: Scene, making: Making, *, dimensions: int, bead_on_bead: str | None = None
-) -> Recorder:
-    """Begin the record of a rain.
-
-    Parameters
-    ----------
-    path : Path
-        File to create.
-    scene : Scene
-        Beads and plates.
-    making : Making
-        Model, engine and command of the run.
-    dimensions : int
-        Dimensions of the engine, 2 or 3.
-    bead_on_bead : str, optional
-        How the report describes bead-on-bead contacts, if the engine does not record them.
-    """
-    attributes = {
-        name: getattr(scene, name) for name in ("seed", "duration", "frame_rate", "friction")
-    }
-    attributes["scene_schema"] = SCHEMA
-    if bead_on_bead is not None:
-        attributes["bead_on_bead"] = bead_on_bead
+def rain_recorder(path: Path, scene: Scene, making: Making) -> Recorder:
+    """Make the recorder of a rain, for a file."""
+    numbers = "seed", "duration", "frame_rate", "friction"
+    spin = [Dataset("spin", "f4", "rad/s", "counterclockwise seen from the front; 0 once gone")]
     return Recorder(
         path,
-        NAME,
         making,
-        attributes=attributes,
-        write_scene=lambda file: _write_scene(file, scene),
-        trajectories=_trajectories(dimensions, scene.friction > 0.0),
-        frame_rate=scene.frame_rate,
-        axes=_AXES,
+        {"scene": NAME, "scene_schema": SCHEMA, **{one: getattr(scene, one) for one in numbers}},
+        lambda file: _write_scene(file, scene),
+        [
+            Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
+            Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
+            Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
+            *(spin if scene.friction > 0.0 else []),
+        ],
+        scene.frame_rate,
     )
 
 
@@ -83,18 +59,6 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         write(beads, name, getattr(scene.beads, name), units, description)
 
 
-def _trajectories(dimensions: int, friction: bool) -> list[Dataset]:
-    spin = [Dataset("spin", "f4", "rad/s", "counterclockwise seen from the front; 0 once gone")]
-    depth = [Dataset("depth", "f4", "m", "third coordinate of the centre")]
-    return [
-        Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
-        Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
-        Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
-        *depth[: dimensions - 2],
-        *(spin if friction else []),
-    ]
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded):
     """One recorded rain; in the baseline every contact has the same COR.
@@ -103,17 +67,11 @@ class Run(Recorded):
     ----------
     scene : Scene
         Beads and plates of the run.
-    bead_on_bead : str or None
-        How the report describes bead-on-bead contacts, if the engine does not record them.
-    depth : ndarray or None
-        Third coordinate (T, N) [m], if the engine has one.
     spin : ndarray or None
         Spins (T, N) [rad/s], counterclockwise in the figures, if there is friction.
     """
 
     scene: Scene
-    bead_on_bead: str | None
-    depth: NDArray[np.float32] | None = None
     spin: NDArray[np.float32] | None = None
 
     @cached_property
@@ -123,9 +81,8 @@ class Run(Recorded):
         Curves and the baseline's impacts may lie outside the table where no recorded impact does:
         there the model takes the value at the border, and flags it.
         """
-        pair = Pair(self.scene.sphere_material, self.scene.plate_material)
         outside = "clamp" if self.outside == "raise" else self.outside
-        return ImpactModel(pair, self.law, outside=outside)
+        return ImpactModel(self.pair, self.law, outside=outside)
 
     @cached_property
     def modelled(self) -> NDArray[np.void]:
@@ -166,8 +123,6 @@ class Run(Recorded):
         rows = self.impacts[self.impacts["plate"] >= 0]
         x0, x1 = np.array([(plate.x0, plate.x1) for plate in self.scene.plates])[rows["plate"]].T
         distance: Floats = np.minimum(rows["x"] - x0, x1 - rows["x"])
-        if self.depth is not None:
-            distance = np.minimum(distance, 0.5 * DEPTH - np.abs(rows["z"]))
         return distance.clip(0.0)  # rounding may put a contact with the rim beside the plate
 
     @property
@@ -199,27 +154,10 @@ def sized(scene: Scene, rows: NDArray[np.void]) -> NDArray[np.void]:
 
 
 def read(path: Path) -> Run:
-    """Read a file that `dem-demo rain` has written.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Run
-
-    Raises
-    ------
-    ValueError
-        If the file is something else, or of another schema.
-    """
+    """Read a file that `dem-demo rain` has written; a `ValueError` if it is something else."""
     with h5py.File(path, "r") as file:
-        attributes = checked(file, path, NAME, SCHEMA)
-        shared = common(file)
-        scene = _scene(file, shared.pop("pair"))
-        return Run(scene=scene, bead_on_bead=attributes.get("bead_on_bead"), **shared)
+        fields = recorder.read(file, path, NAME, SCHEMA)
+        return Run(scene=_scene(file, fields["record"].bodies[0].pair), **fields)
 
 
 def read_folder(folder: Path) -> Run:

@@ -114,8 +114,6 @@ class Scene:
         Seed that the beads were drawn with.
     frame_rate : float, optional
         Recorded frames per second [1/s].
-    rows : int, optional
-        Rows of nozzles, one behind the other.
     friction : float, optional
         Coulomb's coefficient of friction of beads on plates [-]; beads on each other have none.
     """
@@ -127,7 +125,6 @@ class Scene:
     duration: float
     seed: int
     frame_rate: float = defaults.FRAME_RATE
-    rows: int = 1
     friction: float = 0.0
 
     def __post_init__(self) -> None:

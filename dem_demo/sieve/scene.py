@@ -44,11 +44,7 @@ class Sieve(Bed):
         Frequency [1/s] and amplitude [m] of the vibration, which is at 45 degrees to the deck.
     """
 
-    NAME, SCHEMA = "sieve", 1
-    AXES = (
-        "one row per impact on the deck; bead is a row of /beads, triangle one of /deck/triangles; "
-        "z points up"
-    )
+    NAME, SCHEMA = "sieve", 2
     NUMBERS = "thickness", "frequency", "amplitude", "friction", "duration", "seed"
     FRAME_RATE = defaults.FRAME_RATE
 

@@ -38,9 +38,7 @@ def draw(run: Run) -> Figure:
     wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
-    axes.legend(
-        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=style.pick(3, 1), columnspacing=1.4
-    )
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.4)
     return figure
 
 

@@ -19,12 +19,12 @@ from dem_demo.rain.record import Run
 def draw(run: Run) -> Figure:
     """Draw a panel per plate with a common scale."""
     plates = run.scene.plates
-    columns = min(style.pick(5, 2), len(plates))
+    columns = min(5, len(plates))
     rows = math.ceil(len(plates) / columns)
     constant = run.baseline
     figure = style.figure(
         13.0,
-        1.6 + style.pick(3.8, 2.6) * rows,
+        1.6 + 3.8 * rows,
         f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
         if constant
         else "The COR depends on thickness, bead size and speed",

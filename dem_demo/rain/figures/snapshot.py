@@ -20,7 +20,7 @@ def draw(run: Run) -> Figure:
     hands = "; hands turn with the beads" if run.scene.friction else ""
     figure = style.figure(
         12.0,
-        style.pick(6.6, 5.0),
+        6.6,
         "Beads rain on plates of different thickness",
         f"{source(run)}; t = {time * 1e3:.0f} ms, beads drawn {magnified(run):g} times their size, "
         f"plates {PLATES_MAGNIFIED:g} times as thick, streaks: the last {EXPOSURE * 1e3:g} ms"
@@ -29,8 +29,6 @@ def draw(run: Run) -> Figure:
     axes = figure.add_subplot()
     picture = Picture(axes, run, made)
     picture.show(time)
-    bar = figure.colorbar(
-        picture.circles, ax=axes, location=style.pick("right", "bottom"), pad=0.02, fraction=0.03
-    )
+    bar = figure.colorbar(picture.circles, ax=axes, location="right", pad=0.02, fraction=0.03)
     bar.set_label("COR of the last impact")
     return figure
