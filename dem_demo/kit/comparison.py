@@ -56,26 +56,7 @@ def start(
     texts: Tale,
     drawn: type[drawing.Drawing[Any]],
 ) -> int:
-    """Simulate both runs, and write the records, figures, summary and page.
-
-    Parameters
-    ----------
-    arguments : Namespace
-        Parsed options; ``out`` is the folder for the results.
-    command : str
-        Command line, for the records.
-    chosen : Plan
-        The scene, its two models and the time step.
-    texts : Tale
-        Titles, facts and figures of the scene.
-    drawn : type of Drawing
-        Class that draws a panel of the scene.
-
-    Returns
-    -------
-    int
-        Exit status of the command.
-    """
+    """Simulate both runs, and write the records, figures, summary and page."""
     kind = type(chosen.scene)
     show = session.Show(
         kind.NAME,
@@ -106,13 +87,10 @@ def _simulate(chosen: Plan, command: str, folder: Path | None) -> BaseException 
     ):
         making = Making(chosen.law, command, chosen.step, cor)
         writes = bed_recorder(folder / name, scene, making, MPI.COMM_WORLD.size) if first else None
-        simulation = lammps.Simulation(scene, model, thickness, chosen.step, folder)
-        if cor is None:
-            simulation.dump(folder / f"{scene.NAME}.lammpstrj")
+        begin = partial(lammps.Simulation, scene, model, thickness, chosen.step, folder)
         title = "law" if cor is None else f"COR {cor:g}"
         with signals.held():  # a signal has to stop all ranks at the same step
-            stop = recorder.run(simulation, scene.frames, title, writes)
-        simulation.lmp.close()
+            stop = recorder.run(begin, scene.frames, title, writes)
         if stop is not None:
             return stop
     return None

@@ -24,25 +24,11 @@ _WIDTH, _ROOM = 9.0, 0.75  # [inches]: width of a film, and height of a panel's 
 class Drawing(ABC, Generic[S]):
     """Walls and beads of one run; `show` moves them. Each scene draws its walls in a subclass.
 
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    run : Run
-        The run.
-    range : tuple of float
-        Lowest and highest COR of the colour scale.
-
-    Attributes
-    ----------
-    STACKED : bool
-        Whether the runs stand one above the other on wide screens too; else side by side.
-    RATE : float
-        Frames per second of the film [1/s].
+    `range` has the lowest and highest COR of the colour scale.
     """
 
-    STACKED: ClassVar[bool]
-    RATE: ClassVar[float]
+    STACKED: ClassVar[bool]  # whether the runs stand one above the other; else side by side
+    RATE: ClassVar[float]  # frames per second of the film [1/s]
 
     def __init__(self, axes: Axes, run: Run[S], range: tuple[float, float]) -> None:
         self.axes, self.run = axes, run

@@ -93,20 +93,7 @@ def restitution(
     runs: Runs[Any], flat: NDArray[np.bool_], kinds: list[tuple[str, NDArray[np.bool_]]],
     title: str, others: str,
 ) -> Figure:  # fmt: skip
-    """Draw a point per impact under the law, the law's curves, and the constant.
-
-    Parameters
-    ----------
-    runs : Runs
-        As read from their files.
-    flat : ndarray of bool
-        Which impacts are on the flat of one wall, where the COR of the law holds.
-    kinds : list
-        Name and mask of two kinds of beads, smaller ones first. Each kind has curves for its
-        smallest and its largest bead.
-    title, others : str
-        Title of the figure, and legend of the impacts that are not `flat`.
-    """
+    """Draw a point per impact under the law, the law's curves, and the constant."""
     run = runs.law
     figure = style.figure(
         10.5, 6.2, title,

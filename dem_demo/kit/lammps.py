@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from importlib import metadata
 from pathlib import Path
@@ -76,7 +77,8 @@ class Simulation:
     step : float
         Time step [s].
     folder : Path
-        Where the files of the walls are.
+        Where the files of the walls are. Under the law, not a constant COR, each frame goes into a
+        dump for OVITO there.
     """
 
     def __init__(
@@ -96,6 +98,10 @@ class Simulation:
             self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction
         )
         self.place = scene.position.copy()
+        if thickness < math.inf:
+            dump = folder / f"{scene.NAME}.lammpstrj"
+            self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {dump} {COLUMNS}")
+            self.lmp.command("dump_modify frames sort id first yes")
 
     def _input(self, step: float) -> str:
         from contactlaw.engines.lammps import pair_coeff
@@ -137,11 +143,6 @@ class Simulation:
             bead = self.lmp.numpy.extract_atom("id")[:here] - 1
             self.lmp.numpy.extract_atom("radius")[:here] = scene.radius[bead]
             self.lmp.numpy.extract_atom("rmass")[:here] = scene.mass[bead]
-
-    def dump(self, path: Path) -> None:
-        """Write each frame to a file for OVITO."""
-        self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {path} {COLUMNS}")
-        self.lmp.command("dump_modify frames sort id first yes")
 
     def advance(self) -> None:
         """Simulate one frame; if any rank has received a signal, all ranks stop."""

@@ -36,14 +36,10 @@ class Dataset(NamedTuple):
 class Making(NamedTuple):
     """How a run is made."""
 
-    model: ImpactModel
-    """Model of the impacts; with a constant COR, the model to compare them with."""
+    model: ImpactModel  # of the impacts; with a constant COR, the model to compare them with
     command: str
-    """Command line of the run."""
-    time_step: float
-    """Time step of the engine [s]."""
-    constant_cor: float | None = None
-    """COR of every impact; None if the model gives it."""
+    time_step: float  # of the engine [s]
+    constant_cor: float | None = None  # of every impact; None if the model gives it
 
 
 class Simulation(Protocol):
@@ -62,20 +58,7 @@ class Simulation(Protocol):
 class Recorder:
     """Keeps the frames of a run in memory, and writes them with its contacts.
 
-    Parameters
-    ----------
-    path : Path
-        File to write.
-    making : Making
-        Model and command of the run.
-    attributes : mapping
-        Further attributes of the file: those of the scene.
-    write_scene : callable
-        Writes beads and walls into the open file.
-    trajectories : sequence of Dataset
-        Datasets with one entry per frame; the time of the frame is added.
-    frame_rate : float
-        Frames per second [1/s].
+    `attributes` are those of the scene, `write_scene` writes beads and walls into the open file.
     """
 
     def __init__(
@@ -95,13 +78,7 @@ class Recorder:
                              for one in self._trajectories})  # fmt: skip
 
     def save(self, record: Record) -> None:
-        """Write the file; where the disk has no room for all, the contacts without the frames.
-
-        Raises
-        ------
-        OSError
-            If there is no room for all; the contacts alone are in the file if they fit.
-        """
+        """Write the file; without room for all, an `OSError` after the contacts alone are tried."""
         making, sphere = self._making, self._making.model.pair.sphere
         on_wall = bodies_of(making.model)
         bodies = [on_wall, on_wall._replace(pair=Pair(sphere, sphere))]
@@ -128,45 +105,29 @@ class Recorder:
 
 
 def run(
-    simulation: Simulation, frames: int, name: str, recorder: Recorder | None
+    begin: Callable[[], Simulation], frames: int, name: str, recorder: Recorder | None
 ) -> BaseException | None:
-    """Simulate and record; `recorder` is None on all ranks but 0.
+    """Simulate and record a run, and return what stopped it or kept frames out, if anything did.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        The scene.
-    frames : int
-        Frames after the first one, which shows the start.
-    name : str
-        Title of the progress bar.
-    recorder : Recorder or None
-        Writes its file with all until the run has ended, in whichever way.
-
-    Returns
-    -------
-    BaseException or None
-        What has stopped the run or kept frames out of the file, if anything did.
+    The recorder, which is None on all ranks but 0, writes its file in whichever way the run ends.
     """
-
-    def look() -> None:
-        frame = simulation.look()
-        if recorder is not None and frame is not None:
-            recorder.add(frame)
-
+    simulation: Simulation | None = None
     stop: BaseException | None = None
     try:
-        look()
+        simulation = begin()
         # None: no progress bar unless stderr is a terminal
         hidden = None if recorder is not None else True
-        for _ in tqdm(range(frames), desc=name, unit="frame", disable=hidden):
-            simulation.advance()
-            look()
+        for n in tqdm(range(frames + 1), desc=name, unit="frame", disable=hidden):
+            if n > 0:
+                simulation.advance()
+            frame = simulation.look()
+            if recorder is not None and frame is not None:
+                recorder.add(frame)
     except (Exception, Interrupted) as error:
         stop = error
     with signals.held():
         try:
-            record = simulation.record()
+            record = None if simulation is None else simulation.record()
             if recorder is not None and record is not None:
                 recorder.save(record)
         except OSError as error:
@@ -176,31 +137,18 @@ def run(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recorded:
-    """The parts of a run that the record of any scene has.
+    """The parts of a run that the record of any scene has."""
 
-    Attributes
-    ----------
-    record : Record
-        All contacts by time. With a constant COR in an engine that resolves an impact in one step,
-        the columns after the COR are missing.
-    law : str
-        Contact law; of a run with a constant COR, the law to compare it with.
-    outside : str
-        Policy of the model for impacts outside its table.
-    constant_cor : float or None
-        COR of every impact; None if a law gives it.
-    time, position, velocity, status : ndarray
-        Frames: shapes (T,) [s], (T, N, 2 or 3) [m], (T, N, 2 or 3) [m/s] and (T, N).
-    """
-
+    # all contacts by time; with a constant COR in an engine that resolves an impact in one step,
+    # the columns after the COR are missing
     record: Record
-    law: str
-    outside: Literal["raise", "solve", "clamp"]
-    constant_cor: float | None
-    time: Floats
-    position: NDArray[np.float32]
-    velocity: NDArray[np.float32]
-    status: NDArray[np.uint8]
+    law: str  # contact law; of a run with a constant COR, the law to compare it with
+    outside: Literal["raise", "solve", "clamp"]  # policy for impacts outside the law's table
+    constant_cor: float | None  # of every impact; None if a law gives it
+    time: Floats  # of the frames, shape (T,) [s]
+    position: NDArray[np.float32]  # shape (T, N, 2 or 3) [m]
+    velocity: NDArray[np.float32]  # shape (T, N, 2 or 3) [m/s]
+    status: NDArray[np.uint8]  # shape (T, N)
 
     @property
     def collisions(self) -> NDArray[np.void]:
@@ -227,13 +175,7 @@ class Recorded:
 
 
 def read(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
-    """Read the fields of `Recorded`, and all datasets of the frames, by the names of the fields.
-
-    Raises
-    ------
-    ValueError
-        If the file is another one.
-    """
+    """Read the fields of `Recorded`, and all datasets of the frames, by the names of the fields."""
     found = tuple(file.attrs.get(one) for one in ("scene", "scene_schema"))
     if found != (name, schema):
         raise ValueError(

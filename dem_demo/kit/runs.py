@@ -24,24 +24,14 @@ S = TypeVar("S", bound=Bed)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded, Generic[S]):
-    """One recorded run of a bed.
-
-    Attributes
-    ----------
-    scene : Bed
-        Beads and walls of the run.
-    ranks : int
-        Number of MPI processes.
-    kinetic, rotational, potential, elapsed : ndarray, shape (T,)
-        Energies of all beads [J], and computing time [s].
-    """
+    """One recorded run of a bed."""
 
     scene: S
-    ranks: int
-    kinetic: Floats
+    ranks: int  # MPI processes
+    kinetic: Floats  # energies of all beads at each frame, shape (T,) [J]
     rotational: Floats
     potential: Floats
-    elapsed: Floats
+    elapsed: Floats  # computing time until each frame, shape (T,) [s]
 
     @property
     def dissipated(self) -> Floats:

@@ -18,12 +18,9 @@ FORESEEN = Interrupted, OSError, ValueError, RuntimeError  # their messages suff
 class Show(NamedTuple):
     """How a scene makes its files. A run is what `read` returns."""
 
-    name: str
-    """Name of the scene; its record is NAME.h5, its film NAME.gif."""
-    figures: ModuleType
-    """Package with the `names` and `draw` of a `Gallery`."""
-    read: Callable[[Path], Any]
-    """Reads the records in a folder."""
+    name: str  # of the scene; its record is NAME.h5, its film NAME.gif
+    figures: ModuleType  # package with the `names` and `draw` of a `Gallery`
+    read: Callable[[Path], Any]  # reads the records in a folder
     summary: Callable[[Any], str]
     page: Callable[[Any, Mapping[str, bytes], bytes], str]
     film: Callable[[Any], bytes]
@@ -34,20 +31,6 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
 
     Of a run that has not come to its end the records alone are kept, as ``*-partial.h5``: what they
     have until then is whole, and an earlier run in the folder stays as it is.
-
-    Parameters
-    ----------
-    out : Path
-        The folder for the results; its files of the same names are replaced.
-    show : Show
-        How the scene makes its files.
-    simulate : callable
-        Writes the records into a folder; returns the exception that stopped it, if any.
-
-    Returns
-    -------
-    int
-        Exit status of the command.
     """
     with _atomic.folder(out) as folder:
         stop = simulate(folder)

@@ -26,28 +26,18 @@ Marks = NDArray[np.bool_]
 class Tale(NamedTuple):
     """Texts, facts and figures of a scene."""
 
-    wall: str
-    """Name of what the beads hit, such as "deck"."""
+    wall: str  # name of what the beads hit, such as "deck"
+    # where the COR of the law holds, in words, and the mask of such impacts
     flat: tuple[str, Callable[[Run[Any]], Marks]]
-    """Where the COR of the law holds, in words, and the mask of such impacts."""
-    own: Callable[[Run[Any]], Facts]
-    """Names and values of facts that only this scene has."""
+    own: Callable[[Run[Any]], Facts]  # facts that only this scene has
+    # beads and walls in one line, and the motion of the walls in another
     title: Callable[[Run[Any]], tuple[str, str]]
-    """Beads and walls in one line, and the motion of the walls in another."""
     figures: ModuleType
-    page: Mapping[str, str]
-    """Texts of the page: heading, lede, alt (of the film), others (further files)."""
+    page: Mapping[str, str]  # texts of the page: heading, lede, alt (of the film), others (files)
 
 
 def summary(tale: Tale, runs: Runs[Any]) -> str:
-    """Write the summary.
-
-    Returns
-    -------
-    str
-        Title, one line per number with a column for each run, and limits of the model that were
-        exceeded under the law.
-    """
+    """Write the summary."""
     columns = [dict(facts(tale, run)) for run in runs.both]
     lines = [*title(tale, runs), ""]
     lines += [

@@ -75,7 +75,7 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
         cor = getattr(arguments, "constant_cor", None)
         making = Making(model, command, scene.time_step, cor)
         recorder = record.rain_recorder(folder / f"{record.NAME}.h5", scene, making)
-        return run(Rain(scene, ruling), scene.frames, "rain", recorder)
+        return run(lambda: Rain(scene, ruling), scene.frames, "rain", recorder)
 
     return session.deliver(arguments.out, show, simulate)
 

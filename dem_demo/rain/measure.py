@@ -31,18 +31,14 @@ def plate_shares(run: Run, plate: int) -> Shares | None:
 class Balance(NamedTuple):
     """Energy of all beads from their nozzles to the last frame that shows them [J]."""
 
-    given: float
-    """Kinetic energy at the nozzles, and work of gravity."""
-    moving: float
-    """Kinetic energy of translation at the end."""
-    spinning: float
-    """Kinetic energy of rotation at the end."""
+    given: float  # kinetic energy at the nozzles, and work of gravity
+    moving: float  # kinetic energy of translation at the end
+    spinning: float  # kinetic energy of rotation at the end
     wave: float
     plastic: float
     other: float
     friction: float
-    beads: float
-    """Lost where beads hit each other, if that is recorded."""
+    beads: float  # lost where beads hit each other
 
     @property
     def rest(self) -> float:

@@ -41,34 +41,6 @@ def rain(
 ) -> Scene:
     """Draw a rain of beads on a row of plates.
 
-    Parameters
-    ----------
-    beads : int, optional
-        Number of beads.
-    thicknesses : sequence of float, optional
-        Thickness of each plate [m]; ``inf`` is a half-space.
-    radius, speed : tuple of float, optional
-        Smallest and largest radius [m] and emission speed [m/s], drawn uniformly.
-    duration : float, optional
-        Simulated time [s]; beads are emitted during its first three quarters.
-    seed : int, optional
-        The same seed gives the same rain.
-    sphere, plate : Material or str, optional
-        Materials of beads and plates.
-    friction : float, optional
-        Coefficient of friction on the plates [-].
-    tilt : float, optional
-        Angle between nozzles and the vertical [degrees].
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    ValueError
-        If a value is out of its range, or the beads are so many that they would overlap.
-
     Examples
     --------
     >>> scene = rain(beads=10, seed=3)

@@ -36,19 +36,7 @@ _UNMARKED = 0.0, math.nan, math.nan, 0
 
 @functools.lru_cache(maxsize=1)  # shared by snapshot, film and page
 def pieces(run: Run) -> NDArray[np.void]:
-    """Cut the paths of beads into parabolas, and into pieces at rest.
-
-    Parameters
-    ----------
-    run : Run
-        The run, whose frames and impacts are used.
-
-    Returns
-    -------
-    structured ndarray
-        Pieces of dtype `PIECE` of the beads that are `drawn`, by bead and time. A piece ends at a
-        recorded impact, or between two frames where the engine does not record the impact.
-    """
+    """Cut the paths of beads into parabolas, and into pieces at rest."""
     found: list[tuple[float, ...]] = []
     hits = _hits(run)
     for bead in drawn(run).tolist():

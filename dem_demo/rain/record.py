@@ -61,18 +61,10 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded):
-    """One recorded rain; in the baseline every contact has the same COR.
-
-    Attributes
-    ----------
-    scene : Scene
-        Beads and plates of the run.
-    spin : ndarray or None
-        Spins (T, N) [rad/s], counterclockwise in the figures, if there is friction.
-    """
+    """One recorded rain; in the baseline every contact has the same COR."""
 
     scene: Scene
-    spin: NDArray[np.float32] | None = None
+    spin: NDArray[np.float32] | None = None  # shape (T, N) [rad/s], counterclockwise; of friction
 
     @cached_property
     def model(self) -> ImpactModel:

@@ -12,7 +12,7 @@ import contactlaw as cl
 from contactlaw.engines import pymunk as adapter
 from dem_demo.rain import nozzles
 from dem_demo.rain.baseline import ConstantRestitution
-from dem_demo.rain.engines.pymunk import Rain
+from dem_demo.rain.engine import Rain
 from dem_demo.rain.scene import Scene
 from validation.bench.row import Row
 
@@ -59,5 +59,5 @@ def _run(scene: Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
     rain = Rain(scene, model)
     start = time.perf_counter()
     for _ in range(scene.frames):
-        rain.advance(scene.steps_per_frame)
+        rain.advance()
     return time.perf_counter() - start
