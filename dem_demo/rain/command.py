@@ -15,7 +15,6 @@ from dem_demo.rain import defaults
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
-    from dem_demo.rain.baseline import ConstantRestitution
     from dem_demo.rain.scene import Scene
 
 
@@ -54,7 +53,7 @@ def add(commands: Any) -> None:
     add("--outside", choices=("raise", "solve", "clamp"), default="solve",
         help="impacts outside the law's table stop the rain, are integrated, or get the value at "
         "its border and a flag")  # fmt: skip
-    options.add_law(add, "the same COR in every contact: the baseline to compare with")
+    options.add_law(add)
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
     rain.set_defaults(start=_start)
 
@@ -66,43 +65,32 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
         from dem_demo.rain import figures, film, page, record, report
         from dem_demo.rain.engine import Rain
 
-    scene, ruling, model = _plan(arguments)
+    scene, model = _plan(arguments)
     show = session.Show(
         record.NAME, figures, record.read_folder, report.summary, page.page, film.gif
     )
 
     def simulate(folder: Path) -> BaseException | None:
-        cor = getattr(arguments, "constant_cor", None)
-        making = Making(model, command, scene.time_step, cor)
+        making = Making(model, command, scene.time_step)
         recorder = record.rain_recorder(folder / f"{record.NAME}.h5", scene, making)
-        return run(lambda: Rain(scene, ruling), scene.frames, "rain", recorder)
+        return run(lambda: Rain(scene, model), scene.frames, "rain", recorder)
 
     return session.deliver(arguments.out, show, simulate)
 
 
-def _plan(
-    arguments: argparse.Namespace,
-) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
-    """Scene, model or constant COR for the engine, and model; refuses bad arguments early."""
+def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel]:
+    """Scene and model; refuses bad arguments early."""
     from contactlaw import ImpactModel, Pair, laws
-    from dem_demo.rain.baseline import ConstantRestitution
     from dem_demo.rain.nozzles import rain
 
     with options.refusing(arguments):
-        if "constant_cor" in arguments and arguments.friction:
-            raise ValueError(
-                "friction: a constant COR says nothing about sliding; leave out --friction or "
-                "--constant-cor"
-            )
         tilt = getattr(arguments, "tilt", defaults.TILT if arguments.friction else 0.0)
         given = vars(arguments) | {"thicknesses": arguments.plates, "tilt": tilt}
         scene = rain(**options.of(rain, argparse.Namespace(**given)))
         pair = Pair(scene.sphere_material, scene.plate_material)
         law = getattr(arguments, "law", laws.DEFAULT)
         model = ImpactModel(pair, law, outside=arguments.outside)
-        if "constant_cor" in arguments:
-            return scene, ConstantRestitution(pair, arguments.constant_cor), model
-    return scene, _checked(scene, model), model
+    return scene, _checked(scene, model)
 
 
 def _checked(scene: Scene, model: ImpactModel) -> ImpactModel:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,8 +11,6 @@ from numpy.typing import NDArray
 from contactlaw.engines import pymunk as adapter
 from dem_demo.kit import signals
 from dem_demo.kit.beads import FLYING, GONE, GRAVITY, WAITING, Floats
-from dem_demo.rain.baseline import ConstantRestitution
-from dem_demo.rain.record import sized
 from dem_demo.rain.scene import Scene
 
 if TYPE_CHECKING:
@@ -40,11 +37,11 @@ class Rain:
     ----------
     scene : Scene
         Beads and plates.
-    model : ImpactModel or ConstantRestitution
+    model : ImpactModel
         Where each collision's COR comes from.
     """
 
-    def __init__(self, scene: Scene, model: ImpactModel | ConstantRestitution) -> None:
+    def __init__(self, scene: Scene, model: ImpactModel) -> None:
         self.scene = scene
         self.space = pymunk.Space()
         self.space.gravity = (0.0, -GRAVITY)
@@ -53,15 +50,12 @@ class Rain:
         cell, cells = 4.0 * float(scene.beads.radius.max()), 10 * scene.beads.radius.size
         self.space.use_spatial_hash(cell, cells)
         self.impacts = adapter.attach(self.space, model)
-        constant = isinstance(model, ConstantRestitution)  # it knows no edges
         for plate in scene.plates:
             ends = (plate.x0, plate.y), (plate.x1, plate.y)
             segment = pymunk.Segment(self.space.static_body, *ends, radius=0.0)
             self.space.add(segment)
             friction = scene.friction or None
-            self.impacts.add_plate(
-                segment, plate.thickness, friction=friction, edge=None if constant else "free"
-            )
+            self.impacts.add_plate(segment, plate.thickness, friction=friction, edge="free")
         self.mass = scene.beads.mass(scene.sphere_material.density)
         # First step of each bead: the one that begins after its emission.
         self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()
@@ -113,5 +107,4 @@ class Rain:
 
     def record(self) -> Record:
         """All impacts so far."""
-        found = self.impacts.record()
-        return replace(found, rows=sized(self.scene, found.rows))
+        return self.impacts.record()

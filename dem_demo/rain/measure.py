@@ -21,8 +21,8 @@ def bead_on_bead(run: Run) -> NDArray[np.void]:
 
 
 def plate_shares(run: Run, plate: int) -> Shares | None:
-    """Shares of the energy on a plate by the model, also for the impacts of the baseline."""
-    rows = run.modelled[run.modelled["plate"] == plate]
+    """Shares of the energy of the impacts on a plate; None without any."""
+    rows = run.on_plates[run.on_plates["plate"] == plate]
     if not rows.size:
         return None
     return shares(rows, _masses(run)[rows["bead"]], run.scene.friction > 0.0)
@@ -75,34 +75,26 @@ def _masses(run: Run) -> Floats:
     return run.scene.beads.mass(run.scene.sphere_material.density)
 
 
-def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
-    """Two CORs for each impact in `Run.modelled`: the constant one, and the model's.
-
-    The constant is that of the baseline; without one it is the mean over all impacts of the run,
-    which is not known beforehand.
-    """
-    rows = run.modelled
-    own = rows["restitution"].astype(float)
-    if run.constant_cor is None:
-        return np.full(own.size, own.mean() if own.size else math.nan), own
-    return own, np.asarray(run.by_model.restitution)
+def one_for_all(run: Run) -> float:
+    """Mean COR over all impacts on plates, which is not known beforehand; NaN without any."""
+    rows = run.on_plates
+    return float(rows["restitution"].mean()) if rows.size else math.nan
 
 
 def restitution_range(run: Run) -> tuple[float, float]:
     """Range of the colour scale: from the lowest COR on a plate, at most 0.99, to 1."""
-    on = run.impacts["plate"] >= 0
-    return float(run.impacts["restitution"][on].min(initial=0.99)), 1.0
+    return float(run.on_plates["restitution"].min(initial=0.99)), 1.0
 
 
 def outside(run: Run) -> NDArray[np.bool_]:
-    """Mask of the impacts in `Run.modelled` that exceed a limit of the model."""
-    found: NDArray[np.bool_] = run.modelled["flags"] != 0
+    """Mask of the impacts in `Run.on_plates` that exceed a limit of the model."""
+    found: NDArray[np.bool_] = run.on_plates["flags"] != 0
     return found
 
 
 def near_edge(run: Run) -> NDArray[np.bool_]:
-    """Mask of `Run.modelled`: the bending wave comes back from an edge during the contact."""
-    rows, near = run.modelled, np.zeros(run.modelled.size, dtype=bool)
+    """Mask of `Run.on_plates`: the bending wave comes back from an edge during the contact."""
+    rows, near = run.on_plates, np.zeros(run.on_plates.size, dtype=bool)
     for n, plate in enumerate(run.scene.plates):
         here = rows["plate"] == n
         if plate.thickness == math.inf or not here.any():

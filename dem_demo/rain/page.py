@@ -22,7 +22,7 @@ from contactlaw.reporting import summary as tables
 from contactlaw.reporting.limits import exceeded, label
 from dem_demo.rain import figures, paths
 from dem_demo.rain.figures import _rain
-from dem_demo.rain.measure import constant_beside_model, near_edge, restitution_range
+from dem_demo.rain.measure import near_edge, one_for_all, restitution_range
 from dem_demo.rain.record import Run
 from dem_demo.rain.report import title
 
@@ -37,7 +37,7 @@ _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v",
 
 def page(run: Run, pictures: Mapping[str, bytes], film: bytes) -> str:
     """Write the page of a run, as HTML; the film is for slides, and not on it."""
-    known = None if run.baseline else of_any_run.Run(run.record)
+    known = of_any_run.Run(run.record)
     return common.template(__package__, "page.html").render(
         title="Beads rain on plates: what contactlaw gives a particle simulation",
         heading="Beads rain on plates",
@@ -45,13 +45,13 @@ def page(run: Run, pictures: Mapping[str, bytes], film: bytes) -> str:
         facts=title(run),
         data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         sample=_sample(run),
-        other=_other(run),
+        cor=f"{one_for_all(run):.2f}" if run.on_plates.size else "",
         turning=f"{_rain.TURNING:g}" if run.scene.friction else "",
-        impacts=tables.impacts(known) if known else (),
+        impacts=tables.impacts(known),
         constant=tables.CONSTANT,
-        energies=tables.energies(known) if known else (),
+        energies=tables.energies(known),
         energy=tables.ENERGY,
-        limits=exceeded(run.modelled["flags"]),
+        limits=exceeded(run.on_plates["flags"]),
         figures=common.shown(figures.module, pictures),
         command=run.record.made["command"],
         law=run.law,
@@ -99,7 +99,7 @@ def _data(run: Run) -> dict[str, object]:
 
 def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     """Describe the hardest contact on a plate, and how its bending wave spreads."""
-    rows = run.modelled
+    rows = run.on_plates
     # The page says that no wave comes back during the contact, so it is one far from edges.
     here = np.flatnonzero((rows["plate"] == plate) & ~near_edge(run))
     if not here.size:
@@ -108,7 +108,6 @@ def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     row, thickness = rows[n], run.scene.plates[plate].thickness
     radius, speed = float(run.scene.beads.radius[row["bead"]]), float(row["approach_speed"])
     contact = run.model.force_history(speed, radius, thickness, samples=_SAMPLES)
-    constant, model = (float(cor[n]) for cor in constant_beside_model(run))
     material = run.scene.plate_material
     # Kirchhoff's plate: waves spread by sqrt(D/(rho H)), D/(rho H) = E H^2/(12 rho (1 - nu^2)).
     stiffness = material.youngs_modulus / (12.0 * material.density)
@@ -123,18 +122,10 @@ def _hardest(run: Run, plate: int) -> dict[str, object] | None:
         "compression": _rounded(contact.compression),
         "displacement": _rounded(contact.plate_displacement),
         "spread": spread,
-        "model": model,
-        "constant": constant,
+        "model": float(row["restitution"]),
+        "constant": one_for_all(run),
     }
 
 
 def _rounded(values: NDArray[np.float64]) -> list[float]:
     return [float(f"{value:.4g}") for value in values]
-
-
-def _other(run: Run) -> str:
-    """Say which COR the rings of the animation follow."""
-    if run.baseline:
-        return "where contactlaw would send them"
-    constant = constant_beside_model(run)[0]
-    return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""

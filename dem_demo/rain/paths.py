@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dem_demo.kit.beads import FLYING, GRAVITY, Floats
-from dem_demo.rain.measure import constant_beside_model, outside
+from dem_demo.rain.measure import one_for_all, outside
 from dem_demo.rain.record import Run
 
 # One piece: from `start` to `end` [s] at x + u t, y + v t - fall t^2/2 with t since its start.
@@ -142,9 +142,8 @@ def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
 
 def _mark(made: NDArray[np.void], run: Run) -> None:
     """Write the last impact on a plate, and the rebound with the other COR, into the pieces."""
-    rows = run.modelled
-    constant, model = constant_beside_model(run)
-    other = model if run.baseline else constant
+    rows = run.on_plates
+    constant = one_for_all(run)
     far = outside(run)
     order = np.lexsort((rows["time"], rows["bead"]))
     key = rows["bead"][order], rows["time"][order]
@@ -157,4 +156,4 @@ def _mark(made: NDArray[np.void], run: Run) -> None:
         piece["restitution"] = rows["restitution"][hit]
         piece["outside"] = far[hit]
         if rows["time"][hit] == piece["start"]:
-            piece["other_v"] = other[hit] * rows["approach_speed"][hit]
+            piece["other_v"] = constant * rows["approach_speed"][hit]

@@ -10,8 +10,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, Pair, Rebound
-from contactlaw.engines.record import IMPACT, fill
+from contactlaw import ImpactModel, Pair
 from contactlaw.record.file import write
 from dem_demo.kit import recorder
 from dem_demo.kit.beads import Floats
@@ -61,88 +60,34 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded):
-    """One recorded rain; in the baseline every contact has the same COR."""
+    """One recorded rain."""
 
     scene: Scene
     spin: NDArray[np.float32] | None = None  # shape (T, N) [rad/s], counterclockwise; of friction
 
     @cached_property
     def model(self) -> ImpactModel:
-        """The impact model; for the baseline, the model to compare it with.
+        """The impact model.
 
-        Curves and the baseline's impacts may lie outside the table where no recorded impact does:
-        there the model takes the value at the border, and flags it.
+        Its curves may lie outside the table where no recorded impact does: there it takes the value
+        at the border, and flags it.
         """
         outside = "clamp" if self.outside == "raise" else self.outside
         return ImpactModel(self.pair, self.law, outside=outside)
 
     @cached_property
-    def modelled(self) -> NDArray[np.void]:
-        """Impacts on plates, with every column that the model can fill.
-
-        They are as recorded if the record has flags. If it has none, as in the baseline, the model
-        fills the missing columns for the same impacts; the COR stays that of the run.
-        """
-        recorded = self.impacts[self.impacts["plate"] >= 0]
-        names = recorded.dtype.names or ()
-        if "flags" in names:
-            return recorded
-        rows = np.zeros(recorded.size, IMPACT)
-        for name in names:
-            rows[name] = recorded[name]
-        fill(rows, self.by_model, self.energy(rows))
+    def on_plates(self) -> NDArray[np.void]:
+        """Impacts on plates."""
+        rows: NDArray[np.void] = self.impacts[self.impacts["plate"] >= 0]
         return rows
-
-    @cached_property
-    def by_model(self) -> Rebound:
-        """The model's results for all impacts on plates."""
-        rows = self.impacts[self.impacts["plate"] >= 0]
-        return self.model.lookup(
-            rows["approach_speed"], self.scene.beads.radius[rows["bead"]], self.thickness,
-            edge="free", edge_distance=self.edge_distance,
-        )  # fmt: skip
-
-    @cached_property
-    def thickness(self) -> Floats:
-        """Thickness [m] of the plate of each impact on plates."""
-        plates = self.impacts["plate"][self.impacts["plate"] >= 0]
-        found: Floats = np.array([plate.thickness for plate in self.scene.plates])[plates]
-        return found
 
     @cached_property
     def edge_distance(self) -> Floats:
         """Distance [m] of all impacts on plates from the nearest edge of the plate."""
-        rows = self.impacts[self.impacts["plate"] >= 0]
+        rows = self.on_plates
         x0, x1 = np.array([(plate.x0, plate.x1) for plate in self.scene.plates])[rows["plate"]].T
         distance: Floats = np.minimum(rows["x"] - x0, x1 - rows["x"])
         return distance.clip(0.0)  # rounding may put a contact with the rim beside the plate
-
-    @property
-    def baseline(self) -> bool:
-        """Whether every contact had the same COR."""
-        return self.constant_cor is not None
-
-    def energy(self, rows: NDArray[np.void]) -> Floats:
-        """Kinetic energy of the normal motion before impacts on plates [J]."""
-        mass = self.scene.beads.mass(self.scene.sphere_material.density)[rows["bead"]]
-        energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
-        return energy
-
-
-def sized(scene: Scene, rows: NDArray[np.void]) -> NDArray[np.void]:
-    """Give impacts sizes of beads and plates, which an engine with a constant COR leaves out."""
-    names = rows.dtype.names or ()
-    if "radius" in names:
-        return rows
-    more = ("radius", "mass", "thickness")
-    found = np.empty(rows.size, [(name, IMPACT[name]) for name in (*names, *more)])
-    for name in names:
-        found[name] = rows[name]
-    beads, plates = scene.beads, np.array([plate.thickness for plate in scene.plates])
-    found["radius"] = beads.radius[rows["bead"]]
-    found["mass"] = beads.mass(scene.sphere_material.density)[rows["bead"]]
-    found["thickness"] = np.where(rows["plate"] < 0, 0.0, plates[rows["plate"]])
-    return found
 
 
 def read(path: Path) -> Run:

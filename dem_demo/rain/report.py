@@ -4,34 +4,21 @@ from __future__ import annotations
 
 from contactlaw.reporting import run as of_any_run
 from contactlaw.reporting import summary as tables
-from contactlaw.reporting.limits import exceeded, limits_lines
 from dem_demo.rain.measure import balance, bead_on_bead
 from dem_demo.rain.record import Run
 
 
 def summary(run: Run) -> str:
-    """Write the summary of a run: title, what happened on each plate, and beads on beads.
-
-    With a constant COR it says nothing of where the energy went, and the impacts that exceed a
-    limit of the model are those for which the model would be an estimate.
-    """
+    """Write the summary of a run: title, beads on beads, and what happened on each plate."""
     lines = [*title(run), "", _bead_line(run)]
     lines += [_balance_line(run)] if run.scene.friction else []
-    if run.baseline:
-        rows = run.impacts[run.impacts["plate"] >= 0]
-        lines += [f"{rows.size} impacts on plates", *limits_lines(exceeded(run.modelled["flags"]))]
-        return "\n".join(lines)
     return "\n".join([*lines, "", tables.text(of_any_run.Run(run.record))])
 
 
 def title(run: Run) -> tuple[str, str]:
     """Title in two lines: beads and plates; duration, engine, law and seed."""
     scene, radius = run.scene, run.scene.beads.radius * 1e3
-    law = f"law {run.law}"
-    if run.baseline:
-        law = f"COR {run.constant_cor:g} everywhere, limits by {law}"
-    elif scene.friction:
-        law = f"{law}, friction {scene.friction:g}"
+    law = f"law {run.law}" + (f", friction {scene.friction:g}" if scene.friction else "")
     return (
         f"{radius.size} beads of {scene.sphere_material.name}, radius {radius.min():.2f} to "
         f"{radius.max():.2f} mm, on {scene.plate_material.name}",

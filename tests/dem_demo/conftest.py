@@ -38,7 +38,6 @@ def made(name, *options, rendered=False):
 
 
 rain = made("rain", *RAIN, rendered=True)
-baseline = made("baseline", *RAIN, "--constant-cor", "0.9")
 oblique = made("oblique", *RAIN, "--friction", "0.2")  # from tilted nozzles
 drum = made("drum", *DRUM)
 sieve = made("sieve", *SIEVE, rendered=True)

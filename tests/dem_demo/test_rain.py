@@ -76,7 +76,10 @@ def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures):
     rows, radius = run.collisions, run.scene.beads.radius
     on = rows[rows["plate"] >= 0]
     thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
-    assert on["flags"].tolist() == run.by_model.flags.tolist()
+    found = run.model.lookup(
+        on["approach_speed"], radius[on["bead"]], thickness, edge_distance=run.edge_distance
+    )
+    assert on["flags"].tolist() == found.flags.tolist()
     thin = (on["flags"] & cl.Validity.THIN_PLATE) != 0
     assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
     assert 0 < thin.sum() < thin.size
@@ -109,7 +112,7 @@ def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch,
     thin = ["rain", "--beads", "120", "--plates", "0.5e-3,0.6e-3,0.7e-3,inf", "--duration", "0.3"]
     assert cli.main([*thin, "--law", "myc", "--out", str(tmp_path)]) == 0
     run = read(tmp_path / "rain.h5")
-    rows, plates = run.modelled, run.scene.plates
+    rows, plates = run.on_plates, run.scene.plates
     thickness = np.array([plate.thickness for plate in plates])[rows["plate"]]
     x = np.array([(plate.x0, plate.x1) for plate in plates])[rows["plate"]] - rows["x"][:, None]
     distance = abs(x).min(axis=1)
@@ -178,51 +181,13 @@ def test_the_same_seed_gives_the_same_rain(run, tmp_path, nothing_drawn):
         assert (again.tobytes() == run.collisions.tobytes()) is same
 
 
-def test_baseline(baseline):
-    run = read(baseline / "rain.h5")
-    assert (run.collisions["restitution"] == 0.9).all()
-    assert not {"wave_energy", "plastic_energy"} & set(run.collisions.dtype.names)
-    assert run.constant_cor == 0.9
-    assert "COR 0.9 everywhere" in (baseline / "summary.txt").read_text()
-    assert names(baseline) == FILES
-
-
-@pytest.mark.parametrize(("which", "times"), [("rain", 0), ("baseline", 1)])
-def test_no_impact_is_looked_up_a_second_time(request, which, times, monkeypatch):
-    """Only the baseline needs a lookup of its impacts; other records have the results."""
-    run = read(request.getfixturevalue(which) / "rain.h5")
-    asked = []
-
-    def count(model, speed, radius, thickness, real=cl.ImpactModel.lookup, **edges):
-        asked.extend(np.ravel(speed).tolist())
-        return real(model, speed, radius, thickness, **edges)
-
-    monkeypatch.setattr(cl.ImpactModel, "lookup", count)
+def test_no_impact_is_looked_up_a_second_time(run, monkeypatch):
+    """The record has the results."""
+    monkeypatch.setattr(cl.ImpactModel, "lookup", None)
     report.summary(run)
     for name in figures.names():
         with style.applied():
             figures.module(name).draw(run)
-    on = run.collisions[run.collisions["plate"] >= 0]
-    assert sorted(asked) == sorted(on["approach_speed"].tolist() * times)
-
-
-def test_baseline_is_compared_with_the_model_on_the_same_impacts(baseline):
-    run = read(baseline / "rain.h5")
-    rows, radius = run.collisions[run.collisions["plate"] >= 0], run.scene.beads.radius
-    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
-    rebound = run.model.lookup(
-        rows["approach_speed"], radius[rows["bead"]], thickness, edge_distance=run.edge_distance
-    )
-    assert (run.modelled["peak_force"] == rebound.peak_force).all()
-    assert (run.modelled["flags"] == rebound.flags).all()
-    for n in range(len(run.scene.plates)):
-        here = rows["plate"] == n
-        energy = run.energy(rows)[here]
-        lost = [
-            (energy * share[here]).sum() / energy.sum()
-            for share in (rebound.wave_fraction, rebound.plastic_fraction, rebound.other_fraction)
-        ]
-        assert plate_shares(run, n) == pytest.approx((1 - sum(lost), *lost, 0.0))
 
 
 def test_friction_spins_beads_and_takes_energy(oblique):
@@ -292,8 +257,8 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
 
 @pytest.mark.parametrize(
     "more",
-    [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
-    ids=["model", "baseline", "oblique"],
+    [[], ["--friction", "1"]],
+    ids=["model", "oblique"],
 )
 def test_a_rain_that_never_lands(more, tmp_path, empty_pictures, capfd):
     """Its page is shown in test_page.py. Without a terminal it is quiet."""
@@ -305,7 +270,7 @@ def test_a_rain_that_never_lands(more, tmp_path, empty_pictures, capfd):
     assert "Written to" in said and errors == ""
 
 
-@pytest.mark.parametrize("which", ["rain", "oblique", "baseline"])
+@pytest.mark.parametrize("which", ["rain", "oblique"])
 def test_no_label_runs_into_the_title(request, which):
     run = read(request.getfixturevalue(which) / "rain.h5")
     for name in figures.names():
@@ -351,10 +316,7 @@ def test_figures_are_pictures(rain, name):
         (["--duration", "-1"], "duration"),
         (["--friction", "-0.1"], "--friction: must be finite and not negative, got -0.1"),
         (["--friction", "nan"], "--friction: must be finite and not negative, got nan"),
-        (["--friction", "0.2", "--constant-cor", "0.9"], "leave out --friction or --constant-cor"),
         (["--tilt", "80"], "--tilt: must lie between 0 and 75 degrees, got 80.0"),
-        (["--constant-cor", "1.5"], "--constant-cor: must lie between 0 and 1, got 1.5"),
-        (["--constant-cor", "nan"], "--constant-cor: must lie between 0 and 1, got nan"),
     ],
     ids=" ".join,
 )

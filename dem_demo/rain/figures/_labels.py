@@ -16,8 +16,7 @@ from dem_demo.rain.record import Run
 def source(run: Run) -> str:
     """Subtitle: materials, engine and law."""
     scene = run.scene
-    law = f"COR {run.constant_cor:g} everywhere" if run.baseline else f"law {run.law}"
-    law += f", friction {scene.friction:g}" if scene.friction else ""
+    law = f"law {run.law}" + (f", friction {scene.friction:g}" if scene.friction else "")
     return f"{scene.sphere_material.name} on {scene.plate_material.name}, pymunk, {law}"
 
 
