@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
@@ -279,7 +280,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         True
         """
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
-            raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
+            raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
         impacts = self._bodies.given(
             speed, radius, thickness, edge, edge_distance, hole_radius, mass
         )

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import (
     OutsideTableError,
@@ -57,7 +58,7 @@ class Border:
 
     def __init__(self, outside: Outside) -> None:
         if outside not in ("raise", "solve", "clamp"):
-            raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
+            raise ArgumentError("outside", outside, "must be 'raise', 'solve' or 'clamp'")
         self.outside = outside
         self.clamped = 0
         self.lock = threading.Lock()
@@ -317,11 +318,13 @@ def table_for(law: Law, table: TableArgument) -> Table:
             stacklevel=_stack_level(),
         )
     if not table.law.follows(served):
-        raise ValueError(
-            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r} "
-            f"(data {table.law.key} and {served.key}; laws of one name differ in their rates): "
-            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
-            "--plate if the law takes numbers from them"
+        raise ArgumentError(
+            "table",
+            None,
+            f"it belongs to law {table.law.name!r}, the model needs one of {served.name!r} (data "
+            f"{table.law.key} and {served.key}; laws of one name differ in their rates): leave it "
+            f"out, or contactlaw table build --law {served.family}, with --sphere and --plate if "
+            "the law takes numbers from them",
         )
     return table
 

@@ -107,10 +107,9 @@ def doubts(
 def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> UnidentifiedError:
     """Add to a refusal which values are attainable, or which mistake would explain it."""
     outside = _outside(predictor, at)
-    message = f"unknown: {outside}" if outside else refused.message
     others = _readings(predictor, at, search.guessed(predictor.values))
     better = (f"{words[0].upper()}{words[1:]}" for words in _better(predictor, at, others))
-    sentences = [message, *_above_one(predictor), *better]
+    sentences = [outside or refused.reason, *_above_one(predictor), *better]
     message = " ".join(one if one.endswith("?") else f"{one}." for one in sentences).rstrip(".")
     return UnidentifiedError(message, refused.unknown, refused.known)
 
@@ -119,8 +118,9 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
         rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
         if rows.size:
-            which = f"{name} of rebound{'s' * (rows.size > 1)} {listed(rows)}"
-            yield f"{which} is above 1: no impact gains energy, a mistake?"
+            which = f"rebounds {listed(rows)}"
+            which = predictor.data.rebound(rows[0]) if rows.size == 1 else which
+            yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
 
 
 def _chance(thirds: list[NDArray[np.intp]], off: Array, found: bool) -> float:
@@ -173,10 +173,8 @@ def _outside(predictor: Predictor, at: Array) -> str:
     unknown = " and ".join(one.name for one in predictor.parameters if one.is_unknown)
     ends = f"from {least:.3g} to {most:.3g} {unit}".rstrip()
     ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
-    return (
-        f"no {unknown} gives the {name} {f'{value:.4g} {unit}'.rstrip()} of rebound {row}, at "
-        f"{rounded(speed, 3)} m/s: attainable is {ends}"
-    )
+    which = f"{name} {f'{value:.4g} {unit}'.rstrip()} of {predictor.data.rebound(row)}"
+    return f"no {unknown} gives the {which}, at {rounded(speed, 3)} m/s: attainable is {ends}"
 
 
 def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:

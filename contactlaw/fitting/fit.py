@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.doubts import doubts, explained
@@ -130,9 +131,8 @@ class Fit:
             inputs |= {"sliding_speed": sliding_speed, "friction": np.mean(friction)}
         kinds = [name for name in self.residuals if name in NORMAL or "friction" in inputs]
         if not kinds:
-            raise ValueError(
-                "sliding_speed: has to be given, since only oblique kinds were measured"
-            )
+            reason = "has to be given, since only oblique kinds were measured"
+            raise ArgumentError("sliding_speed", None, reason)
         *flat, _ = broadcast(**inputs)
         data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
         varied = [
@@ -247,10 +247,9 @@ def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquar
     values = predictor.values
     free = sum(one.prior is None for one in predictor.parameters)
     if values.value.size < free:
-        raise ValueError(
-            f"unknown: {values.value.size} measured values cannot determine {free} unknowns: leave "
-            "one out, give priors, or measure more"
-        )
+        many = f"{values.value.size} measured values cannot determine {free} unknowns"
+        remedy = "leave one out, give priors, or measure more"
+        raise ArgumentError("unknown", None, f"{many}: {remedy}")
     error, freedom, rounds = search.guessed(values), math.inf, 0
     if np.isnan(values.error).any():
         freedom, rounds = 0.0, _ROUNDS if values.value.size > free else 0
@@ -446,7 +445,7 @@ def _nonlinearity_factors(
             if square < _LEAST_RISE:
                 end = float(at[n] * math.exp(-sign * shift[n]))
                 raise identify.UnidentifiedError(
-                    f"unknown: the data bound {one.name} on one side only: {words} "
+                    f"the data bound {one.name} on one side only: {words} "
                     f"{f'{end:.3g} {one.unknown.unit}'.rstrip()}. Measure another quantity, or "
                     f"other {'angles' if one.name == 'friction' else 'speeds'}",
                     (one.name,),
@@ -475,7 +474,7 @@ def _check_strengths(
             if _squares(predictor, there, doubt) < least + _EXCLUDED:
                 why = _least_value(predictor, strong, n, error)
                 raise identify.UnidentifiedError(
-                    f"unknown: the data do not determine {one.name}: {why}", (one.name,)
+                    f"the data do not determine {one.name}: {why}", (one.name,)
                 )
 
 

@@ -142,6 +142,6 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
         name = list(KINDS)[values.kind[n]]
         sign = "+" if off[n] > 0.0 else ""
         yield (
-            f"{name} of rebound {values.row[n]} is {sign}{percent(off[n])} off the "
+            f"{name} of {predictor.data.rebound(values.row[n])} is {sign}{percent(off[n])} off the "
             f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from contactlaw import Pair
+from contactlaw import ArgumentError, Pair
 
 
 class ConstantRestitution:
@@ -34,7 +34,7 @@ class ConstantRestitution:
 
     def __init__(self, pair: Pair, restitution: float) -> None:
         if not 0.0 <= restitution <= 1.0:
-            raise ValueError(f"constant_cor: must lie between 0 and 1, got {restitution!r}")
+            raise ArgumentError("constant_cor", restitution, "must lie between 0 and 1")
         self.pair = pair
         self.restitution = restitution
 

@@ -9,6 +9,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contactlaw import ArgumentError
 from dem_demo.kit import options
 from dem_demo.kit.options import Refused
 from dem_demo.rain import defaults, engines
@@ -117,11 +118,12 @@ def _plan(
 
     with options.refusing(arguments):
         if engine.NO_CONSTANT_COR is not None and "constant_cor" in arguments:
-            raise ValueError(f"constant_cor: {engine.NO_CONSTANT_COR}; leave it out")
+            raise ArgumentError("constant_cor", None, f"{engine.NO_CONSTANT_COR}; leave it out")
         if "constant_cor" in arguments and arguments.friction:
-            raise ValueError(
-                "friction: a constant COR says nothing about sliding; leave out --friction or "
-                "--constant-cor"
+            raise ArgumentError(
+                "friction",
+                None,
+                "a constant COR says nothing about sliding; leave out --friction or --constant-cor",
             )
         scene = rain(
             beads=arguments.beads,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contactlaw import ArgumentError
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.rain import defaults
 
@@ -47,13 +48,10 @@ class Plate:
     def __post_init__(self) -> None:
         """Refuse impossible numbers."""
         if not self.thickness > 0.0:
-            raise ValueError(
-                f"plates: thickness must be positive [m], or inf, got {self.thickness!r}"
-            )
+            raise ArgumentError("plates", self.thickness, "thickness must be positive [m], or inf")
         if not (math.isfinite(self.y) and -math.inf < self.x0 < self.x1 < math.inf):
-            raise ValueError(
-                f"plate: needs finite x0 < x1 and y [m], got {self.x0!r}, {self.x1!r}, {self.y!r}"
-            )
+            reason = f"needs finite x0 < x1 and y [m], got {self.x0!r}, {self.x1!r}, {self.y!r}"
+            raise ArgumentError("plate", None, reason)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,14 +78,14 @@ class Beads:
         n = self.radius.size
         shapes = [a.shape for a in (self.radius, self.emission_time, self.position, self.velocity)]
         if n == 0 or shapes != [(n,), (n,), (n, 2), (n, 2)]:
-            raise ValueError(
-                f"beads: need arrays of shape (N,), (N,), (N, 2), (N, 2), got {shapes}"
-            )
+            reason = f"need arrays of shape (N,), (N,), (N, 2), (N, 2), got {shapes}"
+            raise ArgumentError("beads", None, reason)
         everything = np.column_stack((self.emission_time, self.position, self.velocity))
         if not (np.isfinite(everything).all() and (np.diff(self.emission_time) >= 0.0).all()):
-            raise ValueError("beads: values must be finite, and emission times ascending")
+            reason = "values must be finite, and emission times ascending"
+            raise ArgumentError("beads", None, reason)
         if not ((self.radius > 0.0) & (self.radius < math.inf)).all():
-            raise ValueError(f"radius: must be positive and finite [m], got {self.radius.min()!r}")
+            raise ArgumentError("radius", self.radius.min(), "must be positive and finite [m]")
 
     def mass(self, density: float) -> Floats:
         """Masses of the beads as spheres [kg], from their density [kg/m3]."""
@@ -133,14 +131,12 @@ class Scene:
     def __post_init__(self) -> None:
         """Refuse a scene without plates or time."""
         if not self.plates:
-            raise ValueError("plates: at least one thickness is needed [m]")
+            raise ArgumentError("plates", None, "at least one thickness is needed [m]")
         if not 1.0 / self.frame_rate <= self.duration < math.inf:
-            raise ValueError(
-                f"duration: must be finite and at least one frame, {1.0 / self.frame_rate:g} s, "
-                f"got {self.duration!r}"
-            )
+            reason = f"must be finite and at least one frame, {1.0 / self.frame_rate:g} s"
+            raise ArgumentError("duration", self.duration, reason)
         if not 0.0 <= self.friction < math.inf:
-            raise ValueError(f"friction: must be finite and not negative, got {self.friction!r}")
+            raise ArgumentError("friction", self.friction, "must be finite and not negative")
 
     @property
     def frames(self) -> int:

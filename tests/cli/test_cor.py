@@ -223,7 +223,7 @@ def test_without_errors_of_materials_it_says_so(capsys):
     ("error", "said"),
     [
         ("--speed-error -1%", "--speed-error: got -0.01; must lie between 0 and 1"),
-        ("--plate-error yeld=1%", "unknown 'yeld'"),
+        ("--plate-error yeld=1%", "--plate-error: uncertainty: got 'yeld'; unknown"),
         ("--plate-error density", "as yield_strength=15%"),
     ],
 )

@@ -98,7 +98,7 @@ def test_a_map_of_one_value(drawn, tmp_path):
          "--speed, --thickness, --radius: got 2, 9, 9 values, too many for one picture: give one"),
         ("--radius 1mm:2mm:7 --thickness 1mm,2mm --speed 1,2", "got 2, 2, 7 values, too many"),
         ("--radius 1mm --thickness 1mm:9mm:9,inf --speed 1:2:9",
-         "--thickness: got inf, which no axis of a map reaches: leave it out"),
+         "--thickness: got inf; no axis of a map reaches it: leave it out"),
     ],
 )  # fmt: skip
 def test_what_no_picture_shows_is_refused(asked, said, tmp_path, capsys):

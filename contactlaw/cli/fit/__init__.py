@@ -13,7 +13,7 @@ from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.impacts import in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
-from contactlaw.fitting import UnidentifiedError, fit
+from contactlaw.fitting import fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.arguments import unlikely
 
@@ -105,10 +105,7 @@ def _run(arguments: argparse.Namespace) -> None:
             asked[f"{name}_m"] = size
     priors = dict(arguments.prior)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
-        try:
-            found = fit(pair, data, arguments.unknown, arguments.law, priors)
-        except UnidentifiedError as error:
-            raise ValueError(measured.with_lines(str(error), read.lines)) from None
+        found = fit(pair, data, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
             figure.save_fit(found, title, arguments.plot)
@@ -116,5 +113,5 @@ def _run(arguments: argparse.Namespace) -> None:
             known = {name: None if size == math.inf else size for name, size in asked.items()}
             print(json.dumps(known | printed.record(found), indent=2))
         else:
-            print(in_words(asked), *printed.text(found, read.lines), "", sep="\n")
-            print(*printed.rows(found, read.lines), sep="\n")
+            print(in_words(asked), *printed.text(found), "", sep="\n")
+            print(*printed.rows(found), sep="\n")

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
 from contactlaw._jit import switched_off
 from contactlaw.answers.solver import Solver
@@ -22,7 +23,6 @@ from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.table import file
@@ -112,11 +112,8 @@ def tabulate(
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:
-        raise ArgumentError(
-            "speed, radius, thickness",
-            f"every combination of them is {count} impacts, and "
-            f"{_MOST} is the most: give fewer values",
-        )
+        reason = f"every combination is {count} impacts, and {_MOST} is the most: give fewer values"
+        raise ArgumentError("speed, radius, thickness", None, reason)
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.naming_impact(v, r, h, mass=mass):
         if not solve and _integrates(model):
