@@ -13,16 +13,15 @@ e = exp(-(pi - 2 a) tan(a)), for zeta = cosh(b) it gives e = exp(-2 b/tanh(b)).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import checked, shaped
 
 Array = NDArray[np.float64]
 
-_HALVINGS = 60  # bisections of a range of 1.6, or of 350: to the last digit
 _CRITICAL = 2.0  # -ln e at zeta = 1
 
 
@@ -60,17 +59,8 @@ def betan(restitution: ArrayLike) -> float | Array:
     e, shape = checked(restitution=(restitution, 1e-300, 1.0, remark))
     loss = -np.log(e)
     under, over = np.minimum(loss, _CRITICAL), np.maximum(loss, _CRITICAL)
-    angle = _root(lambda a: np.tan(a) * (math.pi - 2.0 * a), under, 0.5 * math.pi)
-    beyond = _root(lambda b: 2.0 * b / np.tanh(b), over, 0.5 * over)
+    zero, most = np.zeros_like(loss), np.full_like(loss, 0.5 * math.pi)
+    angle = bisect(lambda a: np.tan(a) * (math.pi - 2.0 * a) < under, zero, most)
+    beyond = bisect(lambda b: 2.0 * b / np.tanh(b) < over, zero, 0.5 * over)
     ratio = np.where(loss < _CRITICAL, np.sin(angle), np.cosh(beyond))
     return shaped(math.sqrt(5.0 / 6.0) * ratio, shape)
-
-
-def _root(rising: Callable[[Array], Array], value: Array, high: float | Array) -> Array:
-    """Find where a rising function has some values, between 0 and high, by bisection."""
-    low, high = np.zeros_like(value), np.broadcast_to(high, value.shape)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        below = rising(middle) < value
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return low

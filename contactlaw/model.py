@@ -18,14 +18,14 @@ from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
-from contactlaw.answers.edges import near_edges
+from contactlaw.answers.edges import with_edges
 from contactlaw.answers.histories import Histories
 from contactlaw.answers.inverse import Inverse
 from contactlaw.answers.oblique import Oblique
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Outside, TableArgument, Tabulated
+from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, scalars, shaped
@@ -88,7 +88,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
-        self._tabulated = Tabulated(self._bodies, table, self._border)
+        self._tabulated = TableLookup(self._bodies, table, self._border)
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):
@@ -199,7 +199,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
                 speed, radius, thickness, edge, edge_distance, hole_radius, mass
             )
             if impacts.edge_distance is not None:
-                by = near_edges(self._tabulated, Solver(self._bodies), impacts)
+                by = with_edges(self._tabulated, Solver(self._bodies), impacts)
                 return by.rebounds(impacts).restitution
         else:
             # a short cut for engines that call this once per collision
@@ -242,7 +242,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         impacts = self._bodies.given(
             speed, radius, thickness, edge, edge_distance, hole_radius, mass
         )
-        return near_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
+        return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
@@ -268,7 +268,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         Raises
         ------
         RuntimeError
-            If the integration takes too many steps (lambda far above 100).
+            Too many steps: lambda far above 100, or above 20 with a body of next to no strength.
 
         Examples
         --------
@@ -285,7 +285,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             speed, radius, thickness, edge, edge_distance, hole_radius, mass
         )
         by = Solver(self._bodies, rtol)
-        return near_edges(by, by, impacts).rebounds(impacts)
+        return with_edges(by, by, impacts).rebounds(impacts)
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
-from contactlaw.answers.solver import RTOL, within
+from contactlaw.answers.solver import RTOL, solved_within
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.force import room_for
@@ -26,7 +26,7 @@ from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
-from contactlaw.stepping.edge import Near, near_edge
+from contactlaw.stepping.edge import EdgeEcho, edge_echo
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import (
     FRICTION,
@@ -99,10 +99,10 @@ def _state_at(states: State, n: int) -> State:
 
 
 @kernel(inline=True)
-def _near_at(near: Near | None, n: int) -> Near | None:
+def _near_at(near: EdgeEcho | None, n: int) -> EdgeEcho | None:
     if near is None:
         return None
-    return Near(near.response[n], near.rate[n])
+    return EdgeEcho(near.response[n], near.rate[n])
 
 
 @kernel(cache=True)
@@ -132,7 +132,7 @@ def _slide_all(
 @kernel(cache=True)
 def _advance_all(
     law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float,
-    near: Near | None,
+    near: EdgeEcho | None,
 ) -> int:  # fmt: skip
     """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
 
@@ -215,7 +215,7 @@ class Contacts:
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
-        self._near = near_edge(model.pair.plate, h, edge, *near)
+        self._near = edge_echo(model.pair.plate, h, edge, *near)
         unit = unit_spring(model, 1.0)
         enable_caching()
         self._law = law_of(model)
@@ -406,7 +406,7 @@ def time_step(
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))
-    found = within(bodies.data, units, RTOL, None, few=True)
+    found = solved_within(bodies.data, units, RTOL, None, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.

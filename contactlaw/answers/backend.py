@@ -1,6 +1,6 @@
 """What table and solver have in common: their methods, their constants and their errors.
 
-`contactlaw.answers.tabulated.Tabulated` looks impacts up, `contactlaw.answers.solver.Solver`
+`contactlaw.answers.tabulated.TableLookup` looks impacts up, `contactlaw.answers.solver.Solver`
 integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
 """
 

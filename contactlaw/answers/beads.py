@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable
 
@@ -10,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers.solver import RTOL, within
-from contactlaw.answers.tabulated import Border, Tabulated, extent, table_for
+from contactlaw.answers.solver import RTOL, solved_within
+from contactlaw.answers.tabulated import Border, TableLookup, extent
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.bodies import TwoSpheres
@@ -27,21 +26,6 @@ Array = NDArray[np.float64]
 Other = Material | str | None  # material of the other bead; None: that of the first
 
 
-class _Bulk(Tabulated):
-    """Looks impacts of two spheres up, in a table that a function gives for their law."""
-
-    def __init__(
-        self, bodies: TwoSpheres, border: Border, table_for: Callable[[Law], Table]
-    ) -> None:
-        super().__init__(bodies, None, border)
-        self._table_for = table_for
-
-    @functools.cached_property
-    def table(self) -> Table:
-        """The table that serves the law."""
-        return self._table_for(self.law)
-
-
 class Beads:
     """Two spheres, looked up in the table of their law.
 
@@ -54,24 +38,23 @@ class Beads:
         typed in its name hold here as they do on a plate.
     border : Border
         What to do with impacts outside the table.
-    table : callable, optional
-        Function that gives the table for a law; by default it gives the law's own.
+    plates : TableLookup, optional
+        Impacts on plates whose table serves here, too, if it fits the law; else it is the law's
+        own.
     """
 
     def __init__(
-        self,
-        sphere: Material | str,
-        other: Material | str,
-        law: str | Law,
-        border: Border,
-        table: Callable[[Law], Table] = lambda law: table_for(law, None),
-    ) -> None:
+        self, sphere: Material | str, other: Material | str, law: str | Law, border: Border,
+        plates: TableLookup | None = None,
+    ) -> None:  # fmt: skip
         pair = Pair(sphere, other)
         weak, strong = (one.strength or math.inf for one in (pair.plate, pair.sphere))
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)
-        self._bulk = _Bulk(TwoSpheres(self.pair, self.law), border, table)
+        self._bulk = TableLookup(TwoSpheres(self.pair, self.law), None, border)
+        if plates is not None:
+            self._bulk.given = plates.given_for(self._bulk.law)
 
     @property
     def table(self) -> Table:
@@ -95,7 +78,7 @@ class Beads:
         enable_caching()
         impacts = self._impacts(speed, radius, other_radius)
         units = self._bulk.bodies.numbers(self._bulk.bodies.impact(impacts))
-        found = within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
+        found = solved_within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
         return shaped(found.restitution, impacts.shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
@@ -111,11 +94,11 @@ class Beads:
         return Impacts(v, size, np.full_like(size, math.inf), shape, mass=mass)
 
 
-def beads_of(tabulated: Tabulated, other: Other) -> Beads:
+def beads_of(tabulated: TableLookup, other: Other) -> Beads:
     """Impacts of a model's sphere on another sphere."""
     sphere, law = tabulated.bodies.pair.sphere, tabulated.bodies.law
     takes = law.family if law.from_pair else law
-    return Beads(sphere, other or sphere, takes, tabulated.border, tabulated.table_of)
+    return Beads(sphere, other or sphere, takes, tabulated.border, tabulated)
 
 
 def restitution_sphere_sphere(

@@ -15,7 +15,7 @@ from contactlaw import _jit
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers import edges
 from contactlaw.answers.beads import Beads, Other
-from contactlaw.answers.tabulated import Tabulated
+from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical.arguments import scalars
@@ -28,7 +28,7 @@ class Compiled:
     """Functions that engines call once per collision, made for one model."""
 
     _bodies: SphereOnPlate
-    _tabulated: Tabulated
+    _tabulated: TableLookup
     _beads: Callable[[Other], Beads]  # impacts of the pair's sphere on another
 
     def curve(

@@ -30,7 +30,7 @@ Some = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
-class NearEdges:
+class WithEdges:
     """Integrates the impacts that have an edge, and leaves all others to another backend."""
 
     others: Backend
@@ -58,9 +58,9 @@ class NearEdges:
         return self.others.yield_speeds(impacts)
 
 
-def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
+def with_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
     """Backend for impacts of which some may be near an edge."""
-    return others if impacts.edge_distance is None else NearEdges(others, near)
+    return others if impacts.edge_distance is None else WithEdges(others, near)
 
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
@@ -104,7 +104,7 @@ def _cor_near(
 
 
 def _each(
-    both: NearEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]
+    both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]
 ) -> list[tuple[Some, Any]]:
     """Answers of the impacts without an edge, and of those with one."""
     assert impacts.edge_distance is not None

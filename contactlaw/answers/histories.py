@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import Backend
-from contactlaw.answers.edges import near_edges
+from contactlaw.answers.edges import with_edges
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Tabulated
+from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import check_finite
@@ -21,7 +21,7 @@ from contactlaw.physical.impacts import check_finite
 class Histories:
     """Contacts of one model over time."""
 
-    _tabulated: Tabulated
+    _tabulated: TableLookup
 
     def force_history(
         self,
@@ -75,6 +75,6 @@ class Histories:
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
         impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
-        found = near_edges(by, Solver(bodies), impacts).histories(impacts, samples)
+        found = with_edges(by, Solver(bodies), impacts).histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found

@@ -14,8 +14,9 @@ from contactlaw._errors import ArgumentError
 from contactlaw._readable import scale_of
 from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Border, Tabulated
+from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.uncertainty import Band, Uncertain
+from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity
@@ -26,7 +27,6 @@ Array = NDArray[np.float64]
 _SAMPLES = 1500  # values between which a COR is searched, 2 % apart or less
 _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the same to six digits
 _SLOWEST = 1e-4  # [m/s]: slower beads of millimetres stick by adhesion
-_ROUNDS = 60  # of bisection
 _ROUNDING = 1e-5  # how far `ImpactModel.restitution` may be from the integrated COR
 _SHARES = 1e-6, 1.0 - 1e-6  # of a COR; nearer to the ends beads stick, or are elastic at any speed
 
@@ -82,7 +82,7 @@ class Solutions:
 class _Curve:
     """COR over the reciprocal of the unknown, where the table reaches, but integrated."""
 
-    def __init__(self, by: Backend, border: Tabulated, sizes: tuple[float | None, ...]) -> None:
+    def __init__(self, by: Backend, border: TableLookup, sizes: tuple[float | None, ...]) -> None:
         self.by, self.sizes = by, sizes
         slowest, radius = _SLOWEST, sizes[1] or 0.0
         x = 1.0 / np.geomspace(slowest, lookup.V_MAX, _SAMPLES)
@@ -95,13 +95,13 @@ class _Curve:
             self._refuse(border, x)
         self.e = self.restitution(self.x)
 
-    def _refuse(self, border: Tabulated, x: Array) -> None:
+    def _refuse(self, border: TableLookup, x: Array) -> None:
         """Say why even the impact that is nearest to the table is outside of it."""
         name, where, nearest = "speed", "on a half-space", x[-1:]
         if self.sizes[0] is None:
             name, where, nearest = "thickness", f"at {_SLOWEST:g} m/s", x[:1]
         try:
-            strict = Tabulated(border.bodies, border.given, Border("raise"))
+            strict = TableLookup(border.bodies, border.given, Border("raise"))
             strict.rebounds(self.impacts(nearest))
         except OutsideTableError as error:
             reason = f"even {where} the impact is outside the table, {error.reason}"
@@ -123,12 +123,8 @@ class _Curve:
         nearest = int(np.argmin(np.abs(self.e - wanted)))
         if not at.size:  # a COR that was looked up may just miss the largest one
             return self.x[[nearest]][np.abs(self.e[[nearest]] - wanted) < _ROUNDING]
-        a, b = self.x[at], self.x[at + 1]
-        for _ in range(_ROUNDS):
-            middle = 0.5 * (a + b)
-            beyond = (self.restitution(middle) > wanted) != above[at]
-            a, b = np.where(beyond, a, middle), np.where(beyond, middle, b)
-        return 0.5 * (a + b)
+        ends = self.x[at], self.x[at + 1]
+        return bisect(lambda x: (self.restitution(x) > wanted) == above[at], *ends)
 
     def leaves(self, wanted: float, start: float, least: float, most: float, up: bool) -> float:
         """First place above or below a solution at which the COR leaves a range; else the last."""
@@ -146,7 +142,7 @@ class _Curve:
 class Inverse(Uncertain):
     """Thicknesses and speeds that give a COR, by one model."""
 
-    _tabulated: Tabulated
+    _tabulated: TableLookup
 
     def thickness(
         self, restitution: ArrayLike, speed: ArrayLike, radius: ArrayLike, *,
@@ -216,7 +212,7 @@ class Inverse(Uncertain):
     ) -> Solutions | NDArray[np.object_]:  # fmt: skip
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
-        border = Tabulated(self._bodies, self._tabulated.given, Border("clamp"))
+        border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
         curve = functools.cache(functools.partial(_Curve, by, border))
         found = np.empty(wanted.size, dtype=object)
         for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):

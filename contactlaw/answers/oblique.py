@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend, renumbered
-from contactlaw.answers.edges import near_edges
+from contactlaw.answers.edges import with_edges
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Tabulated
+from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical import oblique
@@ -39,7 +39,7 @@ class Oblique:
     the model. See `contactlaw.equation.tangential` for the method.
     """
 
-    _tabulated: Tabulated
+    _tabulated: TableLookup
 
     def oblique(
         self,
@@ -105,7 +105,7 @@ class Oblique:
         impacts = replace(bodies.given(v, r, h, edge, near, hole, *masses), shape=shape)
         check(sliding_speed=s, friction=mu)
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        return answer(near_edges(by, Solver(bodies), impacts), bodies, impacts, mu, s)
+        return answer(with_edges(by, Solver(bodies), impacts), bodies, impacts, mu, s)
 
     def collide(
         self,

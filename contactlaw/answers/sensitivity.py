@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.answers.tabulated import Border, Tabulated
+from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.impacts import Impacts
@@ -66,7 +66,7 @@ class Sensitivity:
     yield_strength: float | Array
 
 
-def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
+def sensitivity(tabulated: TableLookup, impacts: Impacts) -> Sensitivity:
     """Differentiate the COR of impacts inside the table, by integration.
 
     If the law takes numbers from the pair, they change with the inputs.

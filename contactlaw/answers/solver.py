@@ -72,7 +72,7 @@ def integrate(
     if impacts.edge_distance is not None and impacts.hole_radius is not None:
         near = impacts.edge, impacts.edge_distance, impacts.hole_radius
         edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
-    found = within(bodies.data, units, rtol, extent, few, edges)
+    found = solved_within(bodies.data, units, rtol, extent, few, edges)
     return Integrated(bodies, impacts, units, found, edges)
 
 
@@ -172,7 +172,7 @@ class Solver:
         return math.exp(log_speed), lam
 
 
-def within(
+def solved_within(
     law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False,
     edges: Edges | None = None,
 ) -> Outcome:  # fmt: skip

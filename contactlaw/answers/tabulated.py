@@ -109,7 +109,7 @@ def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     )
 
 
-class Tabulated:
+class TableLookup:
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
@@ -147,10 +147,10 @@ class Tabulated:
             return grid.largest_inelasticity(_law_with_table(self.bodies.law))
         return lookup.lam_max(self.table.packed)
 
-    def table_of(self, law: Law) -> Table:
-        """Find the table for another law, as for two spheres; this one if it fits that law."""
-        own = self.given is not None and (law == self.law or self.table.law.follows(law))
-        return self.table if own else table_for(law, None)
+    def given_for(self, law: Law) -> Table | None:
+        """Table that the user gave, if it fits another law, too, as that of two spheres."""
+        fits = self.given is not None and (law == self.law or self.table.law.follows(law))
+        return self.table if fits else None
 
     def restitutions(self, impacts: Impacts) -> Array:
         """COR of impacts; sizes are checked only if the kernel has no answer for one of them."""

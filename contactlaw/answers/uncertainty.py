@@ -261,19 +261,13 @@ class _Curves:
 
     def by_flow(self, m: int, change: Array) -> Array:
         """Change of one of the impacts near yield by flow, with the logarithm of its overload."""
-        at, values = self.probed[:, 3, m], self.probed[:, :, m]
-        slopes = np.gradient(values, at, axis=0)
+        at, answers = self.probed[:, 3, m], self.probed[:, :3, m].T
 
-        def curve(x: Array) -> Array:  # cubic between the probes, constant beyond
-            j = np.clip(np.searchsorted(at, x) - 1, 0, at.size - 2)
-            h = (at[j + 1] - at[j])[..., None]
-            t = np.clip((x - at[j])[..., None] / h, 0.0, 1.0)
-            ends = (1.0 + 2.0 * t) * values[j] + t * h * slopes[j], values[j + 1], h * slopes[j + 1]
-            after = t * t * ((3.0 - 2.0 * t) * ends[1] + (t - 1.0) * ends[2])
-            return np.asarray((1.0 - t) ** 2 * ends[0] + after)
+        def curve(x: Array | float) -> Array:
+            return np.array([*(np.interp(x, at, one) for one in answers), np.zeros_like(x)])
 
         base = self.base[3, self.near[m]]
-        return (curve(base + change) - curve(base)) * [1.0, 1.0, 1.0, 0.0]
+        return np.moveaxis(curve(base + change), 0, -1) - curve(base)
 
     def rows(self, z: Array) -> tuple[Array, Array]:
         """Weights of random errors (draws, rows), and rows of a sum of changes (rows, 4, n)."""

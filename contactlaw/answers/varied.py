@@ -17,7 +17,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import REACH, rated, scaled
+from contactlaw.physical.rate import REACH, flow_with_rate, scaled
 from contactlaw.physical.strengths import Fineness, by_strength, without_curves
 from contactlaw.physical.validity import alone
 
@@ -74,6 +74,6 @@ def solver(pair: Pair, law: Law, rates: Array, rtol: float, fineness: Fineness =
     Answers are right but for the flags of pairs with a rate of strain.
     """
     low, high = rates.min(initial=REACH).item() / _MARGIN, rates.max(initial=0.0).item() * _MARGIN
-    own = without_curves if rated(pair, law) else law_for_pair
+    own = without_curves if flow_with_rate(pair, law) else law_for_pair
     fineness = fineness._replace(slowest=low, fastest=high)
     return Solver(_Varied(pair, own(pair, law), fineness), rtol)

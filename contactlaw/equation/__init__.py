@@ -2,7 +2,7 @@
 
 `force` reads a law's data, `legs` cuts the path of a contact at the law's kinks, `plate` and
 `losses` are the other parts of the equation of `motion`; `integrator` steps along a contact and
-lands on its events, `creep` replaces steps where there would be too many, `zener` solves impacts,
-`numbers` scales them, `corrections` are those of a real plate, `outcome` has the answer's fields.
+lands on its events, `zener` solves impacts, `numbers` scales them, `corrections` are those of a
+real plate, `outcome` has the answer's fields.
 Nothing here knows a law's name, a unit or a file.
 """

@@ -6,7 +6,6 @@ stiffer beside the plate: the energy that is left goes into the plate, and the s
 that energy could throw the sphere off with no more than `LEAST_RESTITUTION` of its impact speed,
 the plate is held and the sphere leaves with that energy. A restitution below `LEAST_RESTITUTION`
 is thus rounded up to it. The less energy is left, the finer are the steps, so that they resolve it.
-Where the steps would be too many, a series takes their place (`contactlaw.equation.creep`).
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -22,7 +21,6 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import edge, force, legs, losses, motion, plate
-from contactlaw.equation.creep import creep, rebound_speed_squared
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
@@ -33,7 +31,8 @@ MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at
 # separation are stationary, so they err only by its square.
 _LANDED = 1e-9
-LEAST_RESTITUTION = 1e-9  # smallest restitution; smaller ones are rounded up to it
+# Smallest restitution, to which smaller ones are rounded up; tables err by ten times as much.
+LEAST_RESTITUTION = 1e-7
 # Steps get finer each time the largest possible restitution falls by this factor.
 FINER_EVERY = 1e-2
 # no event; end of loading; a root compression is reached; a time is reached; little energy is left;
@@ -53,6 +52,15 @@ class Scale(NamedTuple):
 
 
 @kernel
+def _rebound_speed_squared(leg: Leg, state: ScaledState) -> float:
+    """Square of the speed with which the sphere would rebound if the plate were held from now on.
+
+    The work of a force that falls as q^b is 2 f q^2/(b + 2).
+    """
+    return state.u * state.u + 4.0 * state.f * state.q * state.q / (leg.exponent + 2.0)
+
+
+@kernel
 def _gap(
     event: int, leg: Leg, state: ScaledState, level: float, until: float, scale: Scale
 ) -> float:
@@ -60,7 +68,7 @@ def _gap(
     if event == TURN:
         return state.dq / scale.u
     if event == _ENERGY_LOW:
-        return 1.0 - rebound_speed_squared(leg, state) / scale.energy_low
+        return 1.0 - _rebound_speed_squared(leg, state) / scale.energy_low
     return (until - state.t) / scale.t if event == TIME else (level - state.q) / scale.q
 
 
@@ -135,14 +143,13 @@ def _step(
     a7, b7, f7, k7 = motion.rates(contact, leg, kind, q7, u7, m7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
     response = contact.plate.response
-    work = losses.gathered(
-        state.work,
-        w1, losses.power(q, f1, edge.drive(response, f1, m)),
-        w3, losses.power(q3, f3, edge.drive(response, f3, m3)),
-        w4, losses.power(q4, f4, edge.drive(response, f4, m4)),
-        w5, losses.power(q5, f5, edge.drive(response, f5, m5)),
-        w6, losses.power(q6, f6, edge.drive(response, f6, m6)),
-    )  # fmt: skip
+    work = state.work + (
+        w1 * losses.power(q, f1, edge.drive(response, f1, m))
+        + w3 * losses.power(q3, f3, edge.drive(response, f3, m3))
+        + w4 * losses.power(q4, f4, edge.drive(response, f4, m4))
+        + w5 * losses.power(q5, f5, edge.drive(response, f5, m5))
+        + w6 * losses.power(q6, f6, edge.drive(response, f6, m6))
+    )
     error_q = (
         71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
     ) - 1 / 40 * a7
@@ -183,7 +190,7 @@ def _follow(
                 legs.unloads(leg)
                 and plate.only_recedes(contact.plate)
                 and trial.u * trial.u < scale.energy_low
-                and rebound_speed_squared(leg, trial) < scale.energy_low
+                and _rebound_speed_squared(leg, trial) < scale.energy_low
             ):
                 event = _ENERGY_LOW
             else:
@@ -241,10 +248,8 @@ def follow(
     steps = 0
     while True:
         if legs.unloads(leg) and plate.endless(contact.plate):
-            if plate.only_recedes(contact.plate):
-                state = creep(contact, leg, state, level, until, spent)
             # a little less, because the last event _ENERGY_LOW was met only to 1e-9
-            energy_low = (1.0 - 1e-6) * rebound_speed_squared(leg, state)
+            energy_low = (1.0 - 1e-6) * _rebound_speed_squared(leg, state)
             while energy_low < scale.energy_low and scale.energy_low > spent:
                 scale = _finer(scale, spent)
             if energy_low < spent:

@@ -26,10 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import edge, legs, losses, plate
+from contactlaw.equation import edge, legs, plate
 from contactlaw.equation.edge import Memories
 from contactlaw.equation.legs import Leg
-from contactlaw.equation.losses import Work
 from contactlaw.equation.plate import PlateMobility
 
 Array = NDArray[np.float64]
@@ -48,7 +47,7 @@ class ScaledState(NamedTuple):
     q: float
     u: float
     t: float
-    work: Work
+    work: float  # of the waves, over the plate's mobility
     dq: float  # dq/ds
     du: float  # du/ds
     f: float
@@ -68,7 +67,7 @@ def rates(
 
 @kernel
 def start(
-    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: Work,
+    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: float,
     memory: Memories | None,
 ) -> ScaledState:  # fmt: skip
     """State on a leg, with the rates there."""
@@ -81,4 +80,4 @@ def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
     """Leg that begins at first touch, and the state there."""
     leg = legs.up(contact.law, legs.FIRST)
     memory = edge.at_touch(contact.plate.response)
-    return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK, memory)
+    return leg, start(contact, leg, 0.0, speed, 0.0, 0.0, memory)

@@ -168,7 +168,7 @@ def follow_impact(
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
     most = 1.0 if edges is None else math.sqrt(max(1.0 - lost.plastic - lost.other, 0.0))
     rebound = min(max(-state.u / scale.u, 0.0), most)  # a step's error may put it outside
-    wave_rate = 2.0 * scale.t * state.work.wave / scale.u**2
+    wave_rate = 2.0 * scale.t * state.work / scale.u**2
     # the plate has what the sphere still has, or what the fit of its response is off by
     if edge.settles(edges, n, stays, 0.0 < rebound < most and wave_rate >= 0.0):
         wave = max(1.0 - rebound * rebound - lost.plastic - lost.other, 0.0)

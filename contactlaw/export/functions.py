@@ -45,7 +45,7 @@ from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import constants_of, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
-from contactlaw.stepping.edge import Near
+from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.spring import (
@@ -265,7 +265,7 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
         and state.strength >= 0.0
     ):
         return BLOWN_UP
-    near = Near(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
+    near = EdgeEcho(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
     new = stepped(pair.law, contact_spring(pair, bead), state, overlap, dt, near, pair.room)
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
 

@@ -13,11 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.doubts import doubts, explained
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
-from contactlaw.fitting.notes import alternative_note, notes
+from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
-from contactlaw.fitting.unknowns import Parameter, parameters, setting, with_loss_factors
+from contactlaw.fitting.unknowns import (
+    OTHER_STRENGTH,
+    Parameter,
+    parameters,
+    setting,
+    with_loss_factors,
+)
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
@@ -344,6 +349,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     spread = np.sqrt(np.diag(total))
     others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
     off = values.value / fitted - 1.0
+    relative = None if model_error is None else model_error / fitted
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)
 
@@ -362,19 +368,9 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
         flags=np.asarray(hit.flags),
         alternatives=tuple(named(other) for other in others),
-        notes=tuple(
-            [
-                *notes(
-                    predictor,
-                    at,
-                    hit,
-                    error / fitted,
-                    freedom,
-                    None if model_error is None else model_error / fitted,
-                ),
-                *(alternative_note(names, other) for other in others),
-                *doubts(predictor, at, error, found.total, model),
-            ]
+        notes=(
+            *notes(predictor, at, hit, error / fitted, freedom, relative, found.total),
+            *(alternative_note(names, other) for other in others),
         ),
         pair=bodies.pair,
         radius=bodies.radius,
@@ -485,7 +481,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
         return _squares(predictor, predictor.at_trials(values[None])[0], error)
 
     is_strength = predictor.parameters[n].is_strength
-    other = "plate_" * (predictor.parameters[n].unknown.body == "sphere") + "yield_strength"
+    other = OTHER_STRENGTH.get(predictor.parameters[n].name)
     trial, high = strong.copy(), squares(strong) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):

@@ -1,17 +1,19 @@
-"""Remarks on a fit, in words."""
+"""Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._readable import percent, rounded
+from contactlaw._readable import percent, rounded, scale_of
 from contactlaw.fitting import search
+from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor, columns_of
-from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import count_flags, explain
@@ -23,6 +25,12 @@ _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is repo
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
 _SLIDES = 1.0 - 1e-6  # share of the friction at which an impulse is that of full sliding
 _LISTED = 8  # rows or runs of rows that are listed; more are only counted
+_SIGNIFICANCE = 1e-3  # a trend is noted if scatter alone gives it in fewer than 1 of 1000 fits
+# Residuals are cut to 3 standard errors or medians, so that one mistake makes no trend.
+_OUTLIER = 3.0
+# Factors by which a value may differ from the one given: a strength depends on the temper. A loss
+# factor depends on the frequency and is often a guess.
+_FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
 
 
 def notes(
@@ -32,8 +40,9 @@ def notes(
     standard: Array,
     freedom: float,
     model: Array | None,
+    covariance: Array,
 ) -> Iterator[str]:
-    """Say what is unusual about a fit.
+    """Say what is unusual about a fit, and what makes it doubtful.
 
     Parameters
     ----------
@@ -49,6 +58,8 @@ def notes(
         Degrees of freedom; inf where all errors were given.
     model : ndarray (m,) or None
         Relative errors of the model; None where they are not known.
+    covariance : ndarray (p, p)
+        Covariance of the parameters' logarithms.
     """
     values = predictor.values
     fitted = columns_of(hit, predictor.setting(at))[values.kind, values.row]
@@ -83,6 +94,11 @@ def notes(
     for flag, _ in count_flags(flags).items():
         (words,) = explain(flag)
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
+    yield from _above_one(predictor)
+    if ((at < 1.001 * low) | (at > 0.999 * high)).any():
+        yield from _outside(predictor, at)
+    yield from _far(predictor, at, covariance)
+    yield from _trends(predictor, off, standard, model)
 
 
 def alternative_note(names: tuple[str, ...], values: Array) -> str:
@@ -95,6 +111,13 @@ def alternative_note(names: tuple[str, ...], values: Array) -> str:
         f"the data are fitted as well by {what}: the stated errors do not reach there. Measure "
         "another quantity or other speeds, or give a prior"
     )
+
+
+def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> UnidentifiedError:
+    """Add to a refusal which values are attainable, or which of them cannot be."""
+    (message, *_) = [*_outside(predictor, at), refused.reason]
+    message = ". ".join([message, *_above_one(predictor)])
+    return UnidentifiedError(message, refused.unknown, refused.known)
 
 
 def listed(rows: NDArray[np.intp]) -> str:
@@ -145,3 +168,95 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
             f"{name} of {predictor.data.rebound(values.row[n])} is {sign}{percent(off[n])} off the "
             f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )
+
+
+def _above_one(predictor: Predictor) -> Iterator[str]:
+    for name in ("restitution", "tangential_restitution"):
+        rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
+        if rows.size:
+            which = f"rebounds {listed(rows)}"
+            which = predictor.data.rebound(rows[0]) if rows.size == 1 else which
+            yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
+
+
+def _outside(predictor: Predictor, at: Array) -> Iterator[str]:
+    """Say so if no value of the unknowns gives any of the data, and what is attainable."""
+    values = predictor.values
+    grid = np.vstack([search.attainable(predictor), predictor.at_trials(at[None])])
+    low = np.where(grid == 0.0, np.inf, grid).min(axis=0)  # 0: the model has no answer there
+    high = grid.max(axis=0)
+    changes = (high > 1.001 * low).any()  # else the law does not depend on the unknowns
+    near = np.clip(values.value, low, high)
+    margin = 2.0 * np.nan_to_num(values.error) + 1e-6 * near
+    if not (changes and (np.abs(values.value - near) > margin).all()):
+        return
+    n = int(np.argmax(np.abs(values.value / near - 1.0)))
+    name, kind = list(KINDS.items())[values.kind[n]]
+    row, unit = values.row[n], kind.unit.strip("-")
+    speed = float(np.asarray(predictor.data.speed)[row])
+    value, least, most = (float(one[n]) - kind.shift for one in (values.value, low, high))
+    least = least if abs(least) > 1e-3 * most else 0.0
+    unknown = " and ".join(one.name for one in predictor.parameters if one.is_unknown)
+    ends = f"from {least:.3g} to {most:.3g} {unit}".rstrip()
+    ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
+    if unknown in OTHER_STRENGTH:
+        ends += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
+    which = f"{name} {f'{value:.4g} {unit}'.rstrip()} of {predictor.data.rebound(row)}"
+    yield f"no {unknown} gives the {which}, at {rounded(speed, 3)} m/s: attainable is {ends}"
+
+
+def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:
+    """Name values that, with two standard errors, are far from those given."""
+    for n, one in enumerate(predictor.parameters):
+        most = _FACTORS.get(one.unknown.field, math.inf)
+        ratio = at[n] / one.centre  # NaN if none was given
+        apart = abs(math.log(ratio)) - 2.0 * math.sqrt(covariance[n, n])
+        if one.is_unknown and apart > math.log(most):
+            unit, size = scale_of(one.centre, one.unknown.unit)
+            body = getattr(predictor.pair, one.unknown.body).name
+            yield (
+                f"{one.name} is {rounded(max(ratio, 1.0 / ratio))} times "
+                f"{'above' if ratio > 1.0 else 'below'} that of {body}, {one.centre / size:.4g} "
+                f"{unit}: units or materials mistaken, or sphere and plate exchanged?"
+            )
+
+
+def _trends(
+    predictor: Predictor, off: Array, standard: Array, model: Array | None
+) -> Iterator[str]:
+    """Name kinds of values whose residuals trend with speed."""
+    values = predictor.values
+    for n, name in enumerate(KINDS):
+        of_kind = np.flatnonzero(values.kind == n)
+        order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
+        thirds = np.array_split(order, 3)
+        if chance(thirds, off / standard) >= _SIGNIFICANCE:
+            continue
+        means = [float(off[third].mean()) for third in thirds]
+        slow, middle, fast = map(percent, means)
+        known = 0.0 if model is None else math.sqrt(np.mean(np.square(model[of_kind])))
+        why = "units, materials or the law may be wrong"
+        if max(map(abs, means)) < 2.0 * known:
+            why = f"errors of law {predictor.law.family!r} allow that, those of the data do not"
+        yield (
+            f"residuals of {name} trend with speed: {slow}, {middle} and {fast} in the slow, the "
+            f"middle and the fast third, by chance in fewer than 1 of 1000 fits: {why}"
+        )
+
+
+def chance(thirds: list[NDArray[np.intp]], off: Array) -> float:
+    """Chance that scatter alone moves the means of the thirds as far apart, by Fisher's test.
+
+    Parameters take up a part of any trend, so that the chance is rather too large.
+    """
+    from scipy.special import fdtrc
+
+    if min(third.size for third in thirds) < 2:
+        return 1.0
+    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[np.concatenate(thirds)]))))
+    parts = [np.clip(off[third], -most, most) for third in thirds]
+    middle = np.concatenate(parts).mean()
+    between = sum(float(part.size * (part.mean() - middle) ** 2) for part in parts)
+    within = sum(float(part.var() * part.size) for part in parts)
+    freedom = sum(part.size for part in parts) - 3
+    return float(fdtrc(2.0, freedom, 0.5 * between * freedom / max(within, 1e-9)))

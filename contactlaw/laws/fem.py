@@ -91,7 +91,7 @@ _WIDTH = 0.15  # of panels, in sqrt(ln q): they are narrow next to yield
 
 
 @functools.cache
-def numbers() -> dict[str, Any]:
+def fitted() -> dict[str, Any]:
     """Read the fitted numbers."""
     text = files("contactlaw.laws").joinpath("fem.json").read_text("utf-8")
     found: dict[str, Any] = json.loads(text)
@@ -255,7 +255,7 @@ class Curves:
     """
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
-        found = found or numbers()
+        found = found or fitted()
         self.onset: float | None = None
         self.ratio = given.ratio
         blend = float(found["blend"])
@@ -412,14 +412,14 @@ def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
 
 def flow_of_losses(given: Given, found: dict[str, Any] | None = None) -> float:
     """Factor on E*/sigma_Y of bodies with losses, which flow less."""
-    return math.exp(-(found or numbers())["pressure"] * given.relaxation)
+    return math.exp(-(found or fitted())["pressure"] * given.relaxation)
 
 
 def comparable(given: Given) -> list[Given]:
     """Bodies whose strengths are compared in the law: it has corners where one becomes weaker."""
     if not given.hardens:
         return [given]
-    return [given, *(one.typical(given) for one in strains(given, numbers()))]
+    return [given, *(one.typical(given) for one in strains(given, fitted()))]
 
 
 class HardeningCurves(Curves):
@@ -432,7 +432,7 @@ class HardeningCurves(Curves):
     """
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
-        found = found or numbers()
+        found = found or fitted()
         blend, (_, taken) = float(found["blend"]), strains(given, found)
         typical = taken.typical(given)
         super().__init__(typical, found)
@@ -483,7 +483,7 @@ class HardeningCurves(Curves):
 @functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(*given: float) -> Law:
     """Law of a pair, from the numbers of `PARAMETERS`."""
-    return law_of(Given(*given), numbers())
+    return law_of(Given(*given), fitted())
 
 
 def law_of(given: Given, found: dict[str, Any]) -> Law:

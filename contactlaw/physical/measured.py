@@ -91,13 +91,9 @@ def measured_law(
         points["residual"] = residual
     *columns, _ = broadcast(**points)
     rows = np.column_stack(columns)
-    rises = (np.diff(rows[:, :2], axis=0, prepend=0.0) > 0.0).all()
-    if not (np.isfinite(rows).all() and rises):
+    if not (np.isfinite(rows).all() and (np.diff(rows[:, :2], axis=0, prepend=0.0) > 0.0).all()):
         reason = "have to be positive and finite, and to rise together"
         raise ArgumentError("compression, force", None, reason)
-    if residual is not None and not ((rows[:, 2] >= 0.0) & (rows[:, 2] < rows[:, 0])).all():
-        reason = "has to lie between 0 and the compression of its point [m]"
-        raise ArgumentError("residual", None, reason)
     rows = rows[rows[:, 0] > d_y]
     if len(rows) < _FEWEST:
         beyond = f"beyond yield, {d_y:.3g} m for this radius"

@@ -16,19 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.laws import Law
-from contactlaw.laws.fem import numbers
+from contactlaw.laws.fem import fitted
 from contactlaw.physical.flow import Flow
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
 
-SHARE: float = numbers()["rate"]  # representative rate over V0/R
+SHARE: float = fitted()["rate"]  # representative rate over V0/R
 # V0/R [1/s] up to which tables reach, 100 m/s at 10 micrometres, and up to which laws do.
 FASTEST, REACH = 1e7, 1e9
 
 
-def rated(pair: Pair, law: Law) -> Flow | None:
+def flow_with_rate(pair: Pair, law: Law) -> Flow | None:
     """Flow whose factor is that of a pair in a law; None if no impact strengthens it."""
     return leading(pair) if "sphere_ratio" in law.from_pair else None
 

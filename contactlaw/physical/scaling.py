@@ -32,7 +32,7 @@ from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import SHARE, rated
+from contactlaw.physical.rate import SHARE, flow_with_rate
 from contactlaw.physical.responses import response_of
 
 Array = NDArray[np.float64]
@@ -147,7 +147,7 @@ def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
 
 def rate_of_strain(pair: Pair, law: Law) -> RateOfStrain:
     """How the strength of a pair grows with the rate of an impact."""
-    flow = rated(pair, law)
+    flow = flow_with_rate(pair, law)
     if flow is None or law.scale is None:
         return NO_RATE
     return RateOfStrain(flow.rate, SHARE / flow.rate0 * law.scale)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from contactlaw.equation import force
 from contactlaw.equation.force import STRENGTHS
 from contactlaw.laws import Law, Strengths, fem, laid_out_alike
+from contactlaw.laws._branches import bisect
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -60,7 +61,7 @@ _NEAR = 1e-3  # in ln k: as near to an end of a piece of the law, a knot is that
 
 def with_strengths(pair: Pair, law: Law) -> Law:
     """Law with those of a pair that is as strong as at the rates of a table's impacts."""
-    if rate.rated(pair, law) is None or not law.yields:
+    if rate.flow_with_rate(pair, law) is None or not law.yields:
         return law
     laws = by_strength(pair, law)
     tops = force.tops(laws)  # corners that were found from other samples are not quite the same
@@ -104,7 +105,7 @@ def _cells(laws: Array, low: float, high: float, least: int) -> int:
 @functools.lru_cache(maxsize=64)
 def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
     """Law of a pair at any strength; that of a pair without a rate as it is."""
-    if rate.rated(pair, law) is None or not law.yields:
+    if rate.flow_with_rate(pair, law) is None or not law.yields:
         return law.data
     assert law.scale is not None
     count = fineness.terms
@@ -155,7 +156,7 @@ def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:
 
 def formulas_at(pair: Pair, log_factor: float) -> dict[str, Any]:
     """Formulas of the law of a pair that is stronger by a factor."""
-    return fem.formulas(_given(pair, log_factor), fem.numbers())
+    return fem.formulas(_given(pair, log_factor), fem.fitted())
 
 
 def _given(pair: Pair, log_factor: float) -> fem.Given:
@@ -190,12 +191,8 @@ def knots(
     assert flow is not None
     least, most = (math.log(rate.largest_factor(flow, one)) for one in (slowest, fastest))
     most = last = max(most, least + _NARROWEST)
-    if not _yields(pair, last):  # where does that begin?
-        low = least
-        while last - low > _CLOSE:
-            middle = 0.5 * (low + last)
-            low, last = (middle, last) if _yields(pair, middle) else (low, middle)
-        last = low
+    if not _yields(pair, last):  # up to where does one?
+        last = bisect(lambda one: _yields(pair, one), least, last)
     logs = np.linspace(least, last, 2 + int((last - least) / _TRIED))
     inner: list[float] = []
     for values in np.array([_corners(pair, one) for one in logs]).T:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import enum
-import itertools
 import math
 from typing import NamedTuple
 
@@ -16,9 +15,9 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import REACH, SHARE, leading, rated, strengthened
+from contactlaw.physical.rate import REACH, flow_with_rate, largest_factor, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
-from contactlaw.physical.strengths import USUAL, knots, without_curves
+from contactlaw.physical.strengths import without_curves
 
 Array = NDArray[np.float64]
 
@@ -107,6 +106,13 @@ class Validity(enum.IntFlag):
     ACCURACY = 65023
     """All limits of accuracy."""
 
+
+# The flags that kernels raise, as the numbers that they take.
+_THIN_PLATE, _FAST_IMPACT = int(Validity.THIN_PLATE), int(Validity.FAST_IMPACT)
+_THICK_PLATE, _DEEP_CONTACT = int(Validity.THICK_PLATE), int(Validity.DEEP_CONTACT)
+_BENT_PLATE, _DAMAGE = int(Validity.BENT_PLATE), int(Validity.DAMAGE)
+_NEAR_EDGE, _STRIKES_AGAIN = int(Validity.NEAR_EDGE), int(Validity.STRIKES_AGAIN)
+_NOT_SOLID = int(Validity.NOT_SOLID)
 
 # For each flag: which limit is exceeded; what to do about it, and by how much the COR is wrong in
 # the finite elements of `validation`, where that is known. Errors are absolute.
@@ -289,8 +295,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     )
 
 
-_ROWS = 5  # in each piece of ln k
-_SMOOTH = "share", "deepest", "bending"  # limits that are smooth functions of the strength
+_ROWS = 33  # strengths, evenly spaced in ln k, between which limits are interpolated
 
 
 def alone(limits: Limits) -> Array:
@@ -301,43 +306,19 @@ def alone(limits: Limits) -> Array:
 def limits_by_strength(pair: Pair, law: Law) -> Array:
     """Limits of a pair, a row for each of some strengths: ln k, then the fields of `Limits`.
 
-    What is no smooth function of the strength is that of the middle between a row and the next.
+    Flags that begin at a strength between two rows begin at the higher one.
     """
-    if not law.yields or rated(pair, law) is None:
+    flow = flow_with_rate(pair, law)
+    if not law.yields or flow is None:
         return alone(limits(pair, law))
-    ends, most = knots(pair, USUAL.piece, USUAL.fastest, USUAL.near)
-    logs = {one for low, high in itertools.pairwise(ends) for one in np.linspace(low, high, _ROWS)}
-    at = sorted(one for one in {*logs, *_reached(pair), most} if one <= most)
-    slow = _at_strength(pair, law, 0.0)
-    rows = [[-1.0, *slow]]  # so that a slow impact has the limits of its own strength
-    for low, high in itertools.pairwise([*at, at[-1]]):
+    rows = []
+    for one in np.linspace(0.0, math.log(largest_factor(flow, REACH)), _ROWS).tolist():
         try:
-            own, middle = (_at_strength(pair, law, one) for one in (low, 0.5 * (low + high)))
+            stronger = strengthened(pair, math.exp(one))
         except ValueError:  # no material is so strong
             break
-        rows.append([low, *middle._replace(**{name: getattr(own, name) for name in _SMOOTH})])
+        rows.append([one, *limits(stronger, without_curves(pair, law, one))])
     return np.array(rows)
-
-
-def _reached(pair: Pair) -> list[float]:
-    """Ln k at which flags change: a body leaves the range of law fem, or damages a brittle one."""
-    flow, found = leading(pair), []
-    for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
-        own = body.flow
-        if not (flow and own and own.rate):
-            continue
-        damaging = _bearable(other) / (1.5 * _HARDNESS)
-        for strength in (damaging, *(pair.effective_modulus / ratio for ratio in RATIOS)):
-            if own.strength < strength < math.inf:
-                factor = (strength / own.strength - 1.0) / own.rate
-                if factor < math.log(REACH * SHARE / own.rate0):
-                    found.append(math.log(flow.factor(own.rate0 * math.exp(factor))))
-    return found
-
-
-def _at_strength(pair: Pair, law: Law, log_factor: float) -> Limits:
-    own = without_curves(pair, law, log_factor)
-    return limits(strengthened(pair, math.exp(log_factor)), own)
 
 
 @kernel(inline=True)
@@ -443,32 +424,6 @@ def edge_flags(
     if again > 0.0:
         flags |= _STRIKES_AGAIN
     return flags
-
-
-(
-    _THIN_PLATE,
-    _FAST_IMPACT,
-    _THICK_PLATE,
-    _DEEP_CONTACT,
-    _BENT_PLATE,
-    _DAMAGE,
-    _NEAR_EDGE,
-    _STRIKES_AGAIN,
-    _NOT_SOLID,
-) = (
-    int(flag)
-    for flag in (
-        Validity.THIN_PLATE,
-        Validity.FAST_IMPACT,
-        Validity.THICK_PLATE,
-        Validity.DEEP_CONTACT,
-        Validity.BENT_PLATE,
-        Validity.DAMAGE,
-        Validity.NEAR_EDGE,
-        Validity.STRIKES_AGAIN,
-        Validity.NOT_SOLID,
-    )
-)
 
 
 def edge_distance(plate: Material, thickness: ArrayLike, contact_time: ArrayLike) -> float | Array:

@@ -22,7 +22,7 @@ from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.scaling import wave_rate
 from contactlaw.physical.validity import edge_flags, flags_of
 from contactlaw.stepping import energy
-from contactlaw.stepping.edge import REACH, Near, place_of
+from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
@@ -149,7 +149,7 @@ class Bead(NamedTuple):
 class NearestEdge(NamedTuple):
     """The edge of a wall that is nearest to a contact."""
 
-    near: Near
+    near: EdgeEcho
     distance: float  # [m]; inf without any
 
 
@@ -435,7 +435,7 @@ def _near_edge(
     """Edge that is nearest to a contact, and how it acts there."""
     facet = scene.facets[contact.facet]
     if facet.edge_count == 0 or plate_row.thickness == math.inf:
-        return NearestEdge(Near(plate_row.responses[0], 0.0), math.inf)
+        return NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
     # Slow impacts last twice as long as those at 1 m/s, and the more the plate gives way, the
     # longer: the bead is then slowed in the time m alpha.
@@ -446,7 +446,7 @@ def _near_edge(
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
     rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
     place = place_of(kind, distance, hole, thickness)
-    return NearestEdge(Near(plate_row.responses[place], rate), distance)
+    return NearestEdge(EdgeEcho(plate_row.responses[place], rate), distance)
 
 
 @kernel

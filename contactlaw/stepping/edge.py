@@ -24,7 +24,7 @@ from contactlaw.physical.scaling import SOFT_RIM, share_of, wave_path, wave_rate
 Array = NDArray[np.float64]
 
 
-class Near(NamedTuple):
+class EdgeEcho(NamedTuple):
     """An edge near a contact, or edges near as many contacts as the arrays are long."""
 
     response: Any  # as `contactlaw.physical.responses.response_of` gives it
@@ -35,14 +35,14 @@ NOTHING = Recalled(0.0, 0.0, NO_MEMORY, NO_MEMORY)
 REACH = 10.0  # square of the distance over b t beyond which an edge changes nothing
 
 
-def near_edge(
+def edge_echo(
     plate: Material, thickness: Array, kind: str, distance: Array | None, hole_radius: Array | None
-) -> Near | None:
+) -> EdgeEcho | None:
     """Edges at these distances [m] from contacts; None where no plate has any."""
     if distance is None or hole_radius is None:
         return None
     share = share_of(distance, hole_radius, thickness)
-    return Near(
+    return EdgeEcho(
         response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance)
     )
 
@@ -73,7 +73,7 @@ def place_of(kind: int, distance: float, hole: float, thickness: float) -> int:
 
 
 @kernel
-def weighted(near: Near | None, m: Memory) -> float:
+def weighted(near: EdgeEcho | None, m: Memory) -> float:
     """Speed that the edge adds, over the mobility of a thin plate [N]."""
     if near is None:
         return 0.0
@@ -81,7 +81,7 @@ def weighted(near: Near | None, m: Memory) -> float:
 
 
 @kernel
-def recalled(near: Near | None, m: Memory, force: float, step: float) -> Recalled:
+def recalled(near: EdgeEcho | None, m: Memory, force: float, step: float) -> Recalled:
     """Say what the memory adds at both ends of a step [s], from the force at its beginning."""
     if near is None:
         return NOTHING

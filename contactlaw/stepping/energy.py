@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.stepping.edge import Near, weighted
+from contactlaw.stepping.edge import EdgeEcho, weighted
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     Spring,
@@ -54,7 +54,7 @@ _FIRST_OVERLAP = 1.01
 @kernel
 def step(
     law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float,
-    near: Near | None = None,
+    near: EdgeEcho | None = None,
 ) -> tuple[State, float]:  # fmt: skip
     """State at the end of a step, and a force to add to the state's in this step alone.
 
@@ -101,7 +101,7 @@ def _first_step_correction(spring: Spring, x: float, path: float) -> Any:
 
 @kernel
 def wave_energy(
-    spring: Spring, last: State, state: State, h: float, near: Near | None = None
+    spring: Spring, last: State, state: State, h: float, near: EdgeEcho | None = None
 ) -> Any:
     """Energy that the plate takes in a step, less what it gives back [J]."""
     mobility = state.mobility if state.stiffening > 0.0 else spring.mobility

@@ -60,7 +60,7 @@ from contactlaw.equation.numbers import (
 from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import constants_of, plate_mobility
-from contactlaw.stepping.edge import Near, recalled
+from contactlaw.stepping.edge import EdgeEcho, recalled
 
 Array = NDArray[np.float64]
 
@@ -283,7 +283,12 @@ def _balance(
 
 @kernel(cache=True)
 def advance(
-    law: Array, spring: Spring, state: State, overlap: float, step: float, near: Near | None = None
+    law: Array,
+    spring: Spring,
+    state: State,
+    overlap: float,
+    step: float,
+    near: EdgeEcho | None = None,
 ) -> State:
     """State at the end of a step [s], from the overlap [m] at its end.
 
@@ -296,7 +301,7 @@ def advance(
 
 @kernel
 def stepped(
-    law: Array, spring: Spring, state: State, overlap: float, step: float, near: Near | None,
+    law: Array, spring: Spring, state: State, overlap: float, step: float, near: EdgeEcho | None,
     room: int,
 ) -> State:  # fmt: skip
     """`advance` where it is known what `contactlaw.equation.force.room_for` says of the law."""

@@ -294,7 +294,7 @@ def _displacement(row: Any, time: float) -> tuple[float, float, float]:
 
 
 @kernel(entry=True)
-def place(row: Any, time: float, dt: float) -> None:
+def move_one(row: Any, time: float, dt: float) -> None:
     """Set a wall's position and velocity at a time, the end of a step of length dt [s]."""
     last, here, then = (
         _displacement(row, time - dt),
@@ -319,4 +319,4 @@ def move(frames: Any, time: float, dt: float) -> None:
     """Move all walls to their positions at a time, the end of a step of length dt [s]."""
     for f in range(len(frames)):
         if frames[f].moves != 0:
-            place(frames[f], time, dt)
+            move_one(frames[f], time, dt)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.walls.facet import to_frame
 from contactlaw.walls.frame import RECTANGLE, corners_of
-from contactlaw.walls.motion import place
+from contactlaw.walls.motion import move_one
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -47,5 +47,5 @@ def _to_rest(frames: Any, number: Any, time: Any, point: Any) -> None:
     for n in range(len(number)):
         frame = frames[number[n]]
         if frame.moves != 0:
-            place(frame, time[n], 1.0)
+            move_one(frame, time[n], 1.0)
             point[n] = to_frame(frame, (point[n, 0], point[n, 1], point[n, 2]))

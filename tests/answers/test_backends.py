@@ -7,7 +7,7 @@ import contactlaw as cl
 from contactlaw import laws
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Border, Tabulated, extent
+from contactlaw.answers.tabulated import Border, TableLookup, extent
 from contactlaw.equation.losses import Losses
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
@@ -26,7 +26,7 @@ def backends(pair, law, outside="raise"):
     """Table and solver of one model."""
     pair = cl.Pair(*pair)
     bodies = SphereOnPlate(pair, law_of(pair, law))
-    tabulated = Tabulated(bodies, None, Border(outside))
+    tabulated = TableLookup(bodies, None, Border(outside))
     return tabulated, Solver(bodies, extent=extent(bodies.law))
 
 

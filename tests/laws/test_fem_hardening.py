@@ -11,7 +11,7 @@ from contactlaw.laws import fem, law
 
 IDEAL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6)
 PLATE = cl.Material("plate", 70e9, 0.22, 2500)
-SHARE, LATE, _ = fem.numbers()["strain"]
+SHARE, LATE, _ = fem.fitted()["strain"]
 
 
 def model(sphere, plate=PLATE):
@@ -126,7 +126,7 @@ def test_all_metals_that_harden_have_a_law_and_flow_on_from_yield(role):
                 "poissons_ratio": nu, "plate_poissons_ratio": nu_other,
                 f"{role}_hardening": times, f"{role}_exponent": n,
             }),
-            fem.numbers(),
+            fem.fitted(),
         )  # fmt: skip
         dm = np.geomspace(1.0, made.range[1], 50)
         left = np.array([made.residual(one) for one in dm])

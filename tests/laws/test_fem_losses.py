@@ -54,7 +54,7 @@ def test_the_springs_of_friction_are_those_of_the_same_flow_without_losses(loss,
     bead = replace(SOFT, yield_strength=strength, loss_factor=(loss, 1e3))
     law = cl.ImpactModel(cl.Pair(bead, HARD)).force_law
     given = cl.laws.fem.Given(**law.parameters)
-    ratio = given.sphere_ratio * math.exp(-cl.laws.fem.numbers()["pressure"] * given.relaxation)
+    ratio = given.sphere_ratio * math.exp(-cl.laws.fem.fitted()["pressure"] * given.relaxation)
     pair = law, cl.laws.fem.law(*given._replace(sphere_ratio=ratio, loss_factor=0.0))
     for d in [law.range[1] / 1.7**n for n in range(30)]:
         ours, same = (tangential.stiffness_at(one.data, 1.0, math.inf, d, d, 1.0) for one in pair)

@@ -449,7 +449,7 @@ def numbers() -> dict[str, Any]:
         "friction": [friction],
         "blend": 1.0,
         # fitted by `metals`, `viscoelastic` and `polymers`, and too slow to be found with the rest
-        **{name: fem.numbers()[name] for name in ("strain", "rate", "losses", "pressure")},
+        **{name: fem.fitted()[name] for name in ("strain", "rate", "losses", "pressure")},
         "plate": [0.0, 0.0, 0.0, 0.0],
         "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
     }

@@ -153,13 +153,13 @@ class Constants(NamedTuple):
 
 def shipped() -> Constants:
     """Constants of the law."""
-    strain, _, both = fem.numbers()["strain"]
-    return Constants(strain, both, fem.numbers()["rate"])
+    strain, _, both = fem.fitted()["strain"]
+    return Constants(strain, both, fem.fitted()["rate"])
 
 
 def at_rate(pair: cl.Pair, case: Case, share: float = rates.SHARE) -> cl.Pair:
     """Pair without rate, as strong as an impact makes it whose rate is this share of V0/R."""
-    flow = rates.rated(pair, laws.law("fem", **pair_numbers(pair, "fem")))
+    flow = rates.flow_with_rate(pair, laws.law("fem", **pair_numbers(pair, "fem")))
     if flow is None:
         return pair
     flow = flow._replace(rate0=flow.rate0 * rates.SHARE / share)
@@ -170,8 +170,8 @@ def at_rate(pair: cl.Pair, case: Case, share: float = rates.SHARE) -> cl.Pair:
 def errors(name: str, constants: Constants) -> Array:
     """Errors in COR of the law with other constants; below 0.3 over 0.3, 0 where it is flagged."""
     data = store.read(name).data
-    late = fem.numbers()["strain"][1]
-    found = {**fem.numbers(), "strain": [constants.strain, late, constants.both]}
+    late = fem.fitted()["strain"][1]
+    found = {**fem.fitted(), "strain": [constants.strain, late, constants.both]}
     off = np.zeros(data["speed"].size)
     for n, case in enumerate(draw(name)):
         pair = at_rate(fit.pair_of(dataclasses.asdict(case)), case, constants.rate)

@@ -57,7 +57,7 @@ def compute(name: str, processes: int) -> None:
 def errors(name: str, pressure: float) -> Array:
     """Errors in COR with another strength of bodies with losses; below 0.3 over 0.3."""
     data = store.read(name).data
-    found = {**fem.numbers(), "pressure": pressure}
+    found = {**fem.fitted(), "pressure": pressure}
     off = np.zeros(data["speed"].size)
     for n, case in enumerate(draw(name)):
         pair = fit.pair_of(dataclasses.asdict(case))

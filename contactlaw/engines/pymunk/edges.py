@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import knows
-from contactlaw.engines.pymunk.models import ModelsByBead, Near
+from contactlaw.engines.pymunk.models import KnownEdge, ModelsByBead
 from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
 from contactlaw.engines.pymunk.seams import SAME_END, place
 from contactlaw.physical.impacts import check_kind
@@ -24,7 +24,7 @@ class Side(NamedTuple):
     start: Vector
     along: Vector  # of length 1, from the start
     length: float
-    edges: tuple[Near, Near]  # beyond the start and the end; the distances are from there
+    edges: tuple[KnownEdge, KnownEdge]  # beyond the start and the end; the distances are from there
 
 
 class PlateEdges:
@@ -37,7 +37,9 @@ class PlateEdges:
         """Measure again, because plates have come or gone."""
         self._sides.clear()
 
-    def near(self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float) -> Near | None:
+    def near(
+        self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float
+    ) -> KnownEdge | None:
         """Kind of the nearest edge and its distance [m]; None if it is too far to matter."""
         sides = self._sides.get(plate.index)
         if sides is None:
@@ -83,7 +85,7 @@ def _sides(plate: PlateShape) -> list[Side]:
     return found
 
 
-def _beyond(plate: PlateShape, came: int, corner: int) -> Near:
+def _beyond(plate: PlateShape, came: int, corner: int) -> KnownEdge:
     """Kind of the edge where the plates end, and how far from a corner it is [m].
 
     The way to it comes to the corner from another one, and goes on where plates turn least.

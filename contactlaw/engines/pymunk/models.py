@@ -10,9 +10,9 @@ from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
-from contactlaw.physical.rate import rated
+from contactlaw.physical.rate import flow_with_rate
 
-Near = tuple[str, float]  # kind of an edge, and the distance from it [m]
+KnownEdge = tuple[str, float]  # kind of an edge, and the distance from it [m]
 
 
 class ModelsByBead(dict[int, RestitutionModel]):
@@ -46,12 +46,12 @@ class ModelsByBead(dict[int, RestitutionModel]):
             self._reaches[radius, number, thickness, octave] = found
         return found
 
-    def near(self, bead: tuple[float, int], thickness: float, near: Near) -> CorBySpeed:
+    def near(self, bead: tuple[float, int], thickness: float, near: KnownEdge) -> CorBySpeed:
         """COR by speed near an edge."""
         (radius, number), (kind, distance) = bead, near
         model: Any = self[number]
         if (number, kind) not in self._kernels:
-            slow = model.force_law.yields and rated(model.pair, model.force_law)
+            slow = model.force_law.yields and flow_with_rate(model.pair, model.force_law)
             self._kernels[number, kind] = None if slow else model.edge_kernel(kind)
         kernel = self._kernels[number, kind]
 

@@ -11,7 +11,7 @@ from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
 from contactlaw.engines.needs import RestitutionModel, knows_rebounds
-from contactlaw.engines.pymunk.models import Models, ModelsByBead, Near
+from contactlaw.engines.pymunk.models import KnownEdge, Models, ModelsByBead
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.pair import Pair
@@ -100,7 +100,7 @@ class Record:
     def __init__(self) -> None:
         self._seen = array("d")  # 112 bytes per impact; a list of tuples takes five times that
         self.add = self._seen.extend  # takes one tuple in the order of SEEN
-        self.near: dict[int, Near] = {}  # of impacts near edges, by row
+        self.near: dict[int, KnownEdge] = {}  # of impacts near edges, by row
         self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 
     def __len__(self) -> int:
@@ -142,7 +142,7 @@ class Record:
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _complete(rows: NDArray[np.void], register: Register, near: dict[int, Near]) -> None:
+def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownEdge]) -> None:
     """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
     beads, plates, material = register.beads(), register.plates(), register.materials
     density = np.array([register.models.density(n) for n in range(len(register.models.spheres))])

@@ -39,7 +39,7 @@ def fitted():
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_the_fit_gives_the_numbers_that_are_shipped():
     # least squares of powers: the last digits of coefficients that hardly matter are the machine's
-    ours, shipped = (np.array(flat(one)) for one in (fit.numbers(), fem.numbers()))
+    ours, shipped = (np.array(flat(one)) for one in (fit.numbers(), fem.fitted()))
     assert ours.shape == shipped.shape
     np.testing.assert_allclose(ours, shipped, rtol=1e-3, atol=1e-3)
 
@@ -47,7 +47,7 @@ def test_the_fit_gives_the_numbers_that_are_shipped():
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_the_fit_to_indentations_gives_the_numbers_that_are_shipped():
     """The part of the whole fit that needs no impacts."""
-    data, shipped = store.read("campaign_indentation").data, fem.numbers()
+    data, shipped = store.read("campaign_indentation").data, fem.fitted()
     stiff, friction = fit.stiffening(data)
     assert friction == pytest.approx(0.0, abs=0.02)
     for yielding in campaign.YIELDING:
