@@ -42,7 +42,7 @@ FILES = {
                  "few_steps"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "file", "cache"],
-    "answers": ["backend", "solver", "tabulated", "edges", "beads", "compiled", "constant",
+    "answers": ["few", "backend", "solver", "tabulated", "edges", "beads", "compiled", "constant",
                 "histories", "loads", "oblique", "varied", "sensitivity", "speed_table",
                 "law_errors", "uncertainty", "inverse"],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface",

@@ -126,6 +126,15 @@ class TableLookup:
         return table_for(self.law, self.given)
 
     @functools.cached_property
+    def instead(self) -> Solver | None:
+        """The solver in place of a table that takes minutes to build without the compiler."""
+        ships = self.given is not None or file.packaged(_law_with_table(self.bodies.law))
+        if ships or self.border.outside == "clamp" or not switched_off():
+            return None
+        limits = extent(self.bodies.law) if self.border.outside == "raise" else None
+        return Solver(self.bodies, extent=limits)
+
+    @functools.cached_property
     def packed(self) -> Array:
         """The table as kernels read it, with the constants of the pair."""
         return lookup.with_plate(self.table.packed, self.bodies.constants)
@@ -164,6 +173,8 @@ class TableLookup:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        if self.instead is not None:
+            return self.instead.rebounds(impacts)
         return self._rebound(impacts, self._looked_up(impacts))
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
@@ -203,7 +214,8 @@ class TableLookup:
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        if impacts.mass is not None or self.bodies.constants.plate.rate.slope > 0.0:
+        rated = self.bodies.constants.plate.rate.slope > 0.0
+        if impacts.mass is not None or rated or self.instead is not None:
             given = extent(self.bodies.law) if self.given is None else self.table.settings
             return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
         out = np.full(impacts.radius.size, math.inf)

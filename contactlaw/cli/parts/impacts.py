@@ -16,16 +16,11 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
-from contactlaw._jit import switched_off
-from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import extent
 from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
-from contactlaw.table import file
 
 Array = NDArray[np.float64]
 
@@ -116,12 +111,7 @@ def tabulate(
         raise ArgumentError("speed, radius, thickness", None, reason)
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.naming_impact(v, r, h, mass=mass):
-        if not solve and _integrates(model):
-            limited = model.outside == "raise"
-            by = _solver(model, limited)
-            rebound = by.rebounds(by.bodies.given(v, r, h, mass=mass))
-        else:
-            rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
+        rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first], mass), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
@@ -132,20 +122,6 @@ def tabulate(
     )
 
 
-def _integrates(model: ImpactModel) -> bool:
-    """Whether to integrate instead: without numba's compiler, building a table takes minutes."""
-    law = model.force_law
-    ships = (law.is_hertz and not law.yields) or file.packaged(law) is not None
-    return switched_off() and model.outside != "clamp" and not ships
-
-
-def _solver(model: ImpactModel, limited: bool) -> Solver:
-    """Solver of a model, limited to the extent of its table or unlimited."""
-    law = model.force_law
-    bodies = SphereOnPlate(model.pair, law)
-    return Solver(bodies, extent=extent(law) if limited else None)
-
-
 def yield_speeds(
     model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None
 ) -> Array:
@@ -154,9 +130,6 @@ def yield_speeds(
     Other impacts on the same plate may be inside the table.
     """
     try:
-        if _integrates(model):
-            by = _solver(model, True)
-            return by.yield_speeds(by.bodies.given(1.0, radius, thickness, mass=mass))
         return np.asarray(model.yield_speed(radius, thickness, mass))
     except ValueError:
         if radius.size == 1:
