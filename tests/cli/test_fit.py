@@ -1,7 +1,9 @@
 """`contactlaw fit`: what it prints and draws, and what it says of tables as people have them."""
 
 import json
+import os
 import re
+from errno import ENOSPC
 
 import numpy as np
 import pytest
@@ -211,7 +213,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     drawn = []
     save = Figure.savefig
     monkeypatch.setattr(
-        Figure, "savefig", lambda self, *args: (drawn.append(self), save(self, *args))
+        Figure, "savefig", lambda self, *a, **named: (drawn.append(self), save(self, *a, **named))
     )
     path = tmp_path / "fit.png"
     unknown = ["--thickness", "1.2mm", "--unknown", "plate_yield_strength"]
@@ -226,6 +228,14 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     )
     assert above.collections and below.collections  # bands
     assert str(path) in capsys.readouterr().out
+    path.write_text("before")
+    monkeypatch.setattr(os, "fsync", full)
+    assert main(["fit", usual, *BODIES, "--radius", "1mm", *unknown, "--plot", str(path)]) == 1
+    assert path.read_text() == "before" and f"cannot write {path}: No" in capsys.readouterr().err
+
+
+def full(*_):
+    raise OSError(ENOSPC, os.strerror(ENOSPC))
 
 
 def test_where_yield_begins_is_drawn(tmp_path):

@@ -96,8 +96,9 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
         raise ArgumentError(option, None, f"there is no folder {parent}")
     try:
         yield
-    except OSError as error:  # its file name may be that of a temporary file: not shown
-        raise ArgumentError(option, None, f"cannot write {path}: {error.strerror}") from error
+    except OSError as error:
+        where = error.filename or path
+        raise ArgumentError(option, None, f"cannot write {where}: {error.strerror}") from error
 
 
 @contextmanager
