@@ -254,7 +254,7 @@ def test_help_comes_at_once():
     """It lists every subcommand, and loads nothing that takes long."""
     code = (
         "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
-        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
+        "print(text); assert not {'numpy', 'numba', 'h5py', 'shtab'} & {*sys.modules}"
     )
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     listed = re.findall(r"^    ([a-z-]+)\b", shown.stdout, re.MULTILINE)
@@ -444,3 +444,39 @@ def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch, capsys, tmp
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main([*PLOT, "--plot", str(tmp_path / "cor.png")]) == 1
     assert "pip install 'contactlaw[demo]'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("th", ["thickness"]),
+        ("cor --outside ''", ["raise", "solve", "clamp"]),
+        ("cor --sphere bearing", ["bearing-steel-52100", "bearing-steel-52100-ball"]),
+        ("table build --law ko", ["kogut_etsion"]),
+        ("fit --materials mi", ["mine.toml"]),
+    ],
+)
+def test_a_shell_completes_what_is_typed(typed, offered, completion, tmp_path):
+    (tmp_path / "mine.toml").touch()
+    script = (
+        f"source {completion}; COMP_WORDS=(contactlaw {typed})\n"
+        'COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _shtab_contactlaw; printf "%s\\n" "${COMPREPLY[@]}"'
+    )
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout.split() == offered
+
+
+@pytest.fixture(scope="module")
+def completion(tmp_path_factory):
+    command = [sys.executable, "-m", "contactlaw", "--print-completion", "bash"]
+    path = tmp_path_factory.mktemp("shell") / "contactlaw.bash"
+    path.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
+    return path
+
+
+def test_without_shtab_the_remedy_is_named(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    with pytest.raises(SystemExit) as stop:
+        main(["--print-completion", "bash"])
+    assert stop.value.code == 1
+    assert "this needs shtab: pip install 'contactlaw[shell]'" in capsys.readouterr().err
