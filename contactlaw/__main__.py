@@ -29,9 +29,9 @@ def asked(words: Sequence[str]) -> tuple[float, str]:
     (inf, 'raise')
     """
     given = " ".join(words).replace("=", " ").split()
-    outside = given[given.index("--outside") + 1 :][:1] if "--outside" in given else ["raise"]
+    outside = dict(zip(given, [*given[1:], ""], strict=True)).get("--outside", "raise")
     many = words[:1] != ["cor"] or ":" in "".join(words) or "--plot" in given
-    return math.inf if many else math.prod(1 + word.count(",") for word in words), *outside
+    return math.inf if many else math.prod(1 + word.count(",") for word in words), outside
 
 
 if __name__ == "__main__":

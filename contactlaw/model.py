@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
@@ -279,12 +278,10 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> abs(1 - hit.restitution**2 - lost) < 1e-9
         True
         """
-        if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
-            raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
         impacts = self._bodies.given(
             speed, radius, thickness, edge, edge_distance, hole_radius, mass
         )
-        by = Solver(self._bodies, rtol)
+        by = Solver.within(self._bodies, rtol)
         return with_edges(by, by, impacts).rebounds(impacts)
 
     def lookup_sphere_sphere(

@@ -114,7 +114,7 @@ class _Completion(argparse.Action):
             elif action.dest in names:
                 action.choices = names[action.dest]
             elif action.metavar in files:
-                action.complete = files[action.metavar]  # type: ignore[attr-defined, index]
+                action.complete = files[action.metavar]  # type: ignore[attr-defined]
         print(shtab.complete(made, shell))
         caller.exit()
 

@@ -28,6 +28,7 @@ from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
+from contactlaw.record.file import Record
 
 Array = NDArray[np.float64]
 
@@ -154,7 +155,7 @@ class Fit:
 
 def fit(
     pair: Pair,
-    data: Measurements | Mapping[str, ArrayLike],
+    data: Measurements | Mapping[str, ArrayLike] | Record,
     unknown: str | Iterable[str],
     law: str | Law = DEFAULT,
     priors: Mapping[str, float] | None = None,
@@ -166,8 +167,9 @@ def fit(
     pair : Pair
         Materials of bead and plate. Their values of unknowns are ignored, except that moduli and
         densities are sought within a factor of 5 of them.
-    data : Measurements or mapping
-        What was measured, as `Measurements` or as a mapping with its arguments for names.
+    data : Measurements, mapping or Record
+        What was measured, as `Measurements` or as a mapping with its arguments for names; or the
+        record of a run, of whose impacts on walls the COR counts.
     unknown : str or sequence of str
         Up to three of ``"yield_strength"``, ``"youngs_modulus"``, ``"density"`` of the bead,
         ``"plate_yield_strength"``, ``"plate_youngs_modulus"``, ``"plate_density"``,
@@ -215,7 +217,8 @@ def fit(
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()
-    data = Measurements.of(data)
+    unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
+    data = Measurements.of(data, {*unknown} - {*(priors or {})})
     given, pair = pair, with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {}, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))

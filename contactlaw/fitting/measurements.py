@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import broadcast, check, within
+from contactlaw.record.file import Record
 
 Array = NDArray[np.float64]
 
@@ -150,7 +151,8 @@ class Measurements:
 
     def rebound(self, n: int) -> str:
         """Name a rebound by its number, and by its line if that is known."""
-        return f"rebound {n}" if self.line is None else f"rebound {n}, line {self.line[n]:.0f}"
+        at = "" if self.line is None else f", line {np.asarray(self.line)[n]:.0f}"
+        return f"rebound {n}{at}"
 
     @property
     def is_oblique(self) -> bool:
@@ -158,8 +160,13 @@ class Measurements:
         return any(getattr(self, name) is not None for name in OBLIQUE)
 
     @classmethod
-    def of(cls, data: Measurements | Mapping[str, ArrayLike]) -> Measurements:
+    def of(
+        cls, data: Measurements | Mapping[str, ArrayLike] | Record, unknown: Collection[str] = ()
+    ) -> Measurements:
         """Return measurements as they are, or make them from a mapping of names, as a DataFrame.
+
+        Of the record of a run these are the COR of its impacts on walls, with the sizes that are
+        not `unknown`; `line` is the number of the row.
 
         Raises
         ------
@@ -170,9 +177,16 @@ class Measurements:
         """
         if isinstance(data, Measurements):
             return data
+        if isinstance(data, Record):
+            line = np.flatnonzero(data.impact & (data.rows["plate"] >= 0))
+            names = {"restitution", "radius", "thickness"} & {*(data.rows.dtype.names or ())} - {
+                *unknown
+            }
+            named = {name: data.rows[name][line] for name in names}
+            return cls(data.rows["approach_speed"][line], **named, line=line)
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
             raise TypeError(
-                f"data: expected contactlaw.Measurements or a mapping of names, got {data!r}"
+                f"data: expected Measurements, a Record or a mapping of names, got {data!r}"
             )
         known = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
@@ -237,6 +251,6 @@ def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
     bad = measured & ~((errors > 0.0) & (errors >= least) & (errors < np.inf))
     if bad.any():
         n = int(np.argmax(bad))
-        least = f"[{kind.unit}] wherever there is a {name}, and at least {_LEAST_ERROR:g} of it"
-        reason = f"must be positive {least}; leave all of them out if they are not known"
+        where = f"[{kind.unit}] wherever there is a {name}, and at least {_LEAST_ERROR:g} of it"
+        reason = f"must be positive {where}; leave all of them out if they are not known"
         raise ArgumentError(f"{name}_error", errors[n], reason, n)

@@ -12,6 +12,8 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.cli.fit import measured
+from contactlaw.engines.record import IMPACT
+from contactlaw.physical.kind import Kind
 
 BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
 FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
@@ -269,3 +271,44 @@ def test_rows_as_spreadsheets_and_people_end_them(text):
 def test_what_is_too_long_for_a_cell_is_refused_in_words():
     with pytest.raises(ValueError, match="field larger than"):
         measured._read(b"speed,COR,remark\n1,0.8," + b"x" * 140_000 + b"\n")
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run's record: impacts on two walls, of which one is of glass, an edge, and two beads."""
+    on_steel = rebounds(STEEL, noise=0.01)
+    rows = np.zeros(20, IMPACT)
+    for name in ("restitution", "radius", "thickness"):
+        rows[name][:12] = on_steel[name]
+    rows["approach_speed"][:12] = on_steel["speed"]
+    rows[12:] = rows[0]
+    rows["plate"][12:] = [-1, 0, 1, 1, 1, 1, 1, 1]
+    rows["restitution"][12:], rows["kind"][13] = 0.1, Kind.OVER_EDGE
+    which = np.where(rows["plate"] == 1, 1, 0)
+    which[12] = 2
+    glass = cl.Pair(STEEL.sphere, "glass")
+    pairs = STEEL, glass, cl.Pair(STEEL.sphere, STEEL.sphere)
+    record = cl.Record(rows, [cl.Bodies(pair, "fem") for pair in pairs], which)
+    record.save(tmp_path / "run.h5")
+    return record, str(tmp_path / "run.h5")
+
+
+def test_a_record_of_a_run_is_fitted(run, found, capsys):
+    record, path = run
+    asked = ["fit", path, "--plate", STEEL.plate.name, "--unknown", "thickness"]
+    assert main([*asked, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["values"]["thickness"] == pytest.approx(found.values["thickness"], rel=0.02)
+    assert printed["sphere"] == STEEL.sphere.name and len(printed["flags"]) == 12
+    walls = record.part(record.which == 0)
+    assert cl.fit(STEEL, walls, "thickness").values == pytest.approx(printed["values"], rel=1e-9)
+    assert main(asked) == 0 and "\n     11    11 " in capsys.readouterr().out
+    for words, said in (
+        (
+            ["fit", path, "--unknown", "thickness"],
+            "several pairs, bearing-steel-52100 on aluminium",
+        ),
+        ([*asked, "--radius", "1mm"], "--radius: the record has its own"),
+    ):
+        assert main(words) == 1
+        assert said in capsys.readouterr().err
