@@ -248,18 +248,9 @@ def test_triangles_that_are_none_are_left_out(model):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            {"vertices": [[0, 0, 0], [1, 0, 0], [0, math.nan, 0]]},
-            r"vertices: got .*element 2.*finite",
-        ),
-        (
-            {"vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]},
-            r"vertices: got .*element 1.*none beyond",
-        ),
-        (
-            {"vertices": [[0, 0], [1, 0], [0, 1]]},
-            r"vertices: got .*expected an array of shape \(n, 3\)",
-        ),
+        ({"vertices": [[0, 0, 0], [1, 0, 0], [0, math.nan, 0]]}, "vertices: .*element 2.*finite"),
+        ({"vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]}, "vertices: .*element 1.*beyond"),
+        ({"vertices": [[0, 0], [1, 0], [0, 1]]}, r"vertices: .*an array of shape \(n, 3\)"),
         ({"vertices": "part.stl"}, "vertices: got .*expected an array"),
         ({"triangles": [[0, 1, 3]]}, "triangles: must be numbers of vertices, 0 to 2"),
         ({"triangles": [[0.0, 1.0, 2.0]]}, "triangles: got .*expected integers"),
@@ -284,17 +275,11 @@ def test_what_is_no_mesh_is_refused(change, message):
         (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "start, end: got .*must differ"),
         (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), -1.0, 1e-3), "radius"),
         (lambda: Mesh.cone((0, 0, 0), (0, 0, 1), 0.0, 0.0, 1e-3), "radius"),
-        (
-            lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), 1.0, 1e-3, facets=2),
-            "facets: got .*expected",
-        ),
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), 1.0, 1e-3, facets=2), "facets: got 2; exp"),
         (lambda: Mesh.disc((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "normal: got .*must have a direction"),
         (lambda: Mesh.disc((0, 0, 0), (0, 0, 1), math.inf, 1e-3), "radius: got .*must be positive"),
         (lambda: Plate((0, 0, 0), (1e300, 0, 0), (0, 1, 0), 1e-3), "edge_a: .*none beyond"),
-        (
-            lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3),
-            "corner: got .*three",
-        ),
+        (lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3), "corner: .* three numbers"),
     ],
 )
 def test_shapes_that_are_none_are_refused(call, message):
