@@ -20,6 +20,7 @@ from contactlaw._version import VERSION as __version__
 
 if TYPE_CHECKING:
     from contactlaw import export
+    from contactlaw._errors import ArgumentError
     from contactlaw.answers.beads import restitution_sphere_sphere
     from contactlaw.answers.loads import LoadSignal, load_signal
     from contactlaw.answers.sensitivity import Sensitivity
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from contactlaw.reporting.files import report
 
 __all__ = [
+    "ArgumentError",
     "Bodies",
     "Fit",
     "ForceHistory",
@@ -69,6 +71,7 @@ __all__ = [
 
 # Where the public names are defined.
 _MODULES = {
+    "_errors": "ArgumentError",
     "fitting.fit": "Fit fit",
     "fitting.identify": "UnidentifiedError",
     "fitting.measurements": "Measurements",

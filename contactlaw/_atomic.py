@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -28,7 +29,7 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
     except FileNotFoundError:  # no file yet, or a link that leads to nothing
         replaceable = True
     if replaceable:
-        _replace(Path(os.path.realpath(path)), content)
+        _replace({Path(os.path.realpath(path)): content})
     else:
         with open(path, "wb") as file:
             file.write(content)
@@ -36,19 +37,23 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
 
 @contextmanager
 def folder(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary folder whose files move into `path` if the block raises nothing.
+    """Give a temporary folder whose files move into `path`, all or none, if nothing is raised.
 
-    A new folder is made, in one that exists; other files in it are left alone.
+    A new folder is made, in one that exists; other files in it are left alone. An OSError names the
+    file that could not be replaced.
     """
     to = Path(os.path.realpath(path))  # the temporary folder has to be on its file system
     if to.exists() and not to.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, "is a file, not a folder: name another", str(path))
     _check_folder(to.parent)
-    with tempfile.TemporaryDirectory(prefix=f".{to.name}.", dir=to.parent) as made:
-        yield Path(made)
+    with _naming(to):
+        temporary = tempfile.TemporaryDirectory(prefix=f".{to.name}.", dir=to.parent)
+    with temporary as made:
+        with _naming(to, made):
+            yield Path(made)
         to.mkdir(exist_ok=True)
-        for file in Path(made).iterdir():
-            write(to / file.name, file.read_bytes())
+        files = Path(made).iterdir()
+        _replace({Path(os.path.realpath(to / one.name)): one.read_bytes() for one in files})
 
 
 def _check_folder(path: Path) -> None:
@@ -56,18 +61,55 @@ def _check_folder(path: Path) -> None:
         raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path))
 
 
-def _replace(path: Path, content: bytes) -> None:
+def _replace(files: dict[Path, bytes]) -> None:
+    """Replace files by their new contents: all of them, or none."""
+    with contextlib.ExitStack() as done, contextlib.ExitStack() as undo:
+        staged = {}
+        for path, content in files.items():
+            with _naming(path):
+                staged[path] = _staged(path, content, done)
+        for path, new in staged.items():
+            with _naming(path):
+                if path.exists():
+                    old = new.with_suffix(".old")
+                    _keep(path, old)
+                    done.callback(old.unlink, missing_ok=True)
+                    undo.callback(os.replace, old, path)
+                else:
+                    undo.callback(path.unlink, missing_ok=True)
+                os.replace(new, path)
+        undo.pop_all()
+
+
+@contextmanager
+def _naming(path: Path, temporary: str = "") -> Iterator[None]:
+    """Let an OSError name what is written in place of a temporary file or folder."""
+    try:
+        yield
+    except OSError as error:
+        if str(error.filename or temporary).startswith(temporary):
+            error.filename, error.filename2 = str(path), None
+        raise
+
+
+def _staged(path: Path, content: bytes, done: contextlib.ExitStack) -> Path:
+    """Write the new content of a file under a temporary name beside it."""
     _check_folder(path.parent)
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o644
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    done.callback(Path(name).unlink, missing_ok=True)
+    with os.fdopen(handle, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())  # or a power cut could leave the name without the content
+    os.chmod(name, mode)  # mkstemp makes it private; a new result is for everyone
+    return Path(name)
+
+
+def _keep(path: Path, backup: Path) -> None:
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())  # or a power cut could leave the name without the content
-        os.chmod(name, mode)  # mkstemp makes it private; a new result is for everyone
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
-        raise
+        os.link(path, backup)
+    except OSError:  # a file system without hard links
+        shutil.copy2(path, backup)

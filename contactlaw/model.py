@@ -278,12 +278,10 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> abs(1 - hit.restitution**2 - lost) < 1e-9
         True
         """
-        if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
-            raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
         impacts = self._bodies.given(
             speed, radius, thickness, edge, edge_distance, hole_radius, mass
         )
-        by = Solver(self._bodies, rtol)
+        by = Solver.within(self._bodies, rtol)
         return with_edges(by, by, impacts).rebounds(impacts)
 
     def lookup_sphere_sphere(

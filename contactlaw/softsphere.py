@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.answers.solver import RTOL, solved_within
@@ -285,18 +286,15 @@ class Contacts:
         # numpy's own arrays only: what a subclass adds, such as a mask, would be lost
         if type(overlap) is not np.ndarray or overlap.dtype != np.float64:
             refuse_units("overlap", overlap, "m")
-            raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")
+            raise ArgumentError("overlap", overlap, "expected an array of float64")
         if overlap.shape != self.force.shape:
-            raise ValueError(
-                f"overlap: expected one value per contact, shape {self.force.shape}, got "
-                f"{overlap.shape}"
-            )
+            reason = f"expected a value per contact, {self.force.shape}, got {overlap.shape}"
+            raise ArgumentError("overlap", None, reason)
         step = number("step", step)
         if not 0.0 < step <= self._longest:
-            raise ValueError(
-                f"step: must be positive and at most {self._longest:.3g} s, far longer than any "
-                f"contact, got {step!r}; contactlaw.softsphere.time_step advises one"
-            )
+            longest = f"{self._longest:.3g} s, far longer than any contact"
+            remedy = "contactlaw.softsphere.time_step advises one"
+            raise ArgumentError("step", step, f"must be positive and at most {longest}; {remedy}")
         wrong = _advance_all(
             self._law, self._springs, self._states, self._diameters, overlap, step, self._near
         )
@@ -340,7 +338,8 @@ class Contacts:
             float(friction), self._overlap, normals, velocities, self._step, self._sliding,
         )  # fmt: skip
         for n in np.flatnonzero(~np.isfinite(self._sliding.sum(axis=1))):
-            raise ValueError(f"velocity: no finite friction at {velocities[n]} m/s, {self._pair}")
+            reason = f"no finite friction at {velocities[n]} m/s, {self._pair}"
+            raise ArgumentError("velocity", None, reason)
         return self._sliding
 
     def _refuse(self, overlap: float, n: int) -> NoReturn:
@@ -351,10 +350,9 @@ class Contacts:
                 f"must be at most the diameter {self._diameters[n]:.6g} m and the plate's "
                 f"displacement {self.plate_displacement[n]:.3g} m"
             )
-        raise ValueError(
-            f"overlap: {what}, got {float(overlap)!r} (element {n}); has the simulation blown up? "
-            "contactlaw.softsphere.time_step advises a step that is short enough"
-        )
+        remedy = "contactlaw.softsphere.time_step advises a step that is short enough"
+        reason = f"{what}; has the simulation blown up? {remedy}"
+        raise ArgumentError("overlap", overlap, reason, n)
 
 
 def time_step(
@@ -400,7 +398,7 @@ def time_step(
     """
     error = number("error", error)
     if not 2e-5 <= error <= 1e-2:
-        raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
+        raise ArgumentError("error", error, "must lie between 2e-5 and 1e-2")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
     bodies = SphereOnPlate(model.pair, model.force_law)
     given = bodies.given(v, r, h, mass=None if mass is None else number("mass", mass))

@@ -16,7 +16,17 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {"_folder", "_atomic", "_template", "_content", "_escaped", "_readable", "parser", "style"},
+    {
+        "_folder",
+        "_atomic",
+        "_template",
+        "_content",
+        "_errors",
+        "_escaped",
+        "_readable",
+        "parser",
+        "style",
+    },
     {"_inner", "_kept"},
     {"_jit"},
     {"emit"},  # kernels in other languages; knows none of them
@@ -42,7 +52,7 @@ FILES = {
                  "few_steps"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "file", "cache"],
-    "answers": ["backend", "solver", "tabulated", "edges", "beads", "compiled", "constant",
+    "answers": ["few", "backend", "solver", "tabulated", "edges", "beads", "compiled", "constant",
                 "histories", "loads", "oblique", "varied", "sensitivity", "speed_table",
                 "law_errors", "uncertainty", "inverse"],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface",
@@ -78,25 +88,25 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_058,
-    "contactlaw/answers": 2_746,
-    "contactlaw/cli": 3_934,
+    "contactlaw": 33_194,
+    "contactlaw/answers": 2_787,
+    "contactlaw/cli": 3_972,
     "contactlaw/emit": 700,
-    "contactlaw/engines": 3_627,
-    "contactlaw/equation": 2_775,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_069,
-    "contactlaw/fitting": 2_124,
-    "contactlaw/laws": 2_064,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_295,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/record": 687,
-    "contactlaw/reporting": 1_050,
-    "contactlaw/stepping": 1_982,
-    "contactlaw/table": 2_993,  # one interpolant, of two or three axes
-    "contactlaw/walls": 1_962,
+    "contactlaw/engines": 3_642,
+    "contactlaw/equation": 2_776,  # series of w_m, masses, the part of a law that an impact asks
+    "contactlaw/export": 1_070,
+    "contactlaw/fitting": 2_135,
+    "contactlaw/laws": 2_060,  # laws know their strengths, and are made in two thirds of the time
+    "contactlaw/physical": 3_253,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/record": 688,
+    "contactlaw/reporting": 1_051,
+    "contactlaw/stepping": 1_984,
+    "contactlaw/table": 2_997,  # one interpolant, of two or three axes
+    "contactlaw/walls": 1_953,
     "contactlaw templates": 1_079,  # sources of other languages, and pages
-    "dem_demo": 4_369,
+    "dem_demo": 4_378,
     "validation": 14_861,  # with spheres that are not solid, and the turning-point form
-    "tests": 23_818,  # a fact is held at one level, the one that is nearest to the user
+    "tests": 24_007,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -143,7 +153,7 @@ def test_kernels_know_neither_units_nor_files(path):
         parent = name.rpartition(".")[0]
         known = name in allowed or parent in allowed or name == "contactlaw"
         inside = name.startswith("contactlaw.") and name.split(".")[1] in (
-            "_jit", "_kept", "equation", "table", "laws"
+            "_errors", "_jit", "_kept", "equation", "table", "laws"
         )  # fmt: skip
         assert known or inside, name
 
@@ -158,7 +168,7 @@ def test_laws_are_plain_numpy(path):
             if path.with_suffix(".json").exists():  # the numbers of its formulas
                 allowed |= {"json", "importlib", "typing"}
             assert package in allowed, name
-            assert package != "contactlaw" or rest == "" or rest.startswith("laws"), name
+            assert package != "contactlaw" or rest == "" or rest.startswith(("laws", "_errors"))
     assert "@kernel" not in path.read_text()
 
 

@@ -86,3 +86,51 @@ def test_a_full_device_is_an_error_in_words(tmp_path, monkeypatch, capsys):
     pair = "--sphere gamma-alumina --plate glass --law myc --table none"
     assert main(["export", "header", *pair.split(), "--out", str(tmp_path / "full")]) == 1
     assert f"--out: cannot write {tmp_path}/full: No space left" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("blocked", ["c", "f"])
+def test_a_folder_is_replaced_as_a_whole_or_not_at_all(blocked, tmp_path, monkeypatch):
+    for name in "abcde":
+        (tmp_path / "out" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "out" / name).write_text("before")
+    replace = os.replace
+
+    def fail(source, target):
+        if os.path.basename(target) == blocked and not os.fspath(source).endswith(".old"):
+            raise PermissionError(13, "in use", source)
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(PermissionError, match=f"in use: '{tmp_path}/out/{blocked}'"):
+        with _atomic.folder(tmp_path / "out") as made:
+            for name in "abcdef":
+                (made / name).write_text("after")
+    assert names(tmp_path) == ["out"] and names(tmp_path / "out") == list("abcde")
+    assert {path.read_text() for path in (tmp_path / "out").iterdir()} == {"before"}
+
+
+def test_a_folder_in_the_way_of_a_file_is_named(tmp_path, capsys):
+    (tmp_path / "out" / "wall.h").mkdir(parents=True)
+    with (
+        pytest.raises(IsADirectoryError, match="out/wall.h"),
+        _atomic.folder(tmp_path / "out") as made,
+    ):
+        (made / "a.h").write_text("after")
+        (made / "wall.h").write_text("after")
+    assert names(tmp_path) == ["out"] and names(tmp_path / "out") == ["wall.h"]
+    command = "export liggghts --sphere gamma-alumina --plate glass --law myc --out"
+    assert main([*command.split(), str(tmp_path / "other")]) == 0
+    one = names(tmp_path / "other")[0]
+    (tmp_path / "other" / one).unlink()
+    (tmp_path / "other" / one).mkdir()
+    capsys.readouterr()
+    assert main([*command.split(), str(tmp_path / "other")]) == 1
+    assert f"--out: cannot write {tmp_path}/other/{one}: Is a directory" in capsys.readouterr().err
+
+
+def test_a_full_disk_names_the_folder_and_leaves_nothing(tmp_path):
+    with pytest.raises(OSError, match=f"No space left on device: '{tmp_path}/out'"):
+        with _atomic.folder(tmp_path / "out") as made:
+            (made / "a.h").write_text("after")
+            raise OSError(ENOSPC, os.strerror(ENOSPC), str(made / "b.h"))
+    assert names(tmp_path) == []

@@ -13,6 +13,7 @@ from typing import NoReturn, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.rebound import Rebound
@@ -110,11 +111,8 @@ def _above(value: float, limit: float) -> str:
 def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -> NoReturn:
     """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
     n = int(np.argmax(beyond))
-    raise ValueError(
-        f"thickness: at {impacts.thickness[n]:g} m under a bead of radius {impacts.radius[n]:g} m "
-        f"the inelasticity at yield is beyond the table's {limit:.4g}; the plate is too thin for "
-        "the model"
-    )
+    thin = f"under a bead of {impacts.radius[n]:g} m the inelasticity at yield is above {limit:.4g}"
+    raise ArgumentError("thickness", impacts.thickness[n], f"too thin for the table: {thin}")
 
 
 @contextmanager

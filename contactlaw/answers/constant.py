@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.validity import Validity, count_flags
 
 Array = NDArray[np.float64]
@@ -72,14 +73,14 @@ def constant(
     `e` and `flags` are the COR and the flags of each impact.
     """
     if keep not in ("energy", "momentum"):
-        raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
+        raise ArgumentError("keep", keep, "must be 'energy' or 'momentum'")
     if speed.size == 0:
-        raise ValueError("speed: got no impact, at least one is needed")
+        raise ArgumentError("speed", None, "got no impact, at least one is needed")
     if not (np.isfinite(weights) & (weights >= 0.0)).all():
         wrong = float(weights[~(np.isfinite(weights) & (weights >= 0.0))][0])
-        raise ValueError(f"weights: must be finite and not negative, got {wrong!r}")
+        raise ArgumentError("weights", wrong, "must be finite and not negative")
     if not weights.any():
-        raise ValueError("weights: all of them are 0, at least one has to be positive")
+        raise ArgumentError("weights", None, "all of them are 0, at least one has to be positive")
     share = weights / weights.max()
     mass = share * (radius / radius.max()) ** 3
     momentum = mass * (speed / speed.max())

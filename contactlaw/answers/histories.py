@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import Backend
 from contactlaw.answers.edges import with_edges
 from contactlaw.answers.solver import Solver
@@ -68,9 +69,9 @@ class Histories:
         array([ 0. , 16.9, 28.2, 15.1,  0. ])
         """
         if not (isinstance(samples, int | np.integer) and 2 <= samples <= 1_000_000):
-            raise ValueError(f"samples: must be an integer from 2 to 1 000 000, got {samples!r}")
+            raise ArgumentError("samples", samples, "must be an integer from 2 to 1 000 000")
         if method not in ("table", "solve"):
-            raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
+            raise ArgumentError("method", method, "must be 'table' or 'solve'")
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
         impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import scale_of
 from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.solver import Solver
@@ -103,8 +104,8 @@ class _Curve:
             strict = TableLookup(border.bodies, border.given, Border("raise"))
             strict.rebounds(self.impacts(nearest))
         except OutsideTableError as error:
-            said = f"{name}: even {where} the impact is outside the table, {error.reason}"
-            raise ValueError(said) from None
+            reason = f"even {where} the impact is outside the table, {error.reason}"
+            raise ArgumentError(name, None, reason) from None
 
     def impacts(self, x: Array) -> Impacts:
         with np.errstate(divide="ignore"):

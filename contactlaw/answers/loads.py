@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.physical.arguments import broadcast, check, number
 
@@ -88,20 +89,19 @@ def load_signal(
     start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
     check(speed=v, radius=r, thickness=h)
     if not np.isfinite(start).all():
-        raise ValueError(f"times: must be finite [s], got {start[~np.isfinite(start)][0]}")
+        reason = f"must be finite [s], got {start[~np.isfinite(start)][0]}"
+        raise ArgumentError("times", None, reason)
     rate = number("rate", rate)
     if not (0.0 < rate < math.inf and 1.0 / rate < math.inf):
-        raise ValueError(f"rate: must be positive and finite [1/s], as 1/rate, got {rate!r}")
+        raise ArgumentError("rate", rate, "must be positive and finite [1/s], as 1/rate")
     if duration is not None:
         duration = number("duration", duration)
     else:
         ends = start + np.ravel(model.lookup(v, r, h).contact_time)
         duration = max(float(ends.max(initial=0.0)), 1.0 / rate)
     if not 0.0 < duration * rate <= _LONGEST:
-        raise ValueError(
-            f"duration: must be positive and at most {_LONGEST} samples at rate {rate:g} /s, "
-            f"got {duration!r} s"
-        )
+        reason = f"must be positive and at most {_LONGEST} samples at rate {rate:g} /s"
+        raise ArgumentError("duration", duration, reason)
     force = np.zeros(math.ceil(duration * rate * (1.0 - 1e-12)))  # 0.07 s at 100 /s are 7 samples
     within = np.flatnonzero((start > -_LONGEST_CONTACT) & (start < duration))
     for part in np.split(within, range(_CHUNK, within.size, _CHUNK)):

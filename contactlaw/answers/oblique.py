@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.edges import with_edges
@@ -94,7 +95,7 @@ class Oblique:
         (array([-0.26,  0.83]), array([0.061, 0.2  ]))
         """
         if method not in ("table", "solve"):
-            raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
+            raise ArgumentError("method", method, "must be 'table' or 'solve'")
         v, s, r, h, mu, near, hole, *masses, shape = broadcast(
             speed=speed, sliding_speed=sliding_speed, radius=radius, thickness=thickness,
             friction=friction, edge_distance=edge_distance, hole_radius=hole_radius,
@@ -152,7 +153,7 @@ class Oblique:
             velocity=velocity, spin=spin, normal=normal, wall_velocity=wall_velocity
         )
         if not n.any(axis=1).all():
-            raise ValueError(f"normal: must not be zero, got {normal!r}")
+            raise ArgumentError("normal", normal, "must not be zero")
         oblique.unit_all(n)
         count = np.empty(shape[:-1])
         r, h, mu, _, *masses, within = broadcast(

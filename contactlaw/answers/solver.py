@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import (
     OutsideTableError,
     UnsolvedError,
@@ -93,6 +94,13 @@ class Solver:
     bodies: SphereOnPlate
     rtol: float = RTOL
     extent: Settings | None = None
+
+    @classmethod
+    def within(cls, bodies: SphereOnPlate, rtol: float) -> Solver:
+        """Make the solver with an error per step that a user asks for."""
+        if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
+            raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
+        return cls(bodies, rtol)
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, within
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, count_flags
@@ -50,7 +51,7 @@ def speed_table(
     within("error", np.array([error]), 1e-5, 0.1, "[-], in COR")
     check(slowest=np.array([slowest]), fastest=np.array([fastest]))
     if not slowest < fastest:
-        raise ValueError(f"slowest: must be below the fastest speed, {fastest!r}, got {slowest!r}")
+        raise ArgumentError("slowest", slowest, f"must be below the fastest speed, {fastest!r}")
     lookup(np.array([slowest, fastest]))  # refuses a range that leaves the table
     speed = np.geomspace(slowest, fastest, _CHOICE)
     between = np.arange(1, _FINER + 1) / (_FINER + 1)
@@ -64,10 +65,8 @@ def speed_table(
             flags = np.asarray(lookup(speed[rows]).flags)
             return SpeedTable(speed[rows], e[rows], measured, count_flags(flags))
         allowed -= 1.01 * (measured - error)
-    raise ValueError(
-        f"error: {error:g} is too small from {slowest:g} to {fastest:g} m/s: give a narrower range "
-        "or a larger error"
-    )
+    reason = f"too small from {slowest:g} to {fastest:g} m/s: narrow the range, or raise it"
+    raise ArgumentError("error", error, reason)
 
 
 def fewest(x: Array, y: Array, error: float) -> NDArray[np.intp]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import (
     OutsideTableError,
@@ -57,7 +58,7 @@ class Border:
 
     def __init__(self, outside: Outside) -> None:
         if outside not in ("raise", "solve", "clamp"):
-            raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
+            raise ArgumentError("outside", outside, "must be 'raise', 'solve' or 'clamp'")
         self.outside = outside
         self.clamped = 0
         self.lock = threading.Lock()
@@ -125,6 +126,15 @@ class TableLookup:
         return table_for(self.law, self.given)
 
     @functools.cached_property
+    def instead(self) -> Solver | None:
+        """The solver in place of a table that takes minutes to build without the compiler."""
+        ships = self.given is not None or file.packaged(_law_with_table(self.bodies.law))
+        if ships or self.border.outside == "clamp" or not switched_off():
+            return None
+        limits = extent(self.bodies.law) if self.border.outside == "raise" else None
+        return Solver(self.bodies, extent=limits)
+
+    @functools.cached_property
     def packed(self) -> Array:
         """The table as kernels read it, with the constants of the pair."""
         return lookup.with_plate(self.table.packed, self.bodies.constants)
@@ -163,6 +173,8 @@ class TableLookup:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        if self.instead is not None:
+            return self.instead.rebounds(impacts)
         return self._rebound(impacts, self._looked_up(impacts))
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
@@ -202,7 +214,8 @@ class TableLookup:
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        if impacts.mass is not None or self.bodies.constants.plate.rate.slope > 0.0:
+        rated = self.bodies.constants.plate.rate.slope > 0.0
+        if impacts.mass is not None or rated or self.instead is not None:
             given = extent(self.bodies.law) if self.given is None else self.table.settings
             return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
         out = np.full(impacts.radius.size, math.inf)
@@ -317,11 +330,13 @@ def table_for(law: Law, table: TableArgument) -> Table:
             stacklevel=_stack_level(),
         )
     if not table.law.follows(served):
-        raise ValueError(
-            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r} "
-            f"(data {table.law.key} and {served.key}; laws of one name differ in their rates): "
-            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
-            "--plate if the law takes numbers from them"
+        raise ArgumentError(
+            "table",
+            None,
+            f"it belongs to law {table.law.name!r}, the model needs one of {served.name!r} (data "
+            f"{table.law.key} and {served.key}; laws of one name differ in their rates): leave it "
+            f"out, or contactlaw table build --law {served.family}, with --sphere and --plate if "
+            "the law takes numbers from them",
         )
     return table
 

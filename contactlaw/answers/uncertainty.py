@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.varied import solver, with_number
@@ -147,10 +148,8 @@ def _changed(body: Material, change: Change, z: float) -> Material:
         most = _LARGEST.get(change.name, math.inf)
         return with_number(body, change.name, min(factor * first, most))
     except ValueError as error:
-        raise ValueError(
-            f"uncertainty of {body.name!r}: {change.name} {change.error:g} is too large, for "
-            f"{factor:.3g} times the value: {error}"
-        ) from None
+        reason = f"{change.name} is too large, for {factor:.3g} times the value: {error}"
+        raise ArgumentError("uncertainty", change.error, reason) from None
 
 
 class Uncertain:

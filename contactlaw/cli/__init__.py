@@ -17,6 +17,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from contactlaw._version import VERSION
 from contactlaw.parser import Parser
@@ -79,6 +80,8 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
                       help="print the version and exit")  # fmt: skip
+    made.add_argument("--print-completion", action=_Completion, choices=("bash", "zsh", "tcsh"),
+                      help="print a script for the shell's completion and exit")  # fmt: skip
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
     listed = _subcommands()
     asked = next((word for word in words or () if not word.startswith("-")), None)
@@ -88,6 +91,32 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     for module in sorted(modules):
         importlib.import_module(f"{__name__}.{module}").add(commands)
     return made
+
+
+class _Completion(argparse.Action):
+    """Prints a script by which a shell completes subcommands, options, materials and laws."""
+
+    def __call__(self, caller: argparse.ArgumentParser, _: Any, shell: Any, __: Any = None) -> None:
+        try:
+            import shtab
+        except ImportError:
+            caller.exit(_REFUSED, "contactlaw: this needs shtab: pip install 'contactlaw[shell]'\n")
+        from contactlaw import laws
+        from contactlaw.physical.materials import materials
+
+        names = {"sphere": materials(), "plate": materials(), "law": laws.names()}
+        files = {"FILE": shtab.FILE, "FOLDER": shtab.DIR, "DIR": shtab.DIR}
+        made = parser()
+        found = list(made._actions)  # those of subcommands are put behind, and follow
+        for action in found:
+            if isinstance(action.choices, dict):
+                found += [one for each in action.choices.values() for one in each._actions]
+            elif action.dest in names:
+                action.choices = names[action.dest]
+            elif action.metavar in files:
+                action.complete = files[action.metavar]  # type: ignore[attr-defined]
+        print(shtab.complete(made, shell))
+        caller.exit()
 
 
 def _subcommands() -> dict[str, tuple[str, str]]:

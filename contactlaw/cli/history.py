@@ -11,7 +11,7 @@ import numpy as np
 from contactlaw import style
 from contactlaw._readable import drawn
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
-from contactlaw.cli.parts.plots import plate_of
+from contactlaw.cli.parts.plots import plate_of, save
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain, limits_in_words
@@ -94,4 +94,4 @@ def _draw(contact: ForceHistory, title: str, path: str) -> None:
         plate.spines["right"].set_visible(True)
         right.set(xlabel="compression [µm]", xlim=(0.0, None))
         right.legend(loc="upper left")
-        figure.savefig(path)
+        save(figure, path)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from contactlaw import laws, table
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.physical.law import law_of
@@ -89,9 +90,8 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
     if not laws.parameters(arguments.law):
         return laws.law(arguments.law)
     if arguments.sphere is None or arguments.plate is None:
-        raise wording.Refused(
-            f"--law: {arguments.law!r} takes numbers from a pair: give --sphere and --plate too"
-        )
+        reason = "takes numbers from a pair: give --sphere and --plate too"
+        raise ArgumentError("law", arguments.law, reason)
     pair = chosen.pair(arguments)
     return with_strengths(pair, law_of(pair, arguments.law))
 

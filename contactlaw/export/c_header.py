@@ -17,6 +17,7 @@ from importlib import resources
 from typing import Any, Literal
 
 from contactlaw import _atomic
+from contactlaw._errors import ArgumentError
 from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, INT, C, Known, Program, add
@@ -110,18 +111,18 @@ def header(
     if not isinstance(model, ImpactModel):
         raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
     if table not in ("cor", "none"):
-        raise ValueError(f"table: must be 'cor' or 'none', got {table!r}")
+        raise ArgumentError("table", table, "must be 'cor' or 'none'")
     if not (isinstance(prefix, str) and _PREFIX.fullmatch(prefix)):
-        raise ValueError(
-            "prefix: must be lower-case words of letters and digits, joined by single underscores "
-            f"and beginning with a letter, as in 'steel_on_glass', got {prefix!r}"
-        )
+        reason = "must be lower-case words and digits joined by _, as 'steel_on_glass'"
+        raise ArgumentError("prefix", prefix, reason)
     thin = thin_table(model) if table == "cor" else None
     content = _text(model, thin, prefix).encode()
     if len(content) > LARGEST:
-        raise ValueError(
-            f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
-            "a model with coarser Settings, or one with a rate for one of two bodies alone"
+        raise ArgumentError(
+            "table",
+            None,
+            f"the header would have {len(content)} bytes, above {LARGEST}: take 'none', or a "
+            "model with coarser Settings, or one with a rate for one of two bodies alone",
         )
     _atomic.write(path, content)
 

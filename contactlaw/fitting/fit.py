@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
@@ -27,6 +28,7 @@ from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
+from contactlaw.record.file import Record
 
 Array = NDArray[np.float64]
 
@@ -135,9 +137,8 @@ class Fit:
             inputs |= {"sliding_speed": sliding_speed, "friction": np.mean(friction)}
         kinds = [name for name in self.residuals if name in NORMAL or "friction" in inputs]
         if not kinds:
-            raise ValueError(
-                "sliding_speed: has to be given, since only oblique kinds were measured"
-            )
+            reason = "has to be given, since only oblique kinds were measured"
+            raise ArgumentError("sliding_speed", None, reason)
         *flat, _ = broadcast(**inputs)
         data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
         varied = [
@@ -154,7 +155,7 @@ class Fit:
 
 def fit(
     pair: Pair,
-    data: Measurements | Mapping[str, ArrayLike],
+    data: Measurements | Mapping[str, ArrayLike] | Record,
     unknown: str | Iterable[str],
     law: str | Law = DEFAULT,
     priors: Mapping[str, float] | None = None,
@@ -166,8 +167,9 @@ def fit(
     pair : Pair
         Materials of bead and plate. Their values of unknowns are ignored, except that moduli and
         densities are sought within a factor of 5 of them.
-    data : Measurements or mapping
-        What was measured, as `Measurements` or as a mapping with its arguments for names.
+    data : Measurements, mapping or Record
+        What was measured, as `Measurements` or as a mapping with its arguments for names; or the
+        record of a run, of whose impacts on walls the COR counts.
     unknown : str or sequence of str
         Up to three of ``"yield_strength"``, ``"youngs_modulus"``, ``"density"`` of the bead,
         ``"plate_yield_strength"``, ``"plate_youngs_modulus"``, ``"plate_density"``,
@@ -215,7 +217,8 @@ def fit(
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()
-    data = Measurements.of(data)
+    unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
+    data = Measurements.of(data, {*unknown} - {*(priors or {})})
     given, pair = pair, with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {}, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
@@ -252,10 +255,9 @@ def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquar
     values = predictor.values
     free = sum(one.prior is None for one in predictor.parameters)
     if values.value.size < free:
-        raise ValueError(
-            f"unknown: {values.value.size} measured values cannot determine {free} unknowns: leave "
-            "one out, give priors, or measure more"
-        )
+        many = f"{values.value.size} measured values cannot determine {free} unknowns"
+        remedy = "leave one out, give priors, or measure more"
+        raise ArgumentError("unknown", None, f"{many}: {remedy}")
     error, freedom, rounds = search.guessed(values), math.inf, 0
     if np.isnan(values.error).any():
         freedom, rounds = 0.0, _ROUNDS if values.value.size > free else 0
@@ -442,7 +444,7 @@ def _nonlinearity_factors(
             if square < _LEAST_RISE:
                 end = float(at[n] * math.exp(-sign * shift[n]))
                 raise identify.UnidentifiedError(
-                    f"unknown: the data bound {one.name} on one side only: {words} "
+                    f"the data bound {one.name} on one side only: {words} "
                     f"{f'{end:.3g} {one.unknown.unit}'.rstrip()}. Measure another quantity, or "
                     f"other {'angles' if one.name == 'friction' else 'speeds'}",
                     (one.name,),
@@ -471,7 +473,7 @@ def _check_strengths(
             if _squares(predictor, there, doubt) < least + _EXCLUDED:
                 why = _least_value(predictor, strong, n, error)
                 raise identify.UnidentifiedError(
-                    f"unknown: the data do not determine {one.name}: {why}", (one.name,)
+                    f"the data do not determine {one.name}: {why}", (one.name,)
                 )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import percent
 
 Array = NDArray[np.float64]
@@ -13,7 +14,7 @@ _VAGUE = 0.5  # standard error of a logarithm from which on a value is not known
 _SMALL = 0.05  # smaller exponents are left out of a product
 
 
-class UnidentifiedError(ValueError):
+class UnidentifiedError(ArgumentError):
     """Raised if the data do not determine the unknowns of a fit.
 
     Attributes
@@ -31,11 +32,9 @@ class UnidentifiedError(ValueError):
         unknown: tuple[str, ...],
         known: tuple[tuple[dict[str, float], float, float], ...] = (),
     ) -> None:
-        super().__init__(message, unknown, known)  # the arguments as given: pickle needs them
-        self.message, self.unknown, self.known = message, unknown, known
-
-    def __str__(self) -> str:
-        return self.message
+        super().__init__("unknown", None, message)
+        self.args = message, unknown, known  # pickle needs them
+        self.unknown, self.known = unknown, known
 
 
 def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
@@ -59,7 +58,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     if len(names) == 1:
         error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
         raise UnidentifiedError(
-            f"unknown: the data do not determine {names[0]}: its standard error is {error:.0f} %",
+            f"the data do not determine {names[0]}: its standard error is {error:.0f} %",
             names,
         )
     known = []
@@ -70,7 +69,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
                      for powers, value, error in known)  # fmt: skip
     products = f"they determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
-        f"unknown: the data do not tell {' and '.join(names)} apart: {products}"
+        f"the data do not tell {' and '.join(names)} apart: {products}"
         "Fix one of them, give one with its prior standard error, or measure another quantity",
         names,
         tuple(known),

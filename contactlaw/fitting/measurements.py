@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import broadcast, check, within
+from contactlaw.record.file import Record
 
 Array = NDArray[np.float64]
 
@@ -79,6 +81,8 @@ class Measurements:
         Standard errors of all these quantities, in the same units, for all rebounds that have the
         quantity. Without them a fit takes errors of one relative size and finds it from the
         scatter.
+    line : array_like, optional
+        Lines of a file, or other numbers by which you know the rebounds: messages name them.
 
     Raises
     ------
@@ -111,13 +115,15 @@ class Measurements:
     tangential_restitution_error: ArrayLike | None = None
     rotational_restitution_error: ArrayLike | None = None
     spin_error: ArrayLike | None = None
+    line: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store flat arrays."""
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         given = {name: values for name, values in given.items() if values is not None}
         if not given.keys() & KINDS.keys():
-            raise ValueError(f"data: have to hold at least one of {', '.join(KINDS)}, got none")
+            reason = f"have to hold at least one of {', '.join(KINDS)}, got none"
+            raise ArgumentError("data", None, reason)
         *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
         flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
         missing = np.all([np.isnan(flat[name]) for name in KINDS if name in flat], axis=0)
@@ -127,7 +133,7 @@ class Measurements:
             flat = {name: values[~missing] for name, values in flat.items()}
         sizes = {name: flat[name] for name in INPUTS if name in flat}
         if flat["speed"].size == 0:
-            raise ValueError("data: got no rebound, at least one is needed")
+            raise ArgumentError("data", None, "got no rebound, at least one is needed")
         check(**sizes)
         _resolve_angle(flat)
         for name, kind in KINDS.items():
@@ -143,14 +149,24 @@ class Measurements:
         """Count the rebounds."""
         return int(np.size(self.speed))
 
+    def rebound(self, n: int) -> str:
+        """Name a rebound by its number, and by its line if that is known."""
+        at = "" if self.line is None else f", line {np.asarray(self.line)[n]:.0f}"
+        return f"rebound {n}{at}"
+
     @property
     def is_oblique(self) -> bool:
         """Whether anything was measured that depends on friction."""
         return any(getattr(self, name) is not None for name in OBLIQUE)
 
     @classmethod
-    def of(cls, data: Measurements | Mapping[str, ArrayLike]) -> Measurements:
+    def of(
+        cls, data: Measurements | Mapping[str, ArrayLike] | Record, unknown: Collection[str] = ()
+    ) -> Measurements:
         """Return measurements as they are, or make them from a mapping of names, as a DataFrame.
+
+        Of the record of a run these are the COR of its impacts on walls, with the sizes that are
+        not `unknown`; `line` is the number of the row.
 
         Raises
         ------
@@ -161,16 +177,23 @@ class Measurements:
         """
         if isinstance(data, Measurements):
             return data
+        if isinstance(data, Record):
+            line = np.flatnonzero(data.impact & (data.rows["plate"] >= 0))
+            names = {"restitution", "radius", "thickness"} & {*(data.rows.dtype.names or ())} - {
+                *unknown
+            }
+            named = {name: data.rows[name][line] for name in names}
+            return cls(data.rows["approach_speed"][line], **named, line=line)
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
             raise TypeError(
-                f"data: expected contactlaw.Measurements or a mapping of names, got {data!r}"
+                f"data: expected Measurements, a Record or a mapping of names, got {data!r}"
             )
         known = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
         wrong = [name for name in columns if name not in known]
         if wrong or "speed" not in columns:
             what = f"does not know {', '.join(map(repr, wrong))}" if wrong else "lacks 'speed'"
-            raise ValueError(f"data: {what}; names are {', '.join(known)}")
+            raise ArgumentError("data", None, f"{what}; names are {', '.join(known)}")
         return cls(**columns)
 
 
@@ -185,7 +208,7 @@ def _resolve_angle(flat: dict[str, Array]) -> None:
     """Split the speeds of beads that come at angles into their normal and tangential parts."""
     if "angle" in flat:
         if "sliding_speed" in flat:
-            raise ValueError("angle: give angles or sliding speeds, not both")
+            raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
         angle, speed = flat.pop("angle"), flat["speed"]
         within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
         flat["speed"] = speed * np.cos(np.radians(angle))
@@ -198,17 +221,13 @@ def _resolve_angle(flat: dict[str, Array]) -> None:
 def _check_sliding(name: str, flat: dict[str, Array]) -> None:
     """Refuse what friction did to beads that did not slide, or nobody knows how fast."""
     if "sliding_speed" not in flat:
-        raise ValueError(
-            f"angle: has to be given with {name}, of incidence from the plate's normal [deg]; or "
-            "sliding_speed [m/s]"
-        )
+        reason = f"has to be given with {name} [deg], from the normal; or sliding_speed [m/s]"
+        raise ArgumentError("angle", None, reason)
     still = np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)
     if still.any():
         n = int(np.argmax(still))
-        raise ValueError(
-            f"{name}: got {float(flat[name][n])!r} (element {n}) of a bead that came without "
-            "sliding: give NaN there, or its angle"
-        )
+        reason = "its bead came without sliding: give NaN there, or its angle"
+        raise ArgumentError(name, flat[name][n], reason, n)
 
 
 def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
@@ -216,17 +235,15 @@ def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
     values, errors = flat.get(name), flat.get(f"{name}_error")
     if values is None:
         if errors is not None:
-            raise ValueError(f"{name}_error: there is no {name} that it is of")
+            raise ArgumentError(f"{name}_error", None, f"there is no {name} that it is of")
         return
     wrong = ~(np.isnan(values) | ((values >= kind.least) & (values <= kind.largest)))
     if wrong.any():
         n = int(np.argmax(wrong))
-        raise ValueError(
-            f"{name}: got {float(values[n])!r} (element {n}); must lie between {kind.least:g} and "
-            f"{kind.largest:g} [{kind.unit}] ({kind.hint})"
-        )
+        limits = f"{kind.least:g} and {kind.largest:g} [{kind.unit}] ({kind.hint})"
+        raise ArgumentError(name, values[n], f"must lie between {limits}", n)
     if np.isnan(values).all():
-        raise ValueError(f"{name}: no rebound has one: leave it out")
+        raise ArgumentError(name, None, "no rebound has one: leave it out")
     if errors is None:
         return
     measured = np.isfinite(values)
@@ -234,8 +251,6 @@ def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
     bad = measured & ~((errors > 0.0) & (errors >= least) & (errors < np.inf))
     if bad.any():
         n = int(np.argmax(bad))
-        raise ValueError(
-            f"{name}_error: got {float(errors[n])!r} (element {n}); must be positive [{kind.unit}] "
-            f"wherever there is a {name}, and at least {_LEAST_ERROR:g} of it; leave all of them "
-            "out if they are not known"
-        )
+        where = f"[{kind.unit}] wherever there is a {name}, and at least {_LEAST_ERROR:g} of it"
+        reason = f"must be positive {where}; leave all of them out if they are not known"
+        raise ArgumentError(f"{name}_error", errors[n], reason, n)

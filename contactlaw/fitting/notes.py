@@ -115,7 +115,7 @@ def alternative_note(names: tuple[str, ...], values: Array) -> str:
 
 def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> UnidentifiedError:
     """Add to a refusal which values are attainable, or which of them cannot be."""
-    (message, *_) = [*(f"unknown: {one}" for one in _outside(predictor, at)), refused.message]
+    (message, *_) = [*_outside(predictor, at), refused.reason]
     message = ". ".join([message, *_above_one(predictor)])
     return UnidentifiedError(message, refused.unknown, refused.known)
 
@@ -165,7 +165,7 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
         name = list(KINDS)[values.kind[n]]
         sign = "+" if off[n] > 0.0 else ""
         yield (
-            f"{name} of rebound {values.row[n]} is {sign}{percent(off[n])} off the "
+            f"{name} of {predictor.data.rebound(values.row[n])} is {sign}{percent(off[n])} off the "
             f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )
 
@@ -174,8 +174,9 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
         rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
         if rows.size:
-            which = f"{name} of rebound{'s' * (rows.size > 1)} {listed(rows)}"
-            yield f"{which} is above 1: no impact gains energy, a mistake?"
+            which = f"rebounds {listed(rows)}"
+            which = predictor.data.rebound(rows[0]) if rows.size == 1 else which
+            yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
 
 
 def _outside(predictor: Predictor, at: Array) -> Iterator[str]:
@@ -200,10 +201,8 @@ def _outside(predictor: Predictor, at: Array) -> Iterator[str]:
     ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
     if unknown in OTHER_STRENGTH:
         ends += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
-    yield (
-        f"no {unknown} gives the {name} {f'{value:.4g} {unit}'.rstrip()} of rebound {row}, at "
-        f"{rounded(speed, 3)} m/s: attainable is {ends}"
-    )
+    which = f"{name} {f'{value:.4g} {unit}'.rstrip()} of {predictor.data.rebound(row)}"
+    yield f"no {unknown} gives the {which}, at {rounded(speed, 3)} m/s: attainable is {ends}"
 
 
 def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.answers.varied import Number, with_numbers
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
@@ -118,14 +119,14 @@ def parameters(
     for argument, given in (("unknown", names), ("priors", list(priors))):
         for name in given:
             if name not in UNKNOWNS:
-                raise ValueError(f"{argument}: got {name!r}, must be of {', '.join(UNKNOWNS)}")
+                raise ArgumentError(argument, name, f"must be of {', '.join(UNKNOWNS)}")
     if not 1 <= len(names) <= _MOST or len(set(names)) < len(names):
-        raise ValueError(f"unknown: must be one to {_MOST} different names, got {names!r}")
+        raise ArgumentError("unknown", names, f"must be one to {_MOST} different names")
     if "friction" in [*names, *priors] and not data.is_oblique:
-        raise ValueError(
-            f"unknown: {', '.join(NORMAL)} do not depend on friction: measure one of "
-            f"{', '.join(OBLIQUE)} at an angle"
+        kinds = (
+            f"{', '.join(NORMAL)} do not depend on friction: measure one of {', '.join(OBLIQUE)}"
         )
+        raise ArgumentError("unknown", None, f"{kinds} at an angle")
     for size in _SIZES if data.is_oblique else _SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
@@ -153,10 +154,9 @@ def with_loss_factors(pair: Pair, data: Measurements, unknown: str | Iterable[st
         if one.field != "loss_factor" or bodies[one.body].loss_factor:
             continue
         if data.radius is None:
-            raise ValueError(
-                f"unknown: {name} needs the frequency of the impacts, and so their radius: give "
-                f"radius, or Material(..., loss_factor=(a guess, frequency)) of the {one.body}"
-            )
+            guess = f"Material(..., loss_factor=(a guess, frequency)) of the {one.body}"
+            reason = f"needs the frequency of the impacts: give their radius, or {guess}"
+            raise ArgumentError("unknown", name, reason)
         sizes = np.asarray(data.radius) / np.asarray(data.speed) ** 0.2
         time = CONTACT_TIME * unit_time(pair) * np.median(sizes)
         loss_factor = _USUAL_LOSS, float(0.5 / time)
@@ -166,17 +166,14 @@ def with_loss_factors(pair: Pair, data: Measurements, unknown: str | Iterable[st
 
 def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
     if values is None and not unknown:
-        raise ValueError(
-            f"{name}: has to be given [{UNKNOWNS[name].unit or '-'}], for each rebound or one for "
-            "all, or to be unknown"
-        )
+        unit = UNKNOWNS[name].unit or "-"
+        reason = f"has to be given [{unit}], for each rebound or one for all, or to be unknown"
+        raise ArgumentError(name, None, reason)
     if values is not None and unknown and not prior:
-        raise ValueError(
-            f"{name}: is unknown and given: leave it out of the data, or give its standard error "
-            "as a prior"
-        )
+        reason = "is unknown and given: leave it out of the data, or give its error as a prior"
+        raise ArgumentError(name, None, reason)
     if values is not None and prior and not np.isfinite(values).all():
-        raise ValueError(f"{name}: a half-space has no error: leave {name} out of priors")
+        raise ArgumentError(name, None, f"a half-space has no error: leave {name} out of priors")
 
 
 def centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
@@ -192,14 +189,13 @@ def centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
 def _prior(name: str, centre: float, error: float) -> float:
     size = number(name, error)
     if not 0.0 < size < math.inf:
-        raise ValueError(f"priors: the standard error of {name} must be positive, got {error!r}")
+        raise ArgumentError("priors", error, f"the standard error of {name} must be positive")
     if math.isnan(centre):
-        raise ValueError(f"priors: {name} has no value that {error!r} could be the error of")
+        reason = f"{name} has no value that {error!r} could be the error of"
+        raise ArgumentError("priors", None, reason)
     if size >= centre:
-        raise ValueError(
-            f"priors: the standard error of {name} must be below its value {centre:.6g}, got "
-            f"{error!r}: leave it out, and {name} is unknown"
-        )
+        reason = f"the error of {name} must be below it, {centre:.6g}; left out, it is unknown"
+        raise ArgumentError("priors", error, reason)
     return size / centre
 
 

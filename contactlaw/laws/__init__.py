@@ -26,6 +26,7 @@ import pkgutil
 import re
 from types import ModuleType
 
+from contactlaw._errors import ArgumentError
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law, Strengths, laid_out_alike
 
@@ -136,14 +137,14 @@ def law(name: str, **numbers: float) -> Law:
         wanted = every[: len(typed)]
     numbers = {**defaults, **numbers}
     if typed and not wanted:
-        raise ValueError(f"law: {name!r} takes no numbers; name it as {family!r}")
+        raise ArgumentError("law", name, f"takes no numbers: name it as {family!r}")
     if not wanted:
         found: Law = module.LAW
         return found
     form = f"{family}({','.join(wanted)})"
     given = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
     if len(given) != len(wanted):
-        raise ValueError(f"law: {name!r} needs a value for each parameter: name it as {form}")
+        raise ArgumentError("law", name, f"needs a value for each parameter: name it as {form}")
     made: Law = module.law(*(_rounded(*one, form) for one in zip(wanted, given, strict=True)))
     return made if typed else dataclasses.replace(made, from_pair=every)
 
@@ -177,7 +178,7 @@ def _typed(name: str) -> tuple[str, list[str]]:
     if family not in names() or (bracket and not _BRACKETS.fullmatch(bracket + numbers)):
         near = difflib.get_close_matches(family, names(), n=1)
         hint = f"did you mean {near[0]!r}? " if near and near[0] != name else ""
-        raise ValueError(f"law: unknown law {name!r}; {hint}known laws: {', '.join(names())}")
+        raise ArgumentError("law", name, f"unknown law; {hint}known laws: {', '.join(names())}")
     return family, numbers[:-1].split(",") if bracket else []
 
 
@@ -193,7 +194,6 @@ def _rounded(parameter: str, value: float | str, form: str) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if not low <= number <= high:
-        raise ValueError(
-            f"law: {parameter} must lie between {low:g} and {high:g}, got {value!r} in {form}"
-        )
+        reason = f"{parameter} must lie between {low:g} and {high:g}, not {value!r}"
+        raise ArgumentError("law", form, reason)
     return number

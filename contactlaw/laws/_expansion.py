@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation import force as _force
 from contactlaw.laws._branches import HERTZ, Array, Formula, Loading, Unloading
 
@@ -118,10 +119,9 @@ def _expand(
             for ends in ((left[n], middle[n]), (middle[n], right[n]))
         ]  # fmt: skip
         if len(todo) + len(done) > _MOST_PIECES:
-            raise ValueError(
-                f"law: {name!r} is not smooth near {todo[0][0]:.6g} d_Y; give each kink a branch "
-                "that begins there"
-            )
+            near = f"{todo[0][0]:.6g} d_Y"
+            reason = f"it is not smooth near {near}; give each kink a branch that begins there"
+            raise ArgumentError("law", name, reason)
     done.sort(key=lambda piece: piece.start)
     cuts.keep([piece.start for piece in done], low, high)
     return done
@@ -156,10 +156,8 @@ def _powers(
 
 def _refuse(name: str, what: str, value: float, at: float) -> NoReturn:
     gain = "; a loop would gain energy" if what == "loss" and value < 0.0 else ""
-    raise ValueError(
-        f"law: the {what} of {name!r} is {value:.6g} at {at:.6g} d_Y and has to be finite and not "
-        f"negative{gain}"
-    )
+    reason = f"its {what} is {value:.6g} at {at:.6g} d_Y: must be finite, not negative{gain}"
+    raise ArgumentError("law", name, reason)
 
 
 def _values(name: str, what: str, function: Formula, at: Array) -> Array:
@@ -168,10 +166,9 @@ def _values(name: str, what: str, function: Formula, at: Array) -> Array:
         try:
             return np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape)
         except (TypeError, ValueError) as error:
-            raise ValueError(
-                f"law: the {what} of {name!r} has to take an array, as numpy's functions do, and "
-                f"return one number for each of its elements; it raised: {error}"
-            ) from error
+            rule = "an array, as numpy's functions do, and return one number for each element"
+            reason = f"its {what} has to take {rule}; it raised: {error}"
+            raise ArgumentError("law", name, reason) from error
 
 
 class LoadingCurve:
@@ -181,10 +178,8 @@ class LoadingCurve:
         self, name: str, branches: Sequence[Loading], yields: bool, end: float, cuts: Cuts
     ) -> None:
         if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
-            raise ValueError(
-                f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ or "
-                "HERTZ plus higher powers that make it stiffer"
-            )
+            forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
+            raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
         self.end = end
         self.stiffer = branches[0].force != HERTZ
         self.kinks = tuple(float(branch.start) for branch in branches[1:])
@@ -212,10 +207,8 @@ class LoadingCurve:
         for kink in self.kinks:
             before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
             if not abs(after - before) <= max(1e-9, 1e3 * cuts.vanished) * before:
-                raise ValueError(
-                    f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
-                    f"{before:.9g} and {after:.9g} F_Y"
-                )
+                said = f"{kink:.9g} d_Y: {before:.9g} and {after:.9g} F_Y"
+                raise ArgumentError("law", name, f"its loading branches do not meet at {said}")
         _check_rise(name, self.force, 1e-3, self.end, 2000)
 
     def _extend_by_tangent(self) -> None:
@@ -295,7 +288,8 @@ def _check_rise(name: str, force: Formula, low: float, high: float, count: int) 
     falls = np.diff(values) <= 0.0
     if falls.any():
         at = d[int(np.argmax(falls))]
-        raise ValueError(f"law: the loading force of {name!r} does not rise at {at:.6g} d_Y")
+        reason = f"the loading force of {name!r} does not rise at {at:.6g} d_Y"
+        raise ArgumentError("law", None, reason)
 
 
 def check_yield(
@@ -306,10 +300,11 @@ def check_yield(
     stiffer = bool(loading) and loading[0].force != HERTZ
     early = bool(unloading) and (unloading[0].start > 1.0 if stiffer else unloading[0].start != 1.0)
     if any(start < 1.0 for start in starts) or early:
-        raise ValueError(
-            f"law: {name!r} has to follow Hertz's curve up to yield, 1 d_Y: no branch of loading "
-            "but the first may begin before, and the first of unloading begins there"
+        reason = (
+            "has to follow Hertz's curve up to yield, 1 d_Y: no branch of loading but the first "
+            "may begin before, and the first of unloading begins there"
         )
+        raise ArgumentError("law", name, reason)
     if stiffer and coefficient is None:
         return
     if not (starts or unloading):
@@ -318,7 +313,8 @@ def check_yield(
         right = coefficient is not None and 0.0 < coefficient < math.inf
         needed = "a positive number: the law yields"
     if not right:
-        raise ValueError(f"law: yield_coefficient of {name!r} must be {needed}, got {coefficient}")
+        reason = f"yield_coefficient of {name!r} must be {needed}, got {coefficient}"
+        raise ArgumentError("law", None, reason)
 
 
 def _check_joints(
@@ -336,10 +332,8 @@ def _check_joints(
             ("loss", lost, before[1], float(curve.work(dm)[0])),
         ):
             if not abs(value[0] - last) <= max(1e-6, error) * scale:
-                raise ValueError(
-                    f"law: the {what} of {name!r} jumps at {branch.start:.9g} d_Y, from {last:.6g} "
-                    f"to {value[0]:.6g}"
-                )
+                jump = f"at {branch.start:.9g} d_Y, from {last:.6g} to {value[0]:.6g}"
+                raise ArgumentError("law", name, f"its {what} jumps {jump}")
         before = float(left[1]), float(lost[1])
 
 
@@ -352,7 +346,8 @@ def _ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
     """Pair branches with the compressions at which they end; refuse branches out of order."""
     starts = [branch.start for branch in branches]
     if any(not low < high for low, high in itertools.pairwise([*starts, last])):
-        raise ValueError(f"law: branches have to begin one after the other, below {last:g} d_Y")
+        reason = f"branches have to begin one after the other, below {last:g} d_Y"
+        raise ArgumentError("law", None, reason)
     return list(zip(branches, [*starts[1:], last], strict=True)) if starts else []
 
 
@@ -389,10 +384,9 @@ def _unloading_rows(
     some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200 if cuts.checked else 0)
     deep = _values(name, "residual compression", residual, some) >= some
     if deep.any():
-        raise ValueError(
-            f"law: the residual compression of {name!r} is not below the largest one at "
-            f"{some[int(np.argmax(deep))]:.6g} d_Y"
-        )
+        at = some[int(np.argmax(deep))]
+        reason = f"its residual compression is not below the largest one at {at:.6g} d_Y"
+        raise ArgumentError("law", name, reason)
 
     # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
     # for a loss, the loss itself. Rounding does not allow less than 0.05 of dm and of the work.

@@ -24,6 +24,7 @@ import math
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from contactlaw._errors import ArgumentError
 from contactlaw.laws import _etsion
 from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, bisect
 from contactlaw.laws._law import Law
@@ -38,10 +39,9 @@ _LARGEST = 200.0  # [d_Y]; the force has to rise up to here
 def law(modulus_ratio: float, poissons_ratio: float) -> Law:
     """Law of a pair with these E*/sigma_Y and Poisson's ratio of the sphere."""
     if modulus_ratio < _SOFTEST:
-        raise ValueError(
-            f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g}: must be {_SOFTEST:g} or "
-            'more, it was fitted above 120; take law="fem"'
-        )
+        limit = f"must be {_SOFTEST:g} or more"
+        reason = f'E*/sigma_Y is {modulus_ratio:g}, {limit} (fitted above 120): take law="fem"'
+        raise ArgumentError("law", "jackson_green", reason)
     c = 1.295 * math.exp(0.736 * poissons_ratio)
     half_b = 0.07 * math.exp(23.0 / modulus_ratio)
     radius_at_yield = 0.5 * math.pi * c / modulus_ratio / 1.9**half_b
@@ -84,9 +84,11 @@ def _meeting(plastic: Formula, modulus_ratio: float, poissons_ratio: float) -> f
     force = plastic(np.geomspace(high, _LARGEST, 200))
     above, below = (plastic(np.array(d)) > d**1.5 for d in (low, high))
     if not above or below or (np.diff(force) <= 0.0).any():
-        raise ValueError(
-            f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g} and Poisson's ratio "
-            f"{poissons_ratio:g} does not leave Hertz's curve after yield and rise: it was fitted "
-            'for E*/sigma_Y above 120; take law="fem"'
+        raise ArgumentError(
+            "law",
+            "jackson_green",
+            f"with E*/sigma_Y = {modulus_ratio:g} and Poisson's ratio {poissons_ratio:g} it does "
+            "not leave Hertz's curve after yield and rise: it was fitted for E*/sigma_Y above "
+            '120; take law="fem"',
         )
     return float(bisect(lambda d: plastic(d) > d**1.5, low, high))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -41,17 +42,6 @@ _LIMITS = {
 }
 
 
-class ArgumentError(ValueError):
-    """What is wrong with an argument, or with several, whose `name` it has."""
-
-    def __init__(self, name: str, what: str) -> None:
-        super().__init__(name, what)
-        self.name, self.what = name, what
-
-    def __str__(self) -> str:
-        return f"{self.name}: {self.what}"
-
-
 def broadcast(**arguments: ArrayLike) -> Any:
     """Flat float64 arrays of one length, and their common shape (None for scalars)."""
     arrays = {name: _numbers(name, value) for name, value in arguments.items()}
@@ -65,7 +55,8 @@ def _common_shape(arrays: dict[str, Array], *more: tuple[int, ...]) -> tuple[int
         return np.broadcast_shapes(*more, *(array.shape for array in arrays.values()))
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ArgumentError(next(iter(arrays)), f"shapes do not broadcast: {shapes}") from None
+        said = f"shapes do not broadcast: {shapes}"
+        raise ArgumentError(next(iter(arrays)), None, said) from None
 
 
 def refuse_units(name: str, value: object, unit: str) -> None:
@@ -73,8 +64,9 @@ def refuse_units(name: str, value: object, unit: str) -> None:
     if _unit(value) is not None:
         raise ArgumentError(
             name,
-            f"got {value!r}, whose unit would be lost; convert it to SI and pass the bare "
-            f'numbers: x.to("{unit}").magnitude with pint, x.to_value("{unit}") with astropy, unyt',
+            value,
+            "its unit would be lost; convert it to SI and pass the bare numbers: "
+            f'x.to("{unit}").magnitude with pint, x.to_value("{unit}") with astropy, unyt',
         )
 
 
@@ -96,7 +88,7 @@ def _numbers(
     except (ValueError, TypeError, OverflowError):  # rows of different lengths, 10**400
         array = np.asarray(None)
     if array.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
-        raise ArgumentError(name, f"expected {expected}, got {value!r}")
+        raise ArgumentError(name, value, f"expected {expected}")
     with np.errstate(over="ignore"):  # a huge long double becomes inf
         return array.astype(np.float64, copy=False)
 
@@ -118,12 +110,10 @@ def vectors(**arguments: ArrayLike) -> tuple[Any, tuple[int, ...]]:
     arrays = {name: _numbers(name, value) for name, value in arguments.items()}
     for name, values in arrays.items():
         if values.shape[-1:] != (3,) and not (values.ndim == 0 and values == 0.0):
-            raise ArgumentError(
-                name,
-                f"expected vectors of three numbers along the last axis, got shape {values.shape}",
-            )
+            reason = f"expected vectors of three numbers on the last axis, got {values.shape}"
+            raise ArgumentError(name, None, reason)
         if not np.isfinite(values).all():
-            raise ArgumentError(name, f"must be finite, got {arguments[name]!r}")
+            raise ArgumentError(name, arguments[name], "must be finite")
     shape = _common_shape(arrays, (3,))
     rows = (np.broadcast_to(values, shape).reshape(-1, 3) for values in arrays.values())
     return tuple(np.array(row, dtype=np.float64, order="C") for row in rows), shape
@@ -135,7 +125,7 @@ def number(name: str, value: float) -> float:
         return value
     array = _numbers(name, value, "one number")
     if array.ndim > 0:
-        raise ArgumentError(name, f"expected one number, got {value!r}")
+        raise ArgumentError(name, value, "expected one number")
     return float(array)
 
 
@@ -160,13 +150,10 @@ def _check_ratio(radius: Array, thickness: Array) -> None:
     if known.all():
         return
     n = int(np.argmin(known))
-    where = f" (element {n})" if known.size > 1 else ""
     r, h = (float(np.broadcast_to(values, known.shape)[n]) for values in (radius, thickness))
-    raise ArgumentError(
-        "thickness",
-        f"got {h!r}{where} beside a radius of {r!r}, R/H = {r / h:.4g}; must be at "
-        f"least {lookup.THINNEST:g} of the radius, of impacts on thinner foils nothing is known",
-    )
+    least = f"{lookup.THINNEST:g} of the radius, of impacts on thinner foils nothing is known"
+    reason = f"R/H is {r / h:.4g} beside a radius of {r!r}; must be at least {least}"
+    raise ArgumentError("thickness", h, reason, n if known.size > 1 else None)
 
 
 def within(name: str, values: Array, low: float, high: float, remark: str) -> None:
@@ -179,12 +166,9 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     wrong = ~((low <= values) & (values <= high))
     if wrong.any():
         n = int(np.argmax(wrong))
-        where = f" (element {n})" if values.size > 1 else ""
-        raise ArgumentError(
-            name,
-            f"got {float(values[n])!r}{where}; "
-            f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip(),
-        )
+        limits = f"{low:.9g} and {high:.9g} {remark}".rstrip()
+        reason = f"must lie between {limits}"
+        raise ArgumentError(name, values[n], reason, n if values.size > 1 else None)
 
 
 def unlikely(sizes: ArrayLike) -> float | None:

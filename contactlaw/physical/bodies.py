@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation.numbers import (
     HEAVIEST,
     LIGHTEST,
@@ -59,7 +60,7 @@ class SphereOnPlate:
         if impacts.mass is not None:
             solid = self.solid_mass(impacts.radius)
             for n in np.flatnonzero(~beside(impacts.mass, solid))[:1].tolist():
-                raise ValueError(_refused(impacts.mass[n], solid[n], n, impacts.mass.size))
+                raise _refused(impacts.mass[n], solid[n], n if solid.size > 1 else None)
         return impacts
 
     def impact(self, impacts: Impacts) -> Impact:
@@ -93,17 +94,15 @@ def beside(mass: Array, solid: Array) -> NDArray[np.bool_]:
     return np.asarray((mass >= LIGHTEST * solid) & (mass <= HEAVIEST * solid))
 
 
-def _refused(mass: float, solid: float, n: int, count: int) -> str:
-    where = f" (element {n})" if count > 1 else ""
+def _refused(mass: float, solid: float, n: int | None) -> ArgumentError:
     remedy = (
         "a hollow sphere so light is a thin shell, which bends under the contact"
         if mass < LIGHTEST * solid
         else "is it in grams? It is the mass that answers at the contact"
     )
-    return (
-        f"mass: got {mass:g} kg{where}, {mass / solid:.4g} of a solid sphere's {solid:.4g} kg; "
-        f"must be {LIGHTEST:g} to {HEAVIEST:g} of it: {remedy}"
-    )
+    limits = f"must be {LIGHTEST:g} to {HEAVIEST:g} of it: {remedy}"
+    reason = f"{mass / solid:.4g} of a solid sphere's {solid:.4g} kg; {limits}"
+    return ArgumentError("mass", mass, reason, n)
 
 
 class TwoSpheres(SphereOnPlate):

@@ -11,6 +11,8 @@ import re
 
 import numpy as np
 
+from contactlaw._errors import ArgumentError
+
 _KGF_PER_MM2 = 9.80665e6  # [Pa]
 _UNITS = ("HV", "HB", "HBW", "HRC")
 _LEAST, _MOST = 20, 68  # HRC, first and last row of the table
@@ -24,26 +26,22 @@ _VICKERS = (
 _WRITTEN = re.compile(r"\s*(\d+\.?\d*)\s*([A-Za-z]+)\s*[\d./]*\s*")
 
 
-def pascals(what: str, text: str) -> float:
-    """Hardness [Pa] of a text; `what` begins the message if it is refused.
+def pascals(text: str) -> float:
+    """Hardness [Pa] of a text.
 
     Examples
     --------
-    >>> round(pascals("hardness", "62 HRC") / 9.80665e6)  # kgf/mm2
+    >>> round(pascals("62 HRC") / 9.80665e6)  # kgf/mm2
     746
     """
     found = _WRITTEN.fullmatch(text)
     if not found or found[2].upper() not in _UNITS:
-        raise ValueError(
-            f"{what} must be a number in [Pa], or one with a unit of {', '.join(_UNITS)} such as "
-            f"'62 HRC', got {text!r}"
-        )
+        reason = f"must be a number in [Pa], or have a unit of {', '.join(_UNITS)} as '62 HRC'"
+        raise ArgumentError("hardness", text, reason)
     number = float(found[1])
     if found[2].upper() == "HRC":
         if not (_LEAST <= number <= _MOST):
-            raise ValueError(
-                f"{what} must be from {_LEAST} to {_MOST} HRC, where the scale is related to "
-                f"others, got {text!r}: give HV or HB"
-            )
+            limits = f"must be from {_LEAST} to {_MOST} HRC, where the scale is related to others"
+            raise ArgumentError("hardness", text, f"{limits}: give HV or HB")
         number = float(np.interp(number, range(_LEAST, _MOST + 1), _VICKERS))
     return number * _KGF_PER_MM2

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation.edge import KINDS
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
@@ -69,9 +70,8 @@ def edges_as_given(
     check_kind(edge)
     check(edge_distance=distance, hole_radius=hole_radius)
     if edge != "free" and (hole_radius < math.inf).any():
-        raise ValueError(
-            f"hole_radius: the rim of a hole is a free edge, got {edge!r}; leave it out"
-        )
+        reason = f"the rim of a hole is a free edge, not {edge!r}; leave it out"
+        raise ArgumentError("hole_radius", None, reason)
     if not (distance < math.inf).any():
         return None, None
     return np.where(thickness < math.inf, distance, math.inf), hole_radius
@@ -80,7 +80,7 @@ def edges_as_given(
 def check_kind(edge: str) -> None:
     """Refuse what is no kind of edge."""
     if not isinstance(edge, str) or edge not in KINDS:
-        raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
+        raise ArgumentError("edge", edge, f"must be one of {', '.join(KINDS)}")
 
 
 def check_finite(pair: Pair, impacts: Impacts, *answers: Array) -> None:

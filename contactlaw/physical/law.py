@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from contactlaw import laws
+from contactlaw._errors import ArgumentError
 from contactlaw.laws import Law
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -40,10 +41,11 @@ def _refuse_auxetic(pair: Pair, law: str) -> None:
     """Refuse negative Poisson's ratios if the law depends on them."""
     for body in (pair.sphere, pair.plate):
         if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
-            raise ValueError(
-                f"law: {law!r} is made for Poisson's ratios from 0 to 0.5, and material "
-                f'{body.name!r} has {body.poissons_ratio:g}: take law="myc", or "hertz" for bodies '
-                "that do not yield"
+            raise ArgumentError(
+                "law",
+                law,
+                f"it is made for Poisson's ratios from 0 to 0.5, {body.name!r} has "
+                f'{body.poissons_ratio:g}: take law="myc", or "hertz" for bodies that do not yield',
             )
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._content import LARGEST_TEXT, content_of
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import refuse_units
 from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
@@ -197,34 +198,36 @@ class Material:
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
         if not isinstance(self.name, str) or not self.name.strip():
-            raise ValueError(f"name must be a non-empty string, got {self.name!r}")
+            raise ArgumentError("name", self.name, "must be a non-empty string")
+        try:
+            self._check()
+        except ArgumentError as error:
+            reason = f"{error.reason} (material {self.name!r})"
+            raise ArgumentError(error.name, error.value, reason) from None
+
+    def _check(self) -> None:
         if not isinstance(self.source, str):
-            raise ValueError(f"source must be a string, got {self.source!r}")
+            raise ArgumentError("source", self.source, "must be a string")
         if self.kind is not None and self.kind not in KINDS:
-            raise ValueError(
-                f"kind of {self.name!r} must be one of {', '.join(map(repr, KINDS))} or None, got "
-                f"{self.kind!r}"
-            )
-        modulus = _positive(self.name, "youngs_modulus", self.youngs_modulus, "Pa")
-        density = _positive(self.name, "density", self.density, "kg/m3")
-        ratio = _finite(self.name, "poissons_ratio", self.poissons_ratio, "-")
+            raise ArgumentError("kind", self.kind, f"must be one of {', '.join(KINDS)}, or None")
+        modulus = _positive("youngs_modulus", self.youngs_modulus, "Pa")
+        density = _positive("density", self.density, "kg/m3")
+        ratio = _finite("poissons_ratio", self.poissons_ratio, "-")
         if not (-1.0 < ratio <= 0.5):
-            raise ValueError(
-                f"poissons_ratio of {self.name!r} must be above -1 and up to 0.5, got {ratio!r}"
-            )
+            raise ArgumentError("poissons_ratio", ratio, "must be above -1 and up to 0.5")
         strength = self.yield_strength
         if strength is not None:
-            strength = _positive(self.name, "yield_strength", strength, "Pa")
+            strength = _positive("yield_strength", strength, "Pa")
         hardness = self.hardness
         if isinstance(hardness, str):
             if self.kind is None and "HV" not in hardness.upper():
                 object.__setattr__(self, "kind", "metal")  # of which alone these scales are
-            hardness = pascals(f"hardness of {self.name!r}", hardness)
+            hardness = pascals(hardness)
         if hardness is not None:
-            hardness = _positive(self.name, "hardness", hardness, "Pa")
-        _check_units(self.name, modulus, density)
-        _check_strength(self.name, "yield_strength", strength, modulus)
-        _check_strength(self.name, "hardness", hardness, modulus)
+            hardness = _positive("hardness", hardness, "Pa")
+        _check_units(modulus, density)
+        _check_strength("yield_strength", strength, modulus)
+        _check_strength("hardness", hardness, modulus)
         # A frozen dataclass has no other way to store the converted values.
         object.__setattr__(self, "youngs_modulus", modulus)
         object.__setattr__(self, "poissons_ratio", ratio)
@@ -387,7 +390,7 @@ def material(name: str) -> Material:
 def find(name: str, own: Mapping[str, Material]) -> Material:
     """Return a material by name or alias: one of the user's own, otherwise of the catalogue."""
     if not isinstance(name, str):
-        raise ValueError(f"name must be a string such as 'glass', got {name!r}")
+        raise ArgumentError("name", name, "must be a string such as 'glass'")
     known = _catalogue() | {_key(alias): body for alias, body in own.items()}
     key = _key(name)
     if key not in known:
@@ -449,7 +452,7 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
         text = content_of(Path(path), LARGEST_TEXT, pipe=True).decode("utf-8-sig")
         return _read(tomllib.loads(text), _tables())
     except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
-        raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
+        raise ArgumentError("materials", None, f"{os.fspath(path)}: {error}") from error
 
 
 def _tables() -> dict[str, Any]:
@@ -539,165 +542,139 @@ def _cited(text: str, references: dict[str, str]) -> str:
     return re.sub(r"\{(\w+)\}", lambda one: references.get(one[1], one[0]), text)
 
 
-def _finite(name: str, field: str, value: object, unit: str) -> float:
-    refuse_units(f"{field} of {name!r}", value, "" if unit == "-" else unit.replace("m3", "m**3"))
+def _finite(field: str, value: object, unit: str) -> float:
+    refuse_units(field, value, "" if unit == "-" else unit.replace("m3", "m**3"))
     # bool is a Real to Python, but True is no measurement.
     if not isinstance(value, Real) or isinstance(value, bool):
-        raise ValueError(f"{field} of {name!r} must be a number in [{unit}], got {value!r}")
+        raise ArgumentError(field, value, f"must be a number in [{unit}]")
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise ValueError(f"{field} of {name!r} must be finite [{unit}], got {value!r}")
+        raise ArgumentError(field, value, f"must be finite [{unit}]")
     return number
 
 
-def _positive(name: str, field: str, value: object, unit: str) -> float:
-    number = _finite(name, field, value, unit)
+def _positive(field: str, value: object, unit: str) -> float:
+    number = _finite(field, value, unit)
     if not (number > 0.0):
-        raise ValueError(f"{field} of {name!r} must be positive [{unit}], got {value!r}")
+        raise ArgumentError(field, value, f"must be positive [{unit}]")
     return number
 
 
 def _hardening(body: Material) -> tuple[float, float] | float | None:
     """Check the hardening of a material; None if it has none."""
-    given, what = body.hardening, f"hardening of {body.name!r}"
+    given, refused = body.hardening, functools.partial(ArgumentError, "hardening")
     if given is None:
         return None
     if isinstance(given, np.ndarray):
         given = given.tolist()
     if not isinstance(given, tuple | list):
-        exponent = _finite(body.name, "hardening", given, "-")
+        exponent = _finite("hardening", given, "-")
         if not (0.0 < exponent < 1.0):
-            raise ValueError(f"{what}: n must be above 0 and below 1, got {given!r}")
+            raise refused(given, "n must be above 0 and below 1")
         if body.yield_strength is None and exponent > _STEEPEST_ALONE:
-            raise ValueError(
-                f"{what}: with a hardness and no yield_strength, n must be up to "
-                f"{_STEEPEST_ALONE:g}, got {given!r}: flow would begin at next to no stress; give "
-                "yield_strength, too"
-            )
+            most = f"with a hardness and no yield_strength, n must be up to {_STEEPEST_ALONE:g}"
+            raise refused(given, f"{most}: flow would begin at next to no stress; give both")
         if not isinstance(body.hardness, float):
-            raise ValueError(
-                f"{what} is the exponent {exponent:g} alone: give (B, n) with B in Pa, or the "
-                "hardness, from which B follows"
-            )
+            remedy = "give (B, n) with B in Pa, or the hardness, from which B follows"
+            raise refused(given, f"is the exponent alone: {remedy}")
         if body.yield_strength is not None and body.hardness < CONSTRAINT * body.yield_strength:
-            raise ValueError(
-                f"{what}: a hardness of {body.hardness:g} Pa is below three times the yield "
-                f"strength {body.yield_strength:g} Pa, as if the material softened"
+            least = f"three times the yield strength {body.yield_strength:g} Pa"
+            raise refused(
+                None, f"a hardness of {body.hardness:g} Pa is below {least}, as if it softened"
             )
         return exponent
     if len(given) != 2:
-        raise ValueError(f"{what} must be (B, n), B in Pa, or n alone, got {given!r}")
+        raise refused(given, "must be (B, n), B in Pa, or n alone")
     if body.yield_strength is None:
-        raise ValueError(f"{what} needs a yield_strength A in Pa, of A + B strain^n")
-    hardening = _finite(body.name, "hardening", given[0], "Pa")
+        raise refused(given, "needs a yield_strength A in Pa, of A + B strain^n")
+    hardening = _finite("hardening", given[0], "Pa")
     if not (0.0 <= hardening < body.youngs_modulus):
-        raise ValueError(
-            f"{what}: B must be from 0 to below youngs_modulus {body.youngs_modulus!r}, in Pa, got "
-            f"{given[0]!r}"
-        )
+        raise refused(given, f"B must be from 0 to below the modulus, {body.youngs_modulus!r} Pa")
     if 0.0 < hardening < _LEAST_HARDENING * body.youngs_modulus:
-        raise ValueError(f"{what}: B {given[0]!r} is next to nothing: give it in Pa")
-    exponent = _finite(body.name, "hardening", given[1], "-")
+        raise refused(given, "B is next to nothing: give it in Pa")
+    exponent = _finite("hardening", given[1], "-")
     if not (0.0 < exponent <= 1.0):
-        raise ValueError(f"{what}: n must be above 0 and up to 1, got {given[1]!r}")
+        raise refused(given, "n must be above 0 and up to 1")
     return (hardening, exponent) if hardening else None
 
 
 def _rate(body: Material) -> tuple[float, float] | None:
     """Check what a material's strength has of the rate; None if it has nothing."""
-    given, what = body.rate, f"rate of {body.name!r}"
+    given, refused = body.rate, functools.partial(ArgumentError, "rate", body.rate)
     if given is None:
         return None
     if not isinstance(given, tuple | list) or len(given) != 2:
-        raise ValueError(f"{what} must be (C, rate0), rate0 in 1/s, got {given!r}")
+        raise refused("must be (C, rate0), rate0 in 1/s")
     if body.strength is None:
-        raise ValueError(f"{what} needs a yield_strength in Pa: an elastic body has no flow stress")
-    slope = _finite(body.name, "rate", given[0], "-")
+        raise refused("needs a yield_strength in Pa: an elastic body has no flow stress")
+    slope = _finite("rate", given[0], "-")
     if not (0.0 <= slope <= _STEEPEST_RATE):
-        raise ValueError(f"{what}: C must be from 0 to {_STEEPEST_RATE:g}, got {given[0]!r}")
-    rate0 = _positive(body.name, "rate", given[1], "1/s")
+        raise refused(f"C must be from 0 to {_STEEPEST_RATE:g}")
+    rate0 = _positive("rate", given[1], "1/s")
     return (slope, rate0) if slope else None
 
 
 def _loss_factor(body: Material) -> tuple[float, float] | None:
     """Check the loss factor of a material; None if it loses nothing."""
-    given, what = body.loss_factor, f"loss_factor of {body.name!r}"
+    given, refused = body.loss_factor, functools.partial(ArgumentError, "loss_factor")
     if given is None:
         return None
     if isinstance(given, np.ndarray):
         given = given.tolist()
     if not isinstance(given, tuple | list) or len(given) != 2:
-        raise ValueError(
-            f"{what} must be (tan delta, frequency), the frequency in Hz, got {given!r}"
-        )
-    loss = _finite(body.name, "loss_factor", given[0], "-")
+        raise refused(given, "must be (tan delta, frequency), the frequency in Hz")
+    loss = _finite("loss_factor", given[0], "-")
     if not (0.0 <= loss <= _LARGEST_LOSS):
-        raise ValueError(f"{what}: tan delta must be from 0 to {_LARGEST_LOSS:g}, got {given[0]!r}")
-    frequency = _positive(body.name, "loss_factor", given[1], "Hz")
+        raise refused(given, f"tan delta must be from 0 to {_LARGEST_LOSS:g}")
+    frequency = _positive("loss_factor", given[1], "Hz")
     if not (_FREQUENCIES[0] <= frequency <= _FREQUENCIES[1]):
-        raise ValueError(
-            f"{what}: its frequency must be from {_FREQUENCIES[0]:g} to {_FREQUENCIES[1]:g} Hz, "
-            f"got {given[1]!r}: give that of an impact, 1/(2 contact times), or one near it"
-        )
+        limits = f"its frequency must be from {_FREQUENCIES[0]:g} to {_FREQUENCIES[1]:g} Hz"
+        raise refused(given, f"{limits}: give that of an impact, 1/(2 contact times), or one near")
     return (loss, frequency) if loss else None
 
 
 def _uncertainty(body: Material) -> dict[str, float]:
     """Check the relative standard errors of a material's numbers."""
-    given, what = body.uncertainty, f"uncertainty of {body.name!r}"
+    given, refused = body.uncertainty, functools.partial(ArgumentError, "uncertainty")
     if not isinstance(given, Mapping):
-        raise ValueError(
-            f'{what} must be a mapping as {{"yield_strength": 0.15}}, relative, got {given!r}'
-        )
+        raise refused(given, 'must be a mapping as {"yield_strength": 0.15}, relative')
     found = {}
     for name, value in given.items():
         if name not in _LABELS:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
-            raise ValueError(f"{what}: unknown {name!r}; {hint}known: {', '.join(_LABELS)}")
+            raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
         minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
-        error = math.inf if minimum else _finite(body.name, f"uncertainty[{name!r}]", value, "-")
+        error = math.inf if minimum else _finite(f"uncertainty[{name!r}]", value, "-")
         if not (0.0 <= error <= _LARGEST_ERROR or minimum):
-            raise ValueError(
-                f"{what}: {name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, "
-                f"got {value!r}"
-            )
+            limits = f"a relative standard error from 0 to {_LARGEST_ERROR:g}"
+            raise refused(value, f"{name} must be {limits}")
         if getattr(body, name) is not None:
             found[name] = error
     return found
 
 
-def _check_units(name: str, modulus: float, density: float) -> None:
+def _check_units(modulus: float, density: float) -> None:
     if not (modulus >= _SOFTEST):
-        raise ValueError(
-            f"youngs_modulus {modulus!r} of {name!r} is below {_SOFTEST:g} Pa, softer than any "
-            "bead: give it in Pa (not GPa)"
-        )
+        reason = f"below {_SOFTEST:g} Pa, softer than any bead: give it in Pa (not GPa)"
+        raise ArgumentError("youngs_modulus", modulus, reason)
     if not (_DENSITIES[0] <= density <= _DENSITIES[1]):
-        raise ValueError(
-            f"density {density!r} of {name!r} must lie between {_DENSITIES[0]:g} and "
-            f"{_DENSITIES[1]:g} kg/m3"
-        )
+        limits = f"{_DENSITIES[0]:g} and {_DENSITIES[1]:g} kg/m3"
+        raise ArgumentError("density", density, f"must lie between {limits}")
     speed = math.sqrt(modulus / density)
     if not (speed <= _FASTEST):
-        raise ValueError(
-            f"density {density!r} and youngs_modulus {modulus!r} of {name!r} give a wave speed of "
-            f"{speed:.3g} m/s, faster than in any solid: give density in kg/m3 (not g/cm3) and "
-            "youngs_modulus in Pa"
-        )
+        wave = f"give a wave speed of {speed:.3g} m/s, faster than in any solid"
+        remedy = "give density in kg/m3 (not g/cm3) and youngs_modulus in Pa"
+        raise ArgumentError("density, youngs_modulus", (density, modulus), f"{wave}: {remedy}")
 
 
-def _check_strength(name: str, field: str, strength: float | None, modulus: float) -> None:
+def _check_strength(field: str, strength: float | None, modulus: float) -> None:
     if strength is not None and not (strength < modulus):
-        raise ValueError(
-            f"{field} {strength!r} of {name!r} must be below youngs_modulus {modulus!r}: "
-            "give both in Pa"
-        )
+        reason = f"must be below youngs_modulus {modulus!r}: give both in Pa"
+        raise ArgumentError(field, strength, reason)
     if strength is not None and not (strength >= _WEAKEST * modulus):
-        raise ValueError(
-            f"{field} {strength!r} of {name!r} must be at least {_WEAKEST:g} of "
-            f"youngs_modulus {modulus!r}, no solid is weaker: give both in Pa"
-        )
+        limit = f"must be at least {_WEAKEST:g} of youngs_modulus {modulus!r}"
+        raise ArgumentError(field, strength, f"{limit}, no solid is weaker: give both in Pa")

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.laws.myc import residual as myc_residual
@@ -91,15 +92,13 @@ def measured_law(
     *columns, _ = broadcast(**points)
     rows = np.column_stack(columns)
     if not (np.isfinite(rows).all() and (np.diff(rows[:, :2], axis=0, prepend=0.0) > 0.0).all()):
-        raise ValueError(
-            "compression, force: have to be positive and finite, and to rise from point to point"
-        )
+        reason = "have to be positive and finite, and to rise together"
+        raise ArgumentError("compression, force", None, reason)
     rows = rows[rows[:, 0] > d_y]
     if len(rows) < _FEWEST:
-        raise ValueError(
-            f"compression: {len(rows)} points lie beyond yield, {d_y:.3g} m for this radius; at "
-            f"least {_FEWEST} are needed"
-        )
+        beyond = f"beyond yield, {d_y:.3g} m for this radius"
+        reason = f"{len(rows)} points lie {beyond}; at least {_FEWEST} are needed"
+        raise ArgumentError("compression", None, reason)
     d, f = rows[:, 0] / d_y, rows[:, 1] / f_y
     loading = _smoothed("force", np.log(d), np.log(f) - 1.5 * np.log(d), 2.0)
     last = float(d[-1])
@@ -144,7 +143,6 @@ def _smoothed(name: str, s: Array, values: Array, power: float) -> Polynomial:
     off = np.abs(basis @ found.coef - values)
     if off.max() > _WORST * max(1.0, float(np.abs(values).max())):
         n = int(np.argmax(off))
-        raise ValueError(
-            f"{name}: point {n} beyond yield is off any smooth curve; is it a mistake?"
-        )
+        reason = f"point {n} beyond yield is off any smooth curve; is it a mistake?"
+        raise ArgumentError(name, None, reason)
     return found

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from contactlaw import _atomic
 from contactlaw._content import content_of
+from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
 from contactlaw.physical.kind import Kind, only_impacts
 from contactlaw.physical.materials import Material
@@ -240,7 +241,7 @@ class Record:
             If the file cannot be written.
         """
         if Path(path).suffix.lower() not in HDF5:
-            raise ValueError(f"path: got {os.fspath(path)!r}, must end in {' or '.join(HDF5)}")
+            raise ArgumentError("path", os.fspath(path), f"must end in {' or '.join(HDF5)}")
         _atomic.write(path, self.content())
 
 

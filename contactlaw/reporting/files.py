@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from contactlaw import _atomic, style
+from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
 from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
@@ -53,7 +54,7 @@ def report(
     """
     run = Run(with_meshes(record, meshes) if meshes else record)
     if not run.rows.size:
-        raise ValueError("record: has no impact on a wall yet: simulate longer")
+        raise ArgumentError("record", None, "has no impact on a wall yet: simulate longer")
     with style.applied(), _atomic.folder(out) as folder:
         pictures = {name: figures.draw(name, run) for name in figures.names()}
         for name, picture in pictures.items():

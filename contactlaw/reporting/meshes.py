@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.record.file import Record, Surface
 from contactlaw.walls.mesh import Mesh
 
@@ -29,9 +30,8 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
     rows, point = record.rows, record.points
     plates = np.unique(rows["plate"][rows["triangle"] >= 0])
     if plates.size != len(meshes):
-        raise ValueError(
-            f"meshes: got {len(meshes)} for the {plates.size} walls of the record that are meshes"
-        )
+        reason = f"got {len(meshes)} for the {plates.size} walls of the record that are meshes"
+        raise ArgumentError("meshes", None, reason)
     corners: list[Floats] = []
     wall: list[NDArray[np.int64]] = []
     triangle = np.full(rows.size, -1)
@@ -40,10 +40,9 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
         hit = rows["triangle"][here]
         found = np.searchsorted(mesh.kept, hit).clip(max=len(mesh.kept) - 1)
         if (lacks := mesh.kept[found] != hit).any():
-            raise ValueError(
-                f"meshes: number {len(corners) + 1} has no triangle {hit[lacks][0]}, which the "
-                f"record has hits on: it is not the mesh of wall {plate}"
-            )
+            lost = f"triangle {hit[lacks][0]}, which the record has hits on"
+            reason = f"number {len(corners) + 1} is not the mesh of wall {plate}: it has no {lost}"
+            raise ArgumentError("meshes", None, reason)
         triangle[here] = found + sum(len(one) for one in corners)
         corners.append(mesh.vertices[mesh.triangles])
         wall.append(np.full(len(mesh.triangles), plate))
@@ -51,10 +50,9 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
     extent, reach = (float(np.ptp(one.reshape(-1, 3), axis=0).max())
                      for one in (surface.corners, point[triangle >= 0]))  # fmt: skip
     if extent > _TOO_LARGE * reach > 0.0:
-        raise ValueError(
-            f"scale: the mesh is {extent:.3g} m wide, the contacts on it are within {reach:.3g} m: "
-            "give the length of its unit, 1e-3 for a drawing in millimetres"
-        )
+        wide = f"the mesh is {extent:.3g} m wide, the contacts on it are within {reach:.3g} m"
+        remedy = "give the length of its unit, 1e-3 for a drawing in millimetres"
+        raise ArgumentError("scale", None, f"{wide}: {remedy}")
     still = _still(surface, point, _APART * extent)
     return dataclasses.replace(record, surface=surface if still else surface._replace(point=None))
 

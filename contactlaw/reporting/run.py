@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
@@ -86,9 +87,11 @@ class Run:
         rows = self.record.rows
         missing = [name for name in _NEEDED if name not in (rows.dtype.names or ())]
         if missing:
-            raise ValueError(
-                f"record: has no column {', '.join(missing)}: a report needs all columns that the "
-                "engines record, with an ImpactModel and this version of contactlaw; simulate again"
+            raise ArgumentError(
+                "record",
+                None,
+                f"has no column {', '.join(missing)}: a report needs all columns that the engines "
+                "record, with an ImpactModel and this version of contactlaw; simulate again",
             )
         on_walls, impacts = rows["plate"] >= 0, self.record.impact
         for name, (least, most) in _LIMITS.items():
@@ -97,10 +100,9 @@ class Run:
             wrong = on_walls & ~((least <= values) & (values <= most) | unknown)
             if wrong.any():
                 row = int(np.argmax(wrong))
-                raise ValueError(
-                    f"record: {name} of row {row} is {float(values[row])!r}: leave the row out; "
-                    f"it must lie between {least:g} and {most:g}"
-                )
+                limits = f"it must lie between {least:g} and {most:g}"
+                said = f"{name} of row {row} is {float(values[row])!r}"
+                raise ArgumentError("record", None, f"{said}: leave the row out; {limits}")
 
     @cached_property
     def on_walls(self) -> Record:

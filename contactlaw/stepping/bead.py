@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.record.file import Record, Surface, bodies_of
 from contactlaw.stepping.contact import (
@@ -102,7 +103,7 @@ class WallContacts:
         check_models(models)
         kinds = sorted(by_type(models, types))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
-            raise ValueError(f"models: the types of beads are 1 to {types}, got {kinds}")
+            raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
         own = by_type(models, types)
         rows, numbers, self._held = plate_rows(walls, own, types)
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import at_strength, growth_at
@@ -52,7 +53,7 @@ def check_friction(friction: Any) -> None:
     if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
         raise TypeError(f"friction: expected a number, got {friction!r}")
     if not 0.0 <= friction < math.inf:
-        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+        raise ArgumentError("friction", friction, "must be finite and not negative")
 
 
 @kernel

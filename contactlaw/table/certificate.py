@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import FIELDS, Outcome
 from contactlaw.laws import Law
@@ -85,9 +86,9 @@ def compare_outcomes(
 ) -> tuple[Outcome, dict[str, Array]]:  # fmt: skip
     """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
-        raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
+        raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
     if seed < 0:
-        raise ValueError(f"seed: must not be negative, got {seed!r}")
+        raise ArgumentError("seed", seed, "must not be negative")
     lam, log_chi, strength = random_points(grid, points, np.random.default_rng(seed))
     chi, parts = np.exp(grid.own(lam, log_chi, strength)), -(-lam.size // _PART)
     exact = sweep.solve_overloads(law, lam, chi, strength, _finer(settings), parts, progress)

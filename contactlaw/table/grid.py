@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation import force, zener
 from contactlaw.laws import Law, Strengths
 from contactlaw.laws._branches import END
@@ -83,7 +84,7 @@ class Settings:
         for name, (low, high) in RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise ValueError(f"{name}: must lie between {low:g} and {high:g}, got {value!r}")
+                raise ArgumentError(name, value, f"must lie between {low:g} and {high:g}")
 
 
 RANGES = {
@@ -187,7 +188,8 @@ def _with_nodes(segment: Segment, step: float) -> Segment:
 def grid(law: Law, settings: Settings) -> TableGrid:
     """Place the nodes for a law that yields; its kinks are found by the solver."""
     if not law.yields and law.is_hertz:
-        raise ValueError(f"law: {law.name!r} never yields; the edge chi = 1 of any table serves it")
+        reason = "never yields; the edge chi = 1 of any table serves it"
+        raise ArgumentError("law", law.name, reason)
     inelasticity = inelasticity_axis(settings)
     lam = series_values(inelasticity)
     elastic = elastic_compressions(law, lam, settings.rtol)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
 from contactlaw.table.axes import TableGrid, power_series
 from contactlaw.table.lookup import BLOCK, DEGREE, HEADER
@@ -21,7 +22,7 @@ def spline_coefficients(values: Array) -> Array:
     """
     n = len(values)
     if n < 4:
-        raise ValueError(f"values: a spline with not-a-knot ends needs at least 4 nodes, got {n}")
+        raise ArgumentError("values", n, "a spline with not-a-knot ends needs at least 4 nodes")
     c = np.empty((n + 2, *values.shape[1:]))
     c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
     gain = np.zeros(n + 2)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation.edge import KINDS, Edge
 from contactlaw.walls.memory import array_at
@@ -44,15 +45,12 @@ def edges_of(given: Any, starts: Floats, ends: Floats, facets: Any, holes: Any =
         given = list(given(0.5 * (starts + ends)))
     kinds = [given] * len(starts) if given is None or isinstance(given, str) else given
     if not isinstance(kinds, Sequence) or len(kinds) != len(starts):
-        raise ValueError(
-            f"edges: expected one kind for all or one for each of {len(starts)}, got {given!r}"
-        )
+        reason = f"expected one kind for all or one for each of {len(starts)}"
+        raise ArgumentError("edges", given, reason)
     for kind in [given, *kinds] if isinstance(given, str) else kinds:
         if kind is not None and kind not in KINDS:
-            raise ValueError(
-                f"edges: must be one of {', '.join(KINDS)}, or None where a plate goes on, got "
-                f"{kind!r}"
-            )
+            reason = f"must be one of {', '.join(KINDS)}, or None where a plate goes on"
+            raise ArgumentError("edges", kind, reason)
     some = [n for n, kind in enumerate(kinds) if kind is not None]
     rows = np.zeros(len(some), EDGE)
     rows["start"], rows["along"] = starts[some], (ends - starts)[some]

@@ -14,6 +14,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, floats, vector
@@ -100,7 +101,7 @@ class Mesh:
         good = _valid_triangles(vertices, triangles)
         lost = len(triangles) - len(good)
         if not good.size:
-            raise ValueError(f"triangles: none of {len(triangles)} has an area [m2]")
+            raise ArgumentError("triangles", None, f"none of {len(triangles)} has an area [m2]")
         if lost:
             warnings.warn(
                 f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates",
@@ -183,7 +184,7 @@ class Mesh:
             raise ImportError("Mesh.read needs trimesh: pip install contactlaw[lammps]") from error
         size = 1.0 if scale is None else number("scale", scale)
         if not 0.0 < size < math.inf:
-            raise ValueError(f"scale: must be positive, metres per unit of the file, got {scale!r}")
+            raise ArgumentError("scale", scale, "must be positive, metres per unit of the file")
         if not Path(path).is_file():
             raise FileNotFoundError(f"path: no file {str(path)!r}")
         try:
@@ -197,9 +198,8 @@ class Mesh:
             if not len(triangles):
                 raise ValueError("no triangles")
         except Exception as error:  # trimesh's readers raise errors of many types
-            raise ValueError(
-                f"path: {str(path)!r} is no mesh that trimesh reads: {error}"
-            ) from error
+            reason = f"no mesh that trimesh reads: {error}"
+            raise ArgumentError("path", str(path), reason) from error
         extent = float(np.ptp(vertices, axis=0).max())
         if scale is None and extent > _LONGEST:
             said = f"scale: the mesh is {extent:g} m long; scale=1e-3 if it is drawn in mm?"
@@ -247,9 +247,9 @@ class Mesh:
         length = float(np.linalg.norm(axis))
         radii = number("start_radius", start_radius), number("end_radius", end_radius)
         if not length > 0.0:
-            raise ValueError(f"start, end: must differ, got {start!r} and {end!r}")
+            raise ArgumentError("start, end", (start, end), "must differ")
         if not (min(radii) >= 0.0 and 0.0 < max(radii) <= FARTHEST):
-            raise ValueError(f"start_radius, end_radius: must not be negative [m], got {radii}")
+            raise ArgumentError("start_radius, end_radius", radii, "must not be negative [m]")
         around = _circle(axis / length, facets)
         n = len(around)
         rings = [place + r * around for place, r in zip((first, last), radii, strict=True)]
@@ -318,9 +318,9 @@ class Mesh:
         middle, across = vector("centre", centre), vector("normal", normal, "-")
         size = float(np.linalg.norm(across))
         if not size > 0.0:
-            raise ValueError(f"normal: must have a direction, got {normal!r}")
+            raise ArgumentError("normal", normal, "must have a direction")
         if not 0.0 < number("radius", radius) <= FARTHEST:
-            raise ValueError(f"radius: must be positive [m], got {radius!r}")
+            raise ArgumentError("radius", radius, "must be positive [m]")
         around = _circle(across / size, facets)
         n = len(around)
         here = np.arange(n)
@@ -342,7 +342,7 @@ def _stl(path: str | Path) -> io.BytesIO:
 def _circle(axis: Floats, facets: int) -> Floats:
     """Corners of a polygon on the unit circle around an axis."""
     if not isinstance(facets, int | np.integer) or isinstance(facets, bool) or facets < 3:
-        raise ValueError(f"facets: expected an integer of 3 or more, got {facets!r}")
+        raise ArgumentError("facets", facets, "expected an integer of 3 or more")
     first = np.cross(axis, np.eye(3)[np.argmin(abs(axis))])
     first /= np.linalg.norm(first)
     angle = 2.0 * math.pi * np.arange(facets)[:, None] / facets
@@ -353,13 +353,11 @@ def _circle(axis: Floats, facets: int) -> Floats:
 def _vertices(given: Any) -> Floats:
     found = floats(given)
     if found.ndim != 2 or found.shape[1] != 3 or not len(found):
-        raise ValueError(f"vertices: expected an array of shape (n, 3) [m], got {given!r}")
+        raise ArgumentError("vertices", given, "expected an array of shape (n, 3) [m]")
     wrong = np.flatnonzero(~(abs(found) <= FARTHEST).all(axis=1))
     if wrong.size:
-        raise ValueError(
-            f"vertices: must be finite [m], none beyond {FARTHEST:g}, got "
-            f"{found[wrong[0]].tolist()} (vertex {wrong[0]}, {wrong.size} in all)"
-        )
+        reason = f"must be finite [m], none beyond {FARTHEST:g} ({wrong.size} in all)"
+        raise ArgumentError("vertices", found[wrong[0]].tolist(), reason, wrong[0])
     return found
 
 
@@ -369,22 +367,18 @@ def _triangles(given: Any, vertices: int) -> Integers:
     except (TypeError, ValueError):
         found = np.empty(0)
     if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iu" or not len(found):
-        raise ValueError(f"triangles: expected integers of shape (m, 3), got {given!r}")
+        raise ArgumentError("triangles", given, "expected integers of shape (m, 3)")
     if found.min() < 0 or found.max() >= vertices:
-        raise ValueError(
-            f"triangles: must be numbers of vertices, 0 to {vertices - 1}, got {found.min()} to "
-            f"{found.max()}"
-        )
+        numbers = f"0 to {vertices - 1}, got {found.min()} to {found.max()}"
+        raise ArgumentError("triangles", None, f"must be numbers of vertices, {numbers}")
     return found.astype(np.int64)
 
 
 def _thickness(given: Any, triangles: int) -> Floats:
     found = floats(given)
     if found.shape not in ((), (triangles,)):
-        raise ValueError(
-            f"thickness: expected a number or one for each of {triangles} triangles [m], got "
-            f"{given!r}"
-        )
+        reason = f"expected a number or one for each of {triangles} triangles [m]"
+        raise ArgumentError("thickness", given, reason)
     check(thickness=np.atleast_1d(found))
     return np.broadcast_to(found, triangles).copy()
 

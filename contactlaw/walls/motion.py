@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.physical.arguments import number
 from contactlaw.walls.memory import array_at
@@ -41,9 +42,8 @@ def vector(name: str, value: Any, unit: str = "m") -> Floats:
     """Three numbers of at most FARTHEST as an array, or an error that names the argument."""
     found = floats(value)
     if found.shape != (3,) or not (abs(found) <= FARTHEST).all():
-        raise ValueError(
-            f"{name}: expected three numbers [{unit}], none beyond {FARTHEST:g}, got {value!r}"
-        )
+        reason = f"expected three numbers [{unit}], none beyond {FARTHEST:g}"
+        raise ArgumentError(name, value, reason)
     return found
 
 
@@ -113,7 +113,7 @@ class Rotation:
         """Refuse what is no rotation."""
         axis = vector("axis", self.axis, "-")
         if not np.linalg.norm(axis) > 0.0:
-            raise ValueError(f"axis: must have a direction, got {self.axis!r}")
+            raise ArgumentError("axis", self.axis, "must have a direction")
         _keep(self, axis=axis, centre=vector("centre", self.centre))
         _keep_number(self, "speed", self.speed, "rad/s")
 
@@ -158,7 +158,7 @@ class Vibration:
         _keep_number(self, "frequency", self.frequency, "Hz")
         _keep_number(self, "phase", self.phase, "rad")
         if not self.frequency > 0.0:
-            raise ValueError(f"frequency: must be positive [Hz], got {self.frequency!r}")
+            raise ArgumentError("frequency", self.frequency, "must be positive [Hz]")
 
     def fill(self, row: Any) -> None:
         """Write the motion into a row of the kernel's memory."""
@@ -201,17 +201,17 @@ class Tabulated:
             times = np.array(self.times, dtype=float)
             places = np.array(self.displacements, dtype=float)
         except (TypeError, ValueError) as error:
-            raise ValueError(f"times, displacements: expected numbers [s], [m]: {error}") from error
+            reason = f"expected numbers [s], [m]: {error}"
+            raise ArgumentError("times, displacements", None, reason) from error
         n = times.size
         if times.shape != (n,) or n < 2 or places.shape != (n, 3):
-            raise ValueError(
-                "times, displacements: expected shapes (n,) and (n, 3) with n of 2 or more, got "
-                f"{times.shape} and {places.shape}"
-            )
+            reason = "expected shapes (n,) and (n, 3) with n of 2 or more"
+            raise ArgumentError("times, displacements", (times.shape, places.shape), reason)
         if not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()):
-            raise ValueError(f"times: must be finite and ascend [s], got {self.times!r}")
+            raise ArgumentError("times", self.times, "must be finite and ascend [s]")
         if not (abs(places) <= FARTHEST).all():
-            raise ValueError(f"displacements: must be finite [m], none beyond {FARTHEST:g}")
+            reason = f"must be finite [m], none beyond {FARTHEST:g}"
+            raise ArgumentError("displacements", None, reason)
         for name, value in (("times", times), ("displacements", places)):
             value.setflags(write=False)  # because a simulation reads them in every step
             object.__setattr__(self, name, value)
@@ -234,7 +234,7 @@ def _keep(motion: Any, **vectors: Floats) -> None:
 def _keep_number(motion: Any, name: str, value: Any, unit: str) -> None:
     found = number(name, value)
     if not math.isfinite(found):
-        raise ValueError(f"{name}: must be finite [{unit}], got {value!r}")
+        raise ArgumentError(name, value, f"must be finite [{unit}]")
     object.__setattr__(motion, name, found)
 
 

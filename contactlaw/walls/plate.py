@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw._errors import ArgumentError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
@@ -67,10 +68,8 @@ class Plate:
         a, b = vector("edge_a", self.edge_a), vector("edge_b", self.edge_b)
         area = float(np.linalg.norm(a) * np.linalg.norm(b))
         if not area > 0.0 or not abs(a @ b) <= _SQUARE * area:
-            raise ValueError(
-                f"edge_a, edge_b: must be perpendicular and of some length [m], got "
-                f"{self.edge_a!r} and {self.edge_b!r}"
-            )
+            reason = "must be perpendicular and of some length [m]"
+            raise ArgumentError("edge_a, edge_b", (self.edge_a, self.edge_b), reason)
         scalars(thickness=self.thickness)
         warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)
@@ -105,7 +104,7 @@ def check_models(models: Any) -> None:
         )
     for kind, model in models.items():
         if not isinstance(kind, int | np.integer) or isinstance(kind, bool) or kind < 1:
-            raise ValueError(f"model: atom types are integers from 1 on, got {kind!r}")
+            raise ArgumentError("model", kind, "atom types are integers from 1 on")
         if not isinstance(model, ImpactModel):
             raise TypeError(
                 f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}"

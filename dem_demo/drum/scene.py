@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contactlaw import ArgumentError
 from dem_demo.drum import defaults
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
@@ -113,9 +114,11 @@ def drum(
                       "friction": (friction, "1")},
     )  # fmt: skip
     if not 0.0 < radius[0] <= radius[1] < 0.5 * min(drum, length):
-        raise ValueError(
-            f"radius: needs MIN,MAX [m], ascending and below half of the drum's radius and "
-            f"length, {0.5 * min(drum, length):g} m, got {radius[0]!r},{radius[1]!r}"
+        raise ArgumentError(
+            "radius",
+            None,
+            "needs MIN,MAX [m], ascending and below half of the drum's radius and length, "
+            f"{0.5 * min(drum, length):g} m, got {radius[0]!r},{radius[1]!r}",
         )
     rng = np.random.default_rng(seed)
     size: Floats = rng.uniform(*radius, beads)
@@ -140,7 +143,11 @@ def _places(
     fits = np.hypot(site[:, 0], site[:, 2]) < inside - 1.5 * spare
     site = site[fits & (site[:, 2] < _FULL * drum)]
     if beads > len(site):
-        raise ValueError(f"beads: {beads} do not fit into the drum, {len(site)} do; take a larger "
-                         "--drum or --length, or smaller beads (--radius)")  # fmt: skip
+        raise ArgumentError(
+            "beads",
+            None,
+            f"{beads} do not fit into the drum, {len(site)} do; take a larger --drum or --length, "
+            "or smaller beads (--radius)",
+        )  # fmt: skip
     chosen = site[rng.choice(len(site), beads, replace=False)]
     return np.asarray(chosen + rng.uniform(-spare, spare, (beads, 3)))

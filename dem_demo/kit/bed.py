@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import ArgumentError
 from dem_demo.kit.beads import Floats
 
 if TYPE_CHECKING:
@@ -95,17 +96,16 @@ def check(
 ) -> None:  # fmt: skip
     """Refuse numbers out of range; the mappings give the value and the unit of each name."""
     if not beads >= 1:
-        raise ValueError(f"beads: at least one is needed, got {beads!r}")
+        raise ArgumentError("beads", beads, "at least one is needed")
     if seed < 0:
-        raise ValueError(f"seed: must not be negative, got {seed!r}")
+        raise ArgumentError("seed", seed, "must not be negative")
     for name, (value, unit) in positive.items():
         if not 0.0 < value < math.inf:
-            raise ValueError(f"{name}: must be positive and finite [{unit}], got {value!r}")
+            raise ArgumentError(name, value, f"must be positive and finite [{unit}]")
     for name, (value, unit) in not_negative.items():
         if not 0.0 <= value < math.inf:
-            raise ValueError(f"{name}: must be finite and not negative [{unit}], got {value!r}")
+            raise ArgumentError(name, value, f"must be finite and not negative [{unit}]")
     frame = 1.0 / scene.FRAME_RATE
     if not frame <= duration < math.inf:
-        raise ValueError(
-            f"duration: must be finite and at least one frame, {frame:g} s, got {duration!r}"
-        )
+        reason = f"must be finite and at least one frame, {frame:g} s"
+        raise ArgumentError("duration", duration, reason)

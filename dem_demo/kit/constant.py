@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 
-from contactlaw import ImpactModel, Pair
+from contactlaw import ArgumentError, ImpactModel, Pair
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.table import Settings
 
@@ -29,7 +29,7 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     array([0.63, 0.63])
     """
     if not LEAST <= restitution <= 1.0:
-        raise ValueError(f"constant_cor: must lie between {LEAST:g} and 1, got {restitution!r}")
+        raise ArgumentError("constant_cor", restitution, f"must lie between {LEAST:g} and 1")
     lost = 1.0 - restitution**2
     law = Law.of(
         name="constant_cor",

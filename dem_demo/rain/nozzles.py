@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from contactlaw import Material, material
+from contactlaw import ArgumentError, Material, material
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.rain import defaults
 from dem_demo.rain.scene import Beads, Plate, Scene
@@ -48,21 +48,22 @@ def rain(
     ((10,), 5)
     """
     if beads < 1:
-        raise ValueError(f"beads: at least one is needed, got {beads!r}")
+        raise ArgumentError("beads", beads, "at least one is needed")
     if seed < 0:
-        raise ValueError(f"seed: must not be negative, got {seed!r}")
+        raise ArgumentError("seed", seed, "must not be negative")
     _check_range("radius", radius, "m", positive=True)
     if radius[1] > _LARGEST:
-        raise ValueError(f"radius: {radius[1]:g} m is above {_LARGEST} m; with units: 1mm,2mm")
+        reason = f"{radius[1]:g} m is above {_LARGEST} m; with units: 1mm,2mm"
+        raise ArgumentError("radius", None, reason)
     _check_range("speed", speed, "m/s", positive=False)
     pitch = WIDTH + GAP
     plates = tuple(Plate(h, i * pitch, i * pitch + WIDTH) for i, h in enumerate(thicknesses))
     sphere_material = sphere if isinstance(sphere, Material) else material(sphere)
     plate_material = plate if isinstance(plate, Material) else material(plate)
     if not 0.0 <= tilt <= _STEEPEST:
-        raise ValueError(f"tilt: must lie between 0 and {_STEEPEST:g} degrees, got {tilt!r}")
+        raise ArgumentError("tilt", tilt, f"must lie between 0 and {_STEEPEST:g} degrees")
     if not 0.0 < duration < math.inf:
-        raise ValueError(f"duration: must be positive and finite [s], got {duration!r}")
+        raise ArgumentError("duration", duration, "must be positive and finite [s]")
     drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, tilt)
     return Scene(drops, plates, sphere_material, plate_material, duration, seed, friction=friction)
 
@@ -71,9 +72,8 @@ def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive:
     low, high = limits
     if not ((0.0 < low if positive else 0.0 <= low) and low <= high < math.inf):
         least = "positive" if positive else "not negative"
-        raise ValueError(
-            f"{name}: needs MIN,MAX [{unit}], {least}, finite and ascending, got {low!r},{high!r}"
-        )
+        reason = f"needs MIN,MAX [{unit}], {least}, finite and ascending, got {low!r},{high!r}"
+        raise ArgumentError(name, None, reason)
 
 
 def _draw(
@@ -116,7 +116,9 @@ def _check_crowd(n: int, plates: int, radius: float, speed: float, period: float
     together = SPACING * plates * (WIDTH - 2.0 * MARGIN) / fall
     most = max(0, math.floor((together - 2.0) * period / clear))
     if n > most:
-        raise ValueError(
-            f"beads: {n} within {period:g} s would be emitted into each other; at most {most} of "
-            f"this size and speed fit, more with a longer duration"
+        raise ArgumentError(
+            "beads",
+            None,
+            f"{n} within {period:g} s would be emitted into each other; at most {most} of this "
+            "size and speed fit, more with a longer duration",
         )

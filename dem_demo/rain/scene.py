@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contactlaw import ArgumentError
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.rain import defaults
 
@@ -32,9 +33,7 @@ class Plate:
     def __post_init__(self) -> None:
         """Refuse impossible numbers."""
         if not self.thickness > 0.0:
-            raise ValueError(
-                f"plates: thickness must be positive [m], or inf, got {self.thickness!r}"
-            )
+            raise ArgumentError("plates", self.thickness, "thickness must be positive [m], or inf")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,14 +68,12 @@ class Scene:
     def __post_init__(self) -> None:
         """Refuse a scene without plates or time."""
         if not self.plates:
-            raise ValueError("plates: at least one thickness is needed [m]")
+            raise ArgumentError("plates", None, "at least one thickness is needed [m]")
         if not 1.0 / self.frame_rate <= self.duration < math.inf:
-            raise ValueError(
-                f"duration: must be finite and at least one frame, {1.0 / self.frame_rate:g} s, "
-                f"got {self.duration!r}"
-            )
+            reason = f"must be finite and at least one frame, {1.0 / self.frame_rate:g} s"
+            raise ArgumentError("duration", self.duration, reason)
         if not 0.0 <= self.friction < math.inf:
-            raise ValueError(f"friction: must be finite and not negative, got {self.friction!r}")
+            raise ArgumentError("friction", self.friction, "must be finite and not negative")
 
     @property
     def frames(self) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import ArgumentError
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
 from dem_demo.sieve import defaults
@@ -144,9 +145,11 @@ def sieve(
                       "friction": (friction, "1")},
     )  # fmt: skip
     if not 0.0 < radius[0] < 0.5 * opening < radius[1] < 2.0 * opening:
-        raise ValueError(
-            f"radius: needs MIN,MAX [m] of beads that pass the opening of {opening:g} m and of "
-            f"others up to four times as wide, got {radius[0]!r},{radius[1]!r}"
+        raise ArgumentError(
+            "radius",
+            None,
+            f"needs MIN,MAX [m] of beads that pass the opening of {opening:g} m and of others up "
+            f"to four times as wide, got {radius[0]!r},{radius[1]!r}",
         )
     share = math.sqrt(beads / _BEADS)
     deck = Deck(

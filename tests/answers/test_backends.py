@@ -5,6 +5,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw.answers import tabulated
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, TableLookup, extent
@@ -26,8 +27,7 @@ def backends(pair, law, outside="raise"):
     """Table and solver of one model."""
     pair = cl.Pair(*pair)
     bodies = SphereOnPlate(pair, law_of(pair, law))
-    tabulated = TableLookup(bodies, None, Border(outside))
-    return tabulated, Solver(bodies, extent=extent(bodies.law))
+    return TableLookup(bodies, None, Border(outside)), Solver(bodies, extent=extent(bodies.law))
 
 
 @pytest.mark.parametrize("pair", PAIRS)
@@ -79,10 +79,22 @@ def test_plates_too_thin_to_say_when_they_yield(law):
     radius, thickness = np.full(2, R), np.array([R, R / 20.0])
     said = []
     for backend in backends(PAIRS["the bead yields"], law):
-        with pytest.raises(ValueError, match="the plate is too thin for the model") as error:
+        with pytest.raises(ValueError, match="thickness: got .*; too thin for the table") as error:
             backend.yield_speeds(Impacts.on_plates(1.0, radius, thickness))
         said.append(str(error.value))
     assert said[0] == said[1]
+
+
+def test_without_a_compiler_no_table_is_built(monkeypatch):
+    """It would take minutes, and integrating this impact takes a tenth of a second."""
+    monkeypatch.setattr(tabulated, "switched_off", lambda: True)
+    monkeypatch.setattr(tabulated, "table_for", None)
+    model = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))
+    hit = model.lookup([0.5, 3.0], 1e-3, 1e-3)
+    assert (hit.restitution == model.solve([0.5, 3.0], 1e-3, 1e-3).restitution).all()
+    assert 0.0 < model.yield_speed(1e-3, 1e-3) < 0.5
+    with pytest.raises(OutsideTableError, match="too fast"):
+        model.lookup(1e5, 1e-3, 1e-3)
 
 
 @pytest.mark.parametrize("law", laws.names())

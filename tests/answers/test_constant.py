@@ -125,12 +125,12 @@ def test_flags_are_counted_and_what_is_outside_is_refused(pair, model):
         ({"speed": []}, "speed: got no impact"),
         ({"speed": [1.0, math.nan]}, "speed: got nan"),
         ({"radius": [R, R, R]}, "speed: shapes do not broadcast"),
-        ({"keep": "mass"}, "keep: must be 'energy' or 'momentum', got 'mass'"),
-        ({"weights": [1.0, -1.0]}, "weights: must be finite and not negative, got -1.0"),
-        ({"weights": [1.0, math.inf]}, "weights: must be finite and not negative, got inf"),
-        ({"weights": [1.0, math.nan]}, "weights: must be finite and not negative, got nan"),
+        ({"keep": "mass"}, "keep: got 'mass'; must be 'energy' or 'momentum'"),
+        ({"weights": [1.0, -1.0]}, "weights: got -1.0; must be finite and not negative"),
+        ({"weights": [1.0, math.inf]}, "weights: got inf; must be finite and not negative"),
+        ({"weights": [1.0, math.nan]}, "weights: got nan; must be finite and not negative"),
         ({"weights": 0.0}, "weights: all of them are 0"),
-        ({"weights": "many"}, "weights: expected a number"),
+        ({"weights": "many"}, "weights: got .many.; expected a number"),
     ],
 )
 def test_what_is_refused(model, change, message):

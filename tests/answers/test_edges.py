@@ -108,7 +108,7 @@ def test_bodies_with_losses_in_steps_and_by_the_solver(kind):
 
 
 def test_wrong_edges_are_refused():
-    with pytest.raises(ValueError, match="edge: must be one of free, supported, clamped, got 'loo"):
+    with pytest.raises(ValueError, match="edge: got 'loose'; must be one of free, supported, cl"):
         STEEL.restitution(SPEED, R, H, "loose", 1e-3)
     with pytest.raises(ValueError, match=r"edge_distance: got -1.0; must lie between 0 and inf"):
         STEEL.solve(SPEED, R, H, edge_distance=-1.0)

@@ -197,7 +197,7 @@ def test_outside_the_table():
         ({"friction": np.nan}, "friction: got nan"),
         ({"sliding_speed": np.inf}, "sliding_speed: got inf"),
         ({"speed": 0.0}, "speed: got 0.0"),
-        ({"method": "sovle"}, "method: must be 'table' or 'solve', got 'sovle'"),
+        ({"method": "sovle"}, "method: got 'sovle'; must be 'table' or 'solve'"),
     ],
 )
 def test_oblique_refuses(change, match):
@@ -210,11 +210,11 @@ def test_oblique_refuses(change, match):
     ("change", "match"),
     [
         ({"velocity": [1.0, 2.0]}, "velocity: expected vectors of three numbers"),
-        ({"spin": [np.nan, 0, 0]}, "spin: must be finite"),
-        ({"normal": [0, 0, 0]}, "normal: must not be zero"),
+        ({"spin": [np.nan, 0, 0]}, "spin: got .*must be finite"),
+        ({"normal": [0, 0, 0]}, "normal: got .*must not be zero"),
         ({"velocity": np.zeros((2, 3)), "spin": np.zeros((4, 3))}, "shapes do not broadcast"),
         ({"radius": -1.0}, "radius: got -1.0"),
-        ({"friction": "a"}, "friction: expected a number"),
+        ({"friction": "a"}, "friction: got .a.; expected a number"),
         ({"velocity": -1.0}, "velocity: expected vectors of three numbers"),
         ({"velocity": [1e200, 0, -1]}, "sliding_speed: got inf"),
         ({"velocity": [0, 0, -1e6]}, "speed: got 1000000.0"),

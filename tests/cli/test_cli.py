@@ -168,14 +168,14 @@ def test_a_spreadsheet_computes_no_name(command, name, capsys):
         (["--plate", "qqq"], "--plate: unknown material 'qqq': `contactlaw materials` lists all"),
         (["--sphere", "glass"], "--sphere: law 'myc' needs a yield strength, and material 'glass'"),
         (["--sphere", "glass"], "take --law fem"),
-        (["--law", "herz"], "--law: unknown law 'herz'; did you mean 'hertz'"),
-        (["--law", "kogut_etsion(9)"], "--law: poissons_ratio must lie between"),
+        (["--law", "herz"], "--law: got 'herz'; unknown law; did you mean 'hertz'"),
+        (["--law", "kogut_etsion(9)"], "poissons_ratio must lie between 0 and 0.5, not '9'"),
         (["--speed", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the table, its "),
         (["--speed", "1,1e4"], "--outside solve integrates the equation there, --outside clamp"),
         (["--speed", "1:100:9", "--radius", "1um:1mm:2000", "--thickness", "1mm:2mm:2000"],
-         "--speed, --radius, --thickness: every combination of them is 36000000 impacts"),
-        (["--plot", "cor.xyz"], "--plot: got 'cor.xyz', must end in .png, .svg or .pdf"),
-        (["--plot", "cor"], "--plot: got 'cor', must end in"),
+         "--speed, --radius, --thickness: every combination is 36000000 impacts"),
+        (["--plot", "cor.xyz"], "--plot: got 'cor.xyz'; must end in .png, .svg or .pdf"),
+        (["--plot", "cor"], "--plot: got 'cor'; must end in"),
         (["--plot", "nowhere/cor.png"], "--plot: there is no folder nowhere"),
         (["--solve", "--law", "hertz", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"],
          "did not solve"),
@@ -194,12 +194,15 @@ def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
 @pytest.mark.parametrize(
     ("argv", "message"),
     [
-        (["history", *IMPACT[1:], "--samples", "1"], "--samples: must be an integer from 2"),
+        (["history", *IMPACT[1:], "--samples", "1"], "--samples: got 1; must be an integer from 2"),
         (["history", *IMPACT[1:], "--speed", "1e4"], ": 10000 m/s, radius 0.9 mm, thickness 1 mm"),
-        (["history", *IMPACT[1:], "--plot", "contact.xyz"], "--plot: got 'contact.xyz', must end"),
-        (["table", "check", "--points", "5"], "--points: at least 100"),
-        (["table", "check", "--points", "100", "--seed", "-1"], "--seed: must not be negative"),
-        (["table", "info", "--law", "hertz"], "--law: 'hertz' never yields"),
+        (["history", *IMPACT[1:], "--plot", "contact.xyz"], "--plot: got 'contact.xyz'; must end"),
+        (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
+        (
+            ["table", "check", "--points", "100", "--seed", "-1"],
+            "--seed: got -1; must not be negative",
+        ),
+        (["table", "info", "--law", "hertz"], "--law: got 'hertz'; never yields"),
         (["table", "info", "missing.h5"], "table: there is no file missing.h5"),
         (["table", "build", "--out", "nowhere/t.h5"], "--out: there is no folder nowhere"),
         (["table", "build", "--out", "."], "--out: . is a folder"),
@@ -251,7 +254,7 @@ def test_help_comes_at_once():
     """It lists every subcommand, and loads nothing that takes long."""
     code = (
         "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
-        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
+        "print(text); assert not {'numpy', 'numba', 'h5py', 'shtab'} & {*sys.modules}"
     )
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     listed = re.findall(r"^    ([a-z-]+)\b", shown.stdout, re.MULTILINE)
@@ -329,7 +332,7 @@ def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
     assert "law fem:" in capsys.readouterr().out
     assert main(["table", "info", *steel[:4]]) == 1
     assert capsys.readouterr().err == (
-        "contactlaw: --law: 'fem' takes numbers from a pair: give --sphere and --plate too\n"
+        "contactlaw: --law: got 'fem'; takes numbers from a pair: give --sphere and --plate too\n"
     )
     assert main(["table", "info", *steel[:2], "--sphere", "steal", "--plate", "glass"]) == 1
     assert "--sphere: unknown material 'steal'" in capsys.readouterr().err
@@ -441,3 +444,39 @@ def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch, capsys, tmp
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main([*PLOT, "--plot", str(tmp_path / "cor.png")]) == 1
     assert "pip install 'contactlaw[demo]'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("th", ["thickness"]),
+        ("cor --outside ''", ["raise", "solve", "clamp"]),
+        ("cor --sphere bearing", ["bearing-steel-52100", "bearing-steel-52100-ball"]),
+        ("table build --law ko", ["kogut_etsion"]),
+        ("fit --materials mi", ["mine.toml"]),
+    ],
+)
+def test_a_shell_completes_what_is_typed(typed, offered, completion, tmp_path):
+    (tmp_path / "mine.toml").touch()
+    script = (
+        f"source {completion}; COMP_WORDS=(contactlaw {typed})\n"
+        'COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _shtab_contactlaw; printf "%s\\n" "${COMPREPLY[@]}"'
+    )
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout.split() == offered
+
+
+@pytest.fixture(scope="module")
+def completion(tmp_path_factory):
+    command = [sys.executable, "-m", "contactlaw", "--print-completion", "bash"]
+    path = tmp_path_factory.mktemp("shell") / "contactlaw.bash"
+    path.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
+    return path
+
+
+def test_without_shtab_the_remedy_is_named(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    with pytest.raises(SystemExit) as stop:
+        main(["--print-completion", "bash"])
+    assert stop.value.code == 1
+    assert "this needs shtab: pip install 'contactlaw[shell]'" in capsys.readouterr().err

@@ -158,7 +158,7 @@ def test_a_speed_table(model, capsys):
 @pytest.mark.parametrize(
     ("argv", "message"),
     [
-        ([*SWEEP, "--out", "cor.xls"], "--out: got 'cor.xls', must end in .csv, .h5 or .hdf5"),
+        ([*SWEEP, "--out", "cor.xls"], "--out: got 'cor.xls'; must end in .csv, .h5 or .hdf5"),
         ([*SWEEP, "--out", "nowhere/cor.h5"], "--out: there is no folder nowhere"),
         ([*SWEEP, "--speed", "1e4", "--out", "cor.h5"], "10000 m/s, radius 0.5 mm, thickness 0.5 "),
         ([*SWEEP, "--speed", "0", "--out", "cor.h5"], "--speed: got 0.0; must lie"),
@@ -168,7 +168,7 @@ def test_a_speed_table(model, capsys):
         (["constant", *PAIR, "--record", "no.csv"], "no.csv: No such file or directory"),
         (["constant", *PAIR, "--record", "no.h5"], "no.h5: No such file or directory"),
         ([*TABLE, "--error", "1"], "--error: got 1.0; must lie between 1e-05 and 0.1"),
-        ([*TABLE, "--slowest", "20"], "--slowest: must be below the fastest speed, 10.0, got 20.0"),
+        ([*TABLE, "--slowest", "20"], "--slowest: got 20.0; must be below the fastest speed, 10.0"),
         ([*TABLE, "--slowest", "0"], "--slowest: got 0.0; must lie"),
         ([*TABLE, "--fastest", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
         (

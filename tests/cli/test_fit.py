@@ -1,7 +1,9 @@
 """`contactlaw fit`: what it prints and draws, and what it says of tables as people have them."""
 
 import json
+import os
 import re
+from errno import ENOSPC
 
 import numpy as np
 import pytest
@@ -10,6 +12,8 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.cli.fit import measured
+from contactlaw.engines.record import IMPACT
+from contactlaw.physical.kind import Kind
 
 BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
 FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
@@ -86,7 +90,7 @@ def test_tables_as_people_write_them(head, rows, table):
         ),  # fmt: skip
         (["v,COR,diameter,radius", "1,0.5,1,1"], "columns of radius and of diameter"),
         (["speed,COR", "", "1,o.5"], "line 3, column 'COR': 'o.5' is no number"),
-        (["speed;COR", "1;0,5", "2;1,5"], "restitution: got 1.5 (element 1, line 3)"),
+        (["speed;COR", "1;0,5", "2;1,5"], "line 3: restitution: got 1.5 (element 1)"),
         (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
         (["speed_m/s,COR"], "it has no row after the first line"),
         (["speed_m/s,COR", "1,half"], "half"),
@@ -101,7 +105,7 @@ def test_tables_as_people_write_them(head, rows, table):
             ["speed,COR", "1.0,0.5", "", "1,5,0.5"],
             "line 4 has 3 fields, '1,5,0.5', where the first",
         ),
-        (["# in May", "speed;COR", "1;2"], "element 0, line 3"),
+        (["# in May", "speed;COR", "1;2"], ", line 3: restitution: got 2.0 (element 0)"),
         (["speed,COR", "1,88.5%"], "is no number such as 1.5; units belong into the name of the"),
         (["speed,COR", "1,5,0,5"], "a decimal comma? Write numbers with a point"),
         (["speed;COR", "1;0.5;late"], "delete what is beyond the columns"),
@@ -120,14 +124,17 @@ def test_tables_that_are_refused(lines, words, table, capsys):
         ([*BODIES, "--unknown", "thickness"], "--radius: has to be given"),
         ([*FIT, "--thickness", "1mm"], "--thickness: is unknown and given"),
         ([*BODIES, "--radius", "1mm", "--unknown", "thickness,colour"], "--unknown: got 'colour'"),
-        ([*FIT, "--prior", "plate_yield_strength=5GPa"], "--prior: the standard error of plate"),
+        (
+            [*FIT, "--prior", "plate_yield_strength=5GPa"],
+            "--prior: got 5000000000.0; the error of plate_yield_strength must",
+        ),
         (
             [*FIT[:-1], "yield_strength", "--thickness", "1.2mm"],
             "--unknown: the data do not determine",
         ),
         (["--sphere", "stel", *FIT[2:]], "--sphere: unknown material 'stel'"),
-        ([*FIT, "--law", "fme"], "--law: unknown law 'fme'; did you mean 'fem'"),
-        ([*FIT, "--plot", "fit.txt"], "--plot: got 'fit.txt', must end in .png"),
+        ([*FIT, "--law", "fme"], "--law: got 'fme'; unknown law; did you mean 'fem'"),
+        ([*FIT, "--plot", "fit.txt"], "--plot: got 'fit.txt'; must end in .png"),
     ],
 )
 def test_errors_speak_of_options(options, words, usual, capsys):
@@ -208,7 +215,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     drawn = []
     save = Figure.savefig
     monkeypatch.setattr(
-        Figure, "savefig", lambda self, *args: (drawn.append(self), save(self, *args))
+        Figure, "savefig", lambda self, *a, **named: (drawn.append(self), save(self, *a, **named))
     )
     path = tmp_path / "fit.png"
     unknown = ["--thickness", "1.2mm", "--unknown", "plate_yield_strength"]
@@ -223,6 +230,14 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     )
     assert above.collections and below.collections  # bands
     assert str(path) in capsys.readouterr().out
+    path.write_text("before")
+    monkeypatch.setattr(os, "fsync", full)
+    assert main(["fit", usual, *BODIES, "--radius", "1mm", *unknown, "--plot", str(path)]) == 1
+    assert path.read_text() == "before" and f"cannot write {path}: No" in capsys.readouterr().err
+
+
+def full(*_):
+    raise OSError(ENOSPC, os.strerror(ENOSPC))
 
 
 def test_where_yield_begins_is_drawn(tmp_path):
@@ -256,3 +271,44 @@ def test_rows_as_spreadsheets_and_people_end_them(text):
 def test_what_is_too_long_for_a_cell_is_refused_in_words():
     with pytest.raises(ValueError, match="field larger than"):
         measured._read(b"speed,COR,remark\n1,0.8," + b"x" * 140_000 + b"\n")
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run's record: impacts on two walls, of which one is of glass, an edge, and two beads."""
+    on_steel = rebounds(STEEL, noise=0.01)
+    rows = np.zeros(20, IMPACT)
+    for name in ("restitution", "radius", "thickness"):
+        rows[name][:12] = on_steel[name]
+    rows["approach_speed"][:12] = on_steel["speed"]
+    rows[12:] = rows[0]
+    rows["plate"][12:] = [-1, 0, 1, 1, 1, 1, 1, 1]
+    rows["restitution"][12:], rows["kind"][13] = 0.1, Kind.OVER_EDGE
+    which = np.where(rows["plate"] == 1, 1, 0)
+    which[12] = 2
+    glass = cl.Pair(STEEL.sphere, "glass")
+    pairs = STEEL, glass, cl.Pair(STEEL.sphere, STEEL.sphere)
+    record = cl.Record(rows, [cl.Bodies(pair, "fem") for pair in pairs], which)
+    record.save(tmp_path / "run.h5")
+    return record, str(tmp_path / "run.h5")
+
+
+def test_a_record_of_a_run_is_fitted(run, found, capsys):
+    record, path = run
+    asked = ["fit", path, "--plate", STEEL.plate.name, "--unknown", "thickness"]
+    assert main([*asked, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["values"]["thickness"] == pytest.approx(found.values["thickness"], rel=0.02)
+    assert printed["sphere"] == STEEL.sphere.name and len(printed["flags"]) == 12
+    walls = record.part(record.which == 0)
+    assert cl.fit(STEEL, walls, "thickness").values == pytest.approx(printed["values"], rel=1e-9)
+    assert main(asked) == 0 and "\n     11    11 " in capsys.readouterr().out
+    for words, said in (
+        (
+            ["fit", path, "--unknown", "thickness"],
+            "several pairs, bearing-steel-52100 on aluminium",
+        ),
+        ([*asked, "--radius", "1mm"], "--radius: the record has its own"),
+    ):
+        assert main(words) == 1
+        assert said in capsys.readouterr().err

@@ -81,7 +81,7 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
         ("E=2.8GPa nuu=0.35 rho=1410", "--sphere: unknown 'nuu'; did you mean nu? known: E, nu"),
         ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu=0.35"),
         ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
-        ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus 2.8 of"),
+        ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus: got 2.8; below"),
         (
             "E=2GPa E=3GPa nu=0.35 rho=1410",
             "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice",

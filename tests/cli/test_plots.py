@@ -3,6 +3,8 @@
 import dataclasses
 import itertools
 import math
+import os
+from errno import ENOSPC
 
 import numpy as np
 import pytest
@@ -32,6 +34,19 @@ def picture(drawn, tmp_path, asked, pair="gamma-alumina on glass", command="cor"
 
 def caption(figure):
     return " ".join(figure.texts[1].get_text().split())
+
+
+@pytest.mark.parametrize("command", ["cor", "history"])
+def test_a_full_disk_leaves_the_picture_that_was_there(command, tmp_path, monkeypatch, capsys):
+    def full(*_):
+        raise OSError(ENOSPC, os.strerror(ENOSPC))
+
+    (tmp_path / "it.png").write_text("before")
+    monkeypatch.setattr(os, "fsync", full)
+    words = "--sphere gamma-alumina --plate glass --law myc --radius 1mm --thickness 1mm --speed 1"
+    assert main([command, *words.split(), "--plot", f"{tmp_path}/it.png"]) == 1
+    assert f"--plot: cannot write {tmp_path}/it.png: No space left" in capsys.readouterr().err
+    assert (tmp_path / "it.png").read_text() == "before"
 
 
 @pytest.mark.parametrize("axis", ["speed", "thickness", "radius"])
@@ -98,7 +113,7 @@ def test_a_map_of_one_value(drawn, tmp_path):
          "--speed, --thickness, --radius: got 2, 9, 9 values, too many for one picture: give one"),
         ("--radius 1mm:2mm:7 --thickness 1mm,2mm --speed 1,2", "got 2, 2, 7 values, too many"),
         ("--radius 1mm --thickness 1mm:9mm:9,inf --speed 1:2:9",
-         "--thickness: got inf, which no axis of a map reaches: leave it out"),
+         "--thickness: got inf; no axis of a map reaches it: leave it out"),
     ],
 )  # fmt: skip
 def test_what_no_picture_shows_is_refused(asked, said, tmp_path, capsys):

@@ -306,7 +306,7 @@ DAMAGES = [
       for place in ("impacts", "bodies", "bodies/0/plate")),
     (attribute("law", None), "bodies/0", "group bodies/0 has no attribute law, expected text"),
     (attribute("law", 3.0), "bodies/0", "attribute law of group bodies/0 is 3.0, expected text"),
-    (attribute("law", "hertzian"), "bodies/0", "unknown law 'hertzian'"),
+    (attribute("law", "hertzian"), "bodies/0", "got 'hertzian'; unknown law"),
     (attribute("format", [1, 2]), "/", "no contactlaw record of schema 1"),
     (attribute("schema", 2), "/", "no contactlaw record of schema 1"),
     (attribute("density", None), "bodies/0/plate",
@@ -316,11 +316,11 @@ DAMAGES = [
     (attribute("yield_strength", [1.0, 2.0]), "bodies/0/sphere",
      "yield_strength of group bodies/0/sphere is an array of shape (2,) and type float64"),
     (attribute("hardening", [1e6, 0.3, 1.0]), "bodies/0/sphere",
-     "hardening of 'gamma-alumina' must be (B, n)"),
+     "must be (B, n), B in Pa, or n alone (material 'gamma-alumina')"),
     (attribute("rate", "slow"), "bodies/0/sphere", "attribute rate of group bodies/0/sphere is"),
     (attribute("kind", 4), "bodies/0/sphere", "attribute kind of group bodies/0/sphere is 4"),
     (attribute("name", 4.0), "bodies/0/sphere", "attribute name of group bodies/0/sphere"),
-    (attribute("density", -1.0), "bodies/0/plate", "density of 'glass' must be positive"),
+    (attribute("density", -1.0), "bodies/0/plate", "density: got -1.0; must be positive"),
 ]  # fmt: skip
 
 
@@ -377,8 +377,8 @@ def test_flipped_bits_of_a_column(place, rain, tmp_path):
         (np.zeros((2, 2), IMPACT), "expected rows with named columns"),
         (np.zeros(2, [("speed", "U4")]), "column speed holds values of type <U4"),
         (np.zeros(2, [("speed", "f8", 3)]), r"column speed holds values of type \('<f8', \(3,\)\)"),
-        (np.array([(1.0, 0.5)], [("speed", "f8"), ("plate", "f8")]), "plate: got 0.5, expected"),
-        (np.array([(1.0, np.nan)], [("speed", "f8"), ("plate", "f8")]), "plate: got nan, expected"),
+        (np.array([(1.0, 0.5)], [("speed", "f8"), ("plate", "f8")]), "plate: got 0.5; expected"),
+        (np.array([(1.0, np.nan)], [("speed", "f8"), ("plate", "f8")]), "plate: got nan; expected"),
     ],
 )
 def test_arrays_that_are_no_record(rows, message, tmp_path):

@@ -2,19 +2,22 @@
 
 import pickle
 
+import numpy as np
 import pytest
 
 import contactlaw as cl
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
 from contactlaw.cli.parts import wording
-from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 
 @pytest.mark.parametrize(
     ("error", "message"),
     [
-        (ArgumentError("speed", "got -1.0"), r"^speed: got -1\.0$"),
+        (
+            cl.ArgumentError("speed", np.float64(-1.0), "must be above 0", 2),
+            r"^speed: got -1\.0 \(element 2\); must be above 0$",
+        ),
         (OutsideTableError(3, "too fast"), 'impact 3 .* too fast.* outside="solve"'),
         (UnsolvedError(3, "lambda = 200", "too many steps"), r"lambda = 200 \(element 3\): too"),
         (UnknownMaterialError("glas", ("glass",)), r"mean 'glass'\? contactlaw.materials\(\)"),
@@ -33,7 +36,7 @@ def test_the_number_of_an_impact_is_that_of_the_arrays(model):
     with pytest.raises(OutsideTableError) as refused:
         model.lookup([1.0, 2.0, 1e4], 0.9e-3, 1e-3)
     assert refused.value.impact == 2
-    with pytest.raises(wording.Refused, match="10000 m/s, radius 0.9 mm, thickness 2 mm: outside"):
+    with pytest.raises(ValueError, match="10000 m/s, radius 0.9 mm, thickness 2 mm: outside"):
         with wording.naming_impact([[1.0], [1e4]], 0.9e-3, [1e-3, 2e-3]):
             raise OutsideTableError(3, "too fast")
 

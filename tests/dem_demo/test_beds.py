@@ -132,7 +132,7 @@ def test_the_summary_says_both_and_how_long_it_took(name, folder):
         *((f"{scene} {options}", words) for scene in KINDS for options, words in (
             ("--beads 0", ["beads", "at least one"]),
             ("--thickness -1mm", ["--thickness", "positive"]),
-            ("--constant-cor 1.2", ["--constant-cor: must lie between 0.2 and 1, got 1.2"]),
+            ("--constant-cor 1.2", ["--constant-cor: got 1.2; must lie between 0.2 and 1"]),
             ("--duration 1e-9", ["duration", "at least one frame"]),
             ("--sphere stele", ["stele"]),
             ("--law hertzz", ["law", "hertz"]),

@@ -493,7 +493,7 @@ def test_headers_of_the_largest_tables_are_as_small_as_the_docs_say():
 
 FLOWS = dataclasses.replace(metal.PLAIN.sphere, yield_strength=300e6)
 REFUSED = {
-    "a table": ((PAIR, "myc"), {"table": "all"}, "table: must be 'cor' or 'none', got 'all'"),
+    "a table": ((PAIR, "myc"), {"table": "all"}, "table: got 'all'; must be 'cor' or 'none'"),
     "a body that comes to yield": ((cl.Pair(metal.PAIR.sphere, FLOWS), "fem"), {},
                                    "above 500000.*a rate for one of two bodies"),
     "another rate": ((cl.Pair(metal.PAIR.sphere, dataclasses.replace(FLOWS, rate=(0.02, 1.0))),
@@ -504,7 +504,7 @@ REFUSED = {
 }  # fmt: skip
 REFUSED |= {
     repr(prefix): ((PAIR, "myc"), {"prefix": prefix},
-                   "prefix: must be lower-case words of letters and digits")
+                   "prefix: .*must be lower-case words and digits")
     for prefix in ("", "Steel", "steel-glass", "2pairs", "a__b", "a_", None)
 }  # fmt: skip
 

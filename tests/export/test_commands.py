@@ -50,8 +50,8 @@ REFUSED = [(kind, *NOWHERE) for kind in COMMANDS]
 REFUSED += [
     ("header", ["--out", "."], "--out: . is a folder"),
     ("header", ["--sphere", "glass", "--law", "myc"], "--sphere: law 'myc' needs a yield strength"),
-    ("header", ["--law", "mcy"], "--law: unknown law 'mcy'"),
-    ("header", ["--prefix", "Steel"], "--prefix: must be lower-case words"),
+    ("header", ["--law", "mcy"], "--law: got 'mcy'; unknown law"),
+    ("header", ["--prefix", "Steel"], "--prefix: got 'Steel'; must be lower-case words"),
     ("liggghts", ["--out", "file"], "--out: file is no folder"),
     ("liggghts", ["--out", "file/out"], "--out: there is no folder file"),
     ("page", ["--sphere", "steal"], "--sphere: unknown material 'steal'"),

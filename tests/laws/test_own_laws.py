@@ -109,31 +109,31 @@ def unloading(*arguments, **options):
         (loading(CUT_OFF, Loading(3.0, lambda d: 4.0 * np.exp(3.0 - d))),
          r"loading force of 'mine' does not rise at 3 d_Y"),
         (loading(Loading(1.0, lambda d: np.sqrt(2.0 - d))),
-         r"loading force of 'mine' is nan at 2\.0\d+ d_Y"),
+         r"'mine'; its loading force is nan at 2\.0\d+ d_Y"),
         (loading(Loading(1.0, lambda d: math.sqrt(d))),
-         "loading force of 'mine' has to take an array, as numpy's functions do"),
-        (loading(Loading(1.0, lambda d: d[:3])), "return one number for each of its elements"),
+         "'mine'; its loading force has to take an array, as numpy's functions do"),
+        (loading(Loading(1.0, lambda d: d[:3])), "return one number for each element"),
         (loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
          "branches have to begin one after the other, below 100000 d_Y"),
         (loading(CUT_OFF, Loading(1e6, CUT_OFF.force)), "branches have to begin one after"),
         (loading(Loading(0.5, CUT_OFF.force)), "follow Hertz's curve up to yield, 1 d_Y"),
         ({"loading": [Loading(0.0, lambda d: d**1.5), CUT_OFF]},
-         "first branch of 'mine' has to begin at 0 with a polynomial, HERTZ"),
+         "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ"),
         ({"loading": [Loading(0.0, Polynomial([0.0, 0.0, 0.0, 2.0])), CUT_OFF]},
-         "first branch of 'mine' has to begin at 0 with a polynomial, HERTZ"),
-        ({"loading": [CUT_OFF]}, "first branch of 'mine' has to begin at 0"),
-        ({"loading": []}, "first branch of 'mine' has to begin at 0"),
+         "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ"),
+        ({"loading": [CUT_OFF]}, "'mine'; its first branch has to begin at 0"),
+        ({"loading": []}, "'mine'; its first branch has to begin at 0"),
         (unloading(residual, 1.2),
-         r"loss of 'mine' is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy"),
-        (unloading(lambda dm: 0.1 * dm), "residual compression of 'mine' jumps at 1 d_Y.* to 0.1"),
+         r"'mine'; its loss is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy"),
+        (unloading(lambda dm: 0.1 * dm), "its residual compression jumps at 1 d_Y.* to 0.1"),
         ({"unloading": [Unloading(1.0, residual), Unloading(4.0, lambda d: 0.5 * residual(d))]},
-         "residual compression of 'mine' jumps at 4 d_Y, from 1.35 to 0.675"),
+         "'mine'; its residual compression jumps at 4 d_Y, from 1.35 to 0.675"),
         ({"unloading": [Unloading(1.0, residual), Unloading(4.0, residual, 1.6)]},
-         "loss of 'mine' jumps at 4 d_Y"),
+         "'mine'; its loss jumps at 4 d_Y"),
         (unloading(lambda dm: 1.01 * (dm - 1.0) ** 2),
-         r"residual compression of 'mine' is not below the largest one at 2\.6"),
+         r"'mine'; its residual compression is not below the largest one at 2\.6"),
         (unloading(lambda dm: np.where(dm < 10.0, residual(dm), np.nan)),
-         r"residual compression of 'mine' is nan at 1\d\.\d+ d_Y"),
+         r"'mine'; its residual compression is nan at 1\d\.\d+ d_Y"),
         ({"unloading": [Unloading(2.0, residual)]}, "the first of unloading begins there"),
         ({"yield_coefficient": None}, "must be a positive number: the law yields, got None"),
         ({"yield_coefficient": -0.5}, "must be a positive number: the law yields, got -0.5"),
@@ -147,7 +147,7 @@ def test_wrong_laws_are_refused_and_the_message_says_where(wrong, message):
 
 def test_a_formula_that_is_not_smooth():
     steps = Loading(1.0, lambda d: 1.5 * d - 0.5 + 1e-3 * np.floor(7.0 * d - 7.0))
-    with pytest.raises(ValueError, match=r"'mine' is not smooth near .* d_Y; give each kink a bra"):
+    with pytest.raises(ValueError, match=r"'mine'; it is not smooth near .* d_Y; give each kink"):
         own(**loading(steps))
 
 

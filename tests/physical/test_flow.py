@@ -49,7 +49,7 @@ def test_no_hardening_and_no_rate_are_none():
         ({"hardening": (-1.0, 0.3)}, "B must be from 0"),
         ({"hardening": (2e8, 1.5)}, "n must be above 0 and up to 1"),
         ({"hardening": (2e8, 0.3), "yield_strength": None}, "needs a yield_strength"),
-        ({"hardening": 0.3, "hardness": 0.9e9}, "as if the material softened"),
+        ({"hardening": 0.3, "hardness": 0.9e9}, "as if it softened"),
         ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
         ({"hardening": 0.7, "hardness": 3e9, "yield_strength": None}, "n must be up to 0.6"),
         ({"hardening": (275.0, 0.36)}, "give it in Pa"),
@@ -60,7 +60,7 @@ def test_no_hardening_and_no_rate_are_none():
     ],
 )
 def test_wrong_constants_are_refused(numbers, message):
-    with pytest.raises(ValueError, match="of 'steel'") as caught:
+    with pytest.raises(ValueError, match="material 'steel'") as caught:
         with_flow(**numbers)
     assert message in str(caught.value)
 

@@ -177,9 +177,9 @@ def test_outside_the_table(model):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"samples": 1}, "samples: must be an integer from 2 to 1 000 000, got 1"),
-        ({"samples": 10.0}, "samples: must be an integer"),
-        ({"method": "spline"}, "method: must be 'table' or 'solve', got 'spline'"),
+        ({"samples": 1}, "samples: got 1; must be an integer from 2 to 1 000 000"),
+        ({"samples": 10.0}, "samples: got 10.0; must be an integer"),
+        ({"method": "spline"}, "method: got 'spline'; must be 'table' or 'solve'"),
         ({"speed": math.nan}, "speed: got nan"),
     ],
 )

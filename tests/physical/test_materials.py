@@ -308,7 +308,7 @@ def test_unknown_name_lists_near_matches(typed: str, near: str) -> None:
 
 @pytest.mark.parametrize("name", [None, 304, "", b"glass", "references"])
 def test_material_refuses_what_is_no_name(name: object) -> None:
-    with pytest.raises(ValueError, match="name must be a string|unknown material"):
+    with pytest.raises(ValueError, match="must be a string|unknown material"):
         material(name)  # type: ignore[arg-type]
 
 
@@ -318,7 +318,7 @@ def test_material_refuses_what_is_no_name(name: object) -> None:
     [math.nan, math.inf, -math.inf, 10**400, "207e9", True, np.True_, 1j, [1.0], Decimal(1)],
 )
 def test_what_is_no_finite_number_is_refused(field: str, value: object) -> None:
-    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be") as caught:
+    with pytest.raises(ValueError, match=f"^{field}: got .*material 'steel'") as caught:
         steel(**{field: value})
     assert repr(value) in str(caught.value)
 
@@ -326,19 +326,19 @@ def test_what_is_no_finite_number_is_refused(field: str, value: object) -> None:
 @pytest.mark.parametrize("field", ["youngs_modulus", "density", "yield_strength", "hardness"])
 @pytest.mark.parametrize("value", [0, 0.0, -0.0, -1.0, np.float32(-7850)])
 def test_what_is_not_positive_is_refused(field: str, value: object) -> None:
-    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be positive"):
+    with pytest.raises(ValueError, match=f"^{field}: got .* must be positive"):
         steel(**{field: value})
 
 
 @pytest.mark.parametrize("field", ["youngs_modulus", "poissons_ratio", "density"])
 def test_none_is_refused_where_a_number_is_needed(field: str) -> None:
-    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be a number.*None"):
+    with pytest.raises(ValueError, match=f"^{field}: must be a number"):
         steel(**{field: None})
 
 
 @pytest.mark.parametrize("ratio", [-1.0, -2.0, 0.5000001, 29.3])
 def test_poissons_ratio_outside_its_range_is_refused(ratio: float) -> None:
-    with pytest.raises(ValueError, match="^poissons_ratio of 'steel' must be above -1"):
+    with pytest.raises(ValueError, match="^poissons_ratio: got .* must be above -1"):
         steel(poissons_ratio=ratio)
 
 
@@ -366,7 +366,7 @@ def test_mixed_units_are_refused_with_the_right_ones(values: dict[str, float]) -
 def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
     entry = Material("flint", 75e9, 0.2, 2600.0, None, "", "ceramic", 8e9)
     assert entry.hardness == 8e9 and entry.yield_strength is None
-    with pytest.raises(ValueError, match=r"^hardness 8\S+ of 'flint' must be below youngs_mod"):
+    with pytest.raises(ValueError, match=r"^hardness: got 8\S+; must be below youngs_mod"):
         dataclasses.replace(entry, hardness=80e9)
 
 
@@ -378,12 +378,12 @@ def test_soft_and_light_beads_are_accepted() -> None:
 
 @pytest.mark.parametrize("name", ["", "  ", None, 1])
 def test_a_material_needs_a_name(name: object) -> None:
-    with pytest.raises(ValueError, match="^name must be a non-empty string"):
+    with pytest.raises(ValueError, match="^name: .*must be a non-empty string"):
         Material(name, 207e9, 0.3, 7850)  # type: ignore[arg-type]
 
 
 def test_a_source_is_text() -> None:
-    with pytest.raises(ValueError, match="^source must be a string, got 42"):
+    with pytest.raises(ValueError, match="^source: got 42; must be a string"):
         steel(source=42)
 
 

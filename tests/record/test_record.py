@@ -94,7 +94,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
     chosen = ["--sphere", "glass", "--plate", "glass"]
     assert main(["constant", "--record", path, "--lammps", *chosen]) == 0
     assert main(["constant", "--record", path, "--sphere", "PMMA"]) == 1
-    assert "--sphere: the record has gamma-alumina, glass, got PMMA" in capsys.readouterr().err
+    assert "--sphere: got 'PMMA'; the record has gamma-alumina, glass" in capsys.readouterr().err
 
 
 def test_several_files_of_a_run_are_one(run, tmp_path):
@@ -129,7 +129,7 @@ def test_every_field_of_a_material_is_kept(tmp_path):
 
 def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
     record = cl.Record(np.zeros(1, IMPACT))
-    with pytest.raises(ValueError, match=r"path: got .*run.txt', must end in .h5 or .hdf5"):
+    with pytest.raises(ValueError, match=r"path: got .*run.txt'; must end in .h5 or .hdf5"):
         record.save(tmp_path / "run.txt")
     record.save(tmp_path / "run.h5")
     before = (tmp_path / "run.h5").read_bytes()

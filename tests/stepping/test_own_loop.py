@@ -120,7 +120,7 @@ def test_a_bead_that_was_put_down_at_next_to_no_speed(example, speed):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"friction": math.nan}, "friction: must be finite"),
+        ({"friction": math.nan}, "friction: got nan; must be finite"),
         ({"models": {2: None}}, "models"),
         ({"models": "glass"}, "model"),
     ],

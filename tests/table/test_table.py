@@ -151,12 +151,12 @@ def test_a_bad_table_is_found():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: splines.spline_coefficients(np.ones(3)), "at least 4 nodes, got 3"),
-        (lambda: table.build(laws.law("hertz")), "'hertz' never yields"),
-        (lambda: table.Settings(largest_inelasticity=-1.0), "largest_inelasticity: must lie"),
-        (lambda: table.Settings(largest_overload=math.nan), "largest_overload: must lie"),
-        (lambda: table.Settings(inelasticity_nodes=3), "inelasticity_nodes: must lie"),
-        (lambda: table.Settings(rtol=1.0), "rtol: must lie"),
+        (lambda: splines.spline_coefficients(np.ones(3)), "got 3; .*at least 4 nodes"),
+        (lambda: table.build(laws.law("hertz")), "got 'hertz'; never yields"),
+        (lambda: table.Settings(largest_inelasticity=-1.0), "largest_inelasticity: got -1.0; m"),
+        (lambda: table.Settings(largest_overload=math.nan), "largest_overload: got .*; must lie"),
+        (lambda: table.Settings(inelasticity_nodes=3), "inelasticity_nodes: got .*; must lie"),
+        (lambda: table.Settings(rtol=1.0), "rtol: got .*; must lie"),
     ],
 )
 def test_what_makes_no_table(call, message):

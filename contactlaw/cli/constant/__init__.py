@@ -7,6 +7,7 @@ import sys
 from typing import Any
 
 from contactlaw import laws
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.constant import lines, records, walls
 from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.impacts import asked, in_words
@@ -88,7 +89,7 @@ def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recor
     if single and len(found) > 1:
         pairs = [one.pair for one in found if one.pair]
         names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs)
-        raise wording.Refused(
+        raise ValueError(
             f"{arguments.record[0]}: has impacts of several pairs, {names}, and these lines are "
             "for one: choose it by --sphere and --plate"
         )
@@ -107,6 +108,6 @@ def _of_names(
         if name is not None:
             known = sorted({getattr(one.pair, role).name for one in found if one.pair})
             if name not in known:
-                raise wording.Refused(f"--{role}: the record has {', '.join(known)}, got {name}")
+                raise ArgumentError(role, name, f"the record has {', '.join(known)}")
             found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
     return found

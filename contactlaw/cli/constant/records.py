@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._content import content_of
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import SPEED
-from contactlaw.physical.arguments import ArgumentError, check
+from contactlaw.physical.arguments import check
 from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
@@ -122,7 +123,7 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
 
 def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     if values is None:
-        raise ArgumentError(name, "has to be given, no record says it")
+        raise ArgumentError(name, None, "has to be given, no record says it")
     return values
 
 
@@ -135,12 +136,13 @@ def _sized(
         if sizes.size != which.max() + 1:
             raise ArgumentError(
                 name,
+                None,
                 f"got {sizes.size} values for {which.max() + 1} in the record: give one "
                 "for all, or thicknesses for the numbers in a column plate",
             )
         return sizes[which]
     if values is not None:
-        raise ArgumentError(name, "the record has its own: leave this one out")
+        raise ArgumentError(name, None, "the record has its own: leave this one out")
     return recorded
 
 
@@ -201,7 +203,7 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         plate = picked["plate"]
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
         if not whole.all():  # NaN, too
-            raise ArgumentError("plate", f"got {plate[~whole][0]:g}, expected whole numbers")
+            raise ArgumentError("plate", plate[~whole][0], "expected whole numbers")
         on_plates = plate >= 0
         picked = {field: values[on_plates] for field, values in picked.items()}
         picked["plate"] = picked["plate"].astype(np.int64)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell
 from contactlaw._readable import relative
 from contactlaw.answers.constant import Constant, Keep
@@ -17,7 +18,6 @@ from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import ArgumentError
 
 Array = NDArray[np.float64]
 
@@ -38,10 +38,8 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
     """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
     plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
-        raise ArgumentError(
-            "thickness",
-            f"{plates.size} different ones, {_MOST} is the most: round them to those of the walls",
-        )
+        reason = f"{plates.size} different ones, {_MOST} is the most: round them to those of walls"
+        raise ArgumentError("thickness", None, reason)
     found = []
     for plate in plates:
         on_it = recorded.thickness == plate

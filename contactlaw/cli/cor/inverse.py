@@ -54,7 +54,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
         for sizes, one in zip(questions, found, strict=True) if one.remark
     ]  # fmt: skip
     if len(remarks) == len(found):
-        raise wording.Refused("\n".join(remarks))
+        raise ValueError("\n".join(remarks))
     for remark in remarks:
         wording.print_warning(remark)
     counts = [one.value.size for one in found]

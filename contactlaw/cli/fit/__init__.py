@@ -5,17 +5,25 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Collection
 from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.fit import figure, measured, printed
 from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.impacts import in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
-from contactlaw.fitting import UnidentifiedError, fit
+from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.arguments import unlikely
+from contactlaw.physical.pair import Pair
+from contactlaw.record.file import HDF5, read_record
 
 
 def add(commands: Any) -> None:
@@ -26,13 +34,13 @@ def add(commands: Any) -> None:
     add(
         "data",
         metavar="FILE",
-        help="CSV with a row per rebound: speed_m/s, at least one of COR, contact_time_us, "
-        "peak_force_N, tangential_restitution, rotational_restitution and spin_rad/s, and "
-        "optionally their standard errors (COR_error), radius_mm and thickness_mm; for the last "
-        "three also angle_deg from the normal, with the speed of the bead, or sliding_speed_m/s "
-        "with the normal speed",
+        help="record of a run (.h5), or CSV with a row per rebound: speed_m/s, at least one of "
+        "COR, contact_time_us, peak_force_N, tangential_restitution, rotational_restitution and "
+        "spin_rad/s, and optionally their standard errors (COR_error), radius_mm and "
+        "thickness_mm; for the last three also angle_deg from the normal, with the speed of the "
+        "bead, or sliding_speed_m/s with the normal speed",
     )
-    options.add_pair(command)
+    options.add_pair(command, options.OF_RECORD)
     length = reader_of(quantities.value, LENGTH)
     options.add_radius(command, length, "all beads")
     add("--thickness", metavar="H", type=length,
@@ -80,7 +88,33 @@ def _prior(text: str) -> tuple[str, float]:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    pair = chosen.pair(arguments)
+    priors = dict(arguments.prior)
+    if Path(arguments.data).suffix.lower() in (*HDF5, ".npy"):
+        data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
+    else:
+        data, known = _typed(arguments), None
+    pair = chosen.pair(arguments, known)
+    asked: dict[str, Any] = {
+        "sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law
+    }  # fmt: skip
+    for name in ("radius", "thickness"):
+        if (size := getattr(arguments, name)) is not None:
+            asked[f"{name}_m"] = size
+    with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
+        found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        if arguments.plot is not None:
+            title = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
+            figure.save_fit(found, title, arguments.plot)
+        if arguments.json:
+            numbers = {name: None if size == math.inf else size for name, size in asked.items()}
+            print(json.dumps(numbers | printed.record(found), indent=2))
+        else:
+            print(in_words(asked), *printed.text(found), "", sep="\n")
+            print(*printed.rows(found), sep="\n")
+
+
+def _typed(arguments: argparse.Namespace) -> Measurements:
+    """Read a table of rebounds, with warnings about what is not used or likely wrong."""
     read = measured.read(arguments.data)
     if read.unused:
         wording.print_warning(
@@ -93,28 +127,37 @@ def _run(arguments: argparse.Namespace) -> None:
     if read.empty:
         lines = ", ".join(map(str, read.empty))
         wording.print_warning(f"{arguments.data}: lines without a rebound are left out: {lines}")
-    data = measured.completed(
+    return measured.completed(
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
         friction=arguments.friction,
     )  # fmt: skip
-    asked: dict[str, Any] = {
-        "sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law
-    }  # fmt: skip
-    for name in ("radius", "thickness"):
-        if (size := getattr(arguments, name)) is not None:
-            asked[f"{name}_m"] = size
-    priors = dict(arguments.prior)
-    with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
-        try:
-            found = fit(pair, data, arguments.unknown, arguments.law, priors)
-        except UnidentifiedError as error:
-            raise ValueError(measured.with_lines(str(error), read.lines)) from None
-        if arguments.plot is not None:
-            title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
-            figure.save_fit(found, title, arguments.plot)
-        if arguments.json:
-            known = {name: None if size == math.inf else size for name, size in asked.items()}
-            print(json.dumps(known | printed.record(found), indent=2))
-        else:
-            print(in_words(asked), *printed.text(found, read.lines), "", sep="\n")
-            print(*printed.rows(found, read.lines), sep="\n")
+
+
+def _recorded(
+    arguments: argparse.Namespace, unknown: Collection[str]
+) -> tuple[Measurements, Pair | None]:
+    """Impacts on walls of the record of a run, and their pair; one of several has to be named."""
+    record = read_record(arguments.data)
+    on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
+    pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
+    if len(pairs) > 1:
+        given = {role: getattr(arguments, role) for role in ("sphere", "plate")}
+        named = [
+            n for n, pair in pairs.items()
+            if all(name in (None, getattr(pair, role).name) for role, name in given.items())
+        ]  # fmt: skip
+        if len(named) != 1:
+            names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs.values())
+            reason = f"has impacts of several pairs, {names}: choose one by --sphere and --plate"
+            raise ValueError(f"{arguments.data}: {reason}")
+        rows, pairs = record.rows.copy(), {0: pairs[named[0]]}
+        rows["plate"][record.which != named[0]] = -1  # left in their places, since rows are named
+        record = replace(record, rows=rows)
+    with wording.reading(arguments.data):
+        data = Measurements.of(record, unknown)
+    for size in ("radius", "thickness"):
+        if (value := getattr(arguments, size)) is not None:
+            if getattr(data, size) is not None:
+                raise ArgumentError(size, None, "the record has its own: leave this one out")
+            data = replace(data, **{size: value})
+    return data, next(iter(pairs.values()), None)

@@ -14,7 +14,7 @@ from contactlaw import style
 from contactlaw._readable import drawn
 from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.plots import SUFFIXES, colour_of, plate_of
+from contactlaw.cli.parts.plots import SUFFIXES, colour_of, plate_of, save
 from contactlaw.fitting import Fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.physical.validity import Validity, limits_in_words
@@ -81,7 +81,7 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
         if len(curves) > 1:
             grid[0, 0].legend(loc="best")
         figure.align_ylabels()
-        figure.savefig(path)
+        save(figure, path)
 
 
 def groups_of(found: Fit) -> Iterator[Group]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,12 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._content import LARGEST_TEXT, content_of
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, quantities, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import FORCE, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
-from contactlaw.physical.arguments import ArgumentError
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
@@ -119,19 +118,13 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     given = {name: size for name, size in sizes.items() if size is not None}
     twice = given.keys() & found.columns.keys()
     if twice:
-        raise ArgumentError(min(twice), "the table has its own: leave this one out")
+        raise ArgumentError(min(twice), None, "the table has its own: leave this one out")
     for name, values in found.columns.items():
         if name in (*INPUTS, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))
             raise ValueError(f"{path}: line {found.lines[row]} has no {name}")
     try:
-        return Measurements(**found.columns, **given)
-    except ValueError as error:
-        raise ValueError(f"{path}: {with_lines(str(error), found.lines)}") from None
-
-
-def with_lines(text: str, lines: list[int]) -> str:
-    """Add to rebounds and elements, which count from 0, their line of the file."""
-    return re.sub(
-        r"\b(rebound|element) (\d+)\b", lambda at: f"{at[0]}, line {lines[int(at[2])]}", text
-    )
+        return Measurements(**found.columns, **given, line=found.lines)
+    except ArgumentError as error:
+        at = "" if error.element is None else f", line {found.lines[error.element]}"
+        raise ValueError(f"{path}{at}: {error}") from None

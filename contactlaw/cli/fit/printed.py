@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from contactlaw._readable import percent, rounded, scale_of, with_error
-from contactlaw.cli.fit.measured import with_lines
 from contactlaw.cli.parts.impacts import aligned, flag_names
 from contactlaw.fitting import Fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 
 
-def text(found: Fit, lines: list[int]) -> Iterator[str]:
+def text(found: Fit) -> Iterator[str]:
     """Lines for a terminal: each value with its error and the error's parts, residuals, notes."""
     width = max(len(UNKNOWNS[name].title) for name in found.unknown)
     for name in found.unknown:
@@ -32,7 +31,7 @@ def text(found: Fit, lines: list[int]) -> Iterator[str]:
         yield f"{what}: {off.size} value{many}, {share} off the fit (rms)"
     if found.notes:
         yield ""
-    yield from (with_lines(note, lines) for note in found.notes)
+    yield from found.notes
 
 
 def values_in_words(found: Fit) -> list[str]:
@@ -44,7 +43,7 @@ def _number(found: Fit, name: str) -> str:
     return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit).rstrip()
 
 
-def rows(found: Fit, lines: list[int]) -> Iterator[str]:
+def rows(found: Fit) -> Iterator[str]:
     """Lines for a terminal: a row per rebound, with its line of the file."""
     kinds = list(found.residuals)
     cells: dict[str, list[str]] = {kind: ["-"] * len(found.data) for kind in kinds}
@@ -56,7 +55,7 @@ def rows(found: Fit, lines: list[int]) -> Iterator[str]:
     yield from aligned(
         [
             ["rebound", "", *(str(n) for n in range(len(found.data)))],
-            ["line", "", *map(str, lines)],
+            ["line", "", *(f"{n:.0f}" for n in np.asarray(found.data.line).tolist())],
             ["speed", "[m/s]", *(f"{v:.4g}" for v in np.asarray(found.data.speed).tolist())],
             *([["angle", "[deg]", *(f"{a:.4g}" for a in angle)]] if angle else []),
             *([kind.replace("_", " "), "[% off]", *cells[kind]] for kind in kinds),

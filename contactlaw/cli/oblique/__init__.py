@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
@@ -18,7 +19,7 @@ from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import ArgumentError, within
+from contactlaw.physical.arguments import within
 
 Array = NDArray[np.float64]
 
@@ -128,6 +129,7 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
     if max(others.values()) > 1 or angles.size < 2:
         raise ArgumentError(
             program,
+            None,
             f"got {angles.size} angles and of {', '.join(others)} "
             f"{', '.join(map(str, others.values()))} values; give one of each and at least two "
             "angles, best from 0 to 89",

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import own, plots, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
@@ -23,10 +24,10 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
         try:
             changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **errors})
         except ValueError as error:
-            raise wording.Refused(f"--{role}-error: {error}") from error
+            raise ArgumentError(f"{role}_error", None, str(error)) from error
         for name in errors:
             if name not in changed.uncertainty:
-                raise wording.Refused(f"--{role}-error: {body.name!r} has no {name} to be wrong")
+                raise ArgumentError(f"{role}_error", name, f"{body.name!r} has none to be wrong")
         bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
@@ -38,7 +39,7 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
         chosen = getattr(arguments, name)
         if chosen is None:
             if known is None:
-                raise wording.Refused(f"--{name}: has to be given, no record says it")
+                raise ArgumentError(name, None, "has to be given, no record says it")
             bodies[name] = getattr(known, name)
         else:
             bodies[name] = own.material_of(name, chosen, arguments.materials)

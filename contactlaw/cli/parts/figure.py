@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import math
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _atomic, style
+from contactlaw import style
 from contactlaw._readable import drawn, scale_of
 from contactlaw.cli.parts import plots
 from contactlaw.cli.parts.layout import AXES, Answers, Ask, Layout, is_logarithmic, layout
@@ -49,11 +47,8 @@ def save(
     """
     plan = layout(given, along, across)
     found = ask(plan.grid())
-    content = io.BytesIO()
     with style.applied():
-        made = (_map if plan.is_map else _curves)(plan, found, subject)
-        made.savefig(content, format=PurePath(path).suffix[1:].lower())
-    _atomic.write(path, content.getvalue())
+        plots.save((_map if plan.is_map else _curves)(plan, found, subject), path)
 
 
 def named(name: str, value: float) -> str:

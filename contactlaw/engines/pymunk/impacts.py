@@ -19,6 +19,7 @@ from weakref import KeyedRef, ref
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import RestitutionModel
 from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.edges import edges_of
@@ -156,14 +157,14 @@ class PymunkImpacts:
         body = self._admit(circle, [pymunk.Circle], self.bead_type)
         radius, number = radius_of(circle), self._models.bead(material)
         if body.body_type != pymunk.Body.DYNAMIC:
-            raise ValueError(f"circle.body: a bead needs a dynamic body, got {body!r}")
+            raise ArgumentError("circle.body", body, "a bead needs a dynamic body")
         if circle.offset != (0, 0) or body.center_of_gravity != (0, 0):
-            raise ValueError(
-                "circle: a bead is a sphere centred on its body; set circle.offset and "
-                f"body.center_of_gravity to (0, 0), got {circle.offset}, {body.center_of_gravity}"
-            )
+            places = circle.offset, body.center_of_gravity
+            reason = "a bead needs circle.offset and body.center_of_gravity at (0, 0)"
+            raise ArgumentError("circle", places, reason)
         if body.id in self._bodies:
-            raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
+            reason = f"carries bead {self._bodies[body.id].index} already"
+            raise ArgumentError("circle.body", None, reason)
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
         warn_of_metres("radius", radius, stacklevel=2)
         plates = self._contacts.plates.values()
@@ -231,9 +232,11 @@ class PymunkImpacts:
         thickness = float(scalars(thickness=thickness)[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
-            raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")
+            reason = f"has no length, all of it is at {tuple(ends(shape)[0])}"
+            raise ArgumentError("shape", None, reason)
         if model is not None and material is not None:
-            raise ValueError("material: a plate with a model of its own has that one's material")
+            reason = "a plate with a model of its own has that one's material"
+            raise ArgumentError("material", None, reason)
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
         if friction is not None:
             friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
@@ -264,7 +267,7 @@ class PymunkImpacts:
             Circle that `add_bead` was given, else a ValueError; it stays in the space if there.
         """
         if id(circle) not in self._contacts.beads:
-            raise ValueError(f"circle: {circle!r} is no bead of this attachment")
+            raise ArgumentError("circle", None, f"{circle!r} is no bead of this attachment")
         self._forget_bead(id(circle))
         circle.collision_type = 0
 
@@ -277,7 +280,7 @@ class PymunkImpacts:
             Shape that `add_plate` was given, else a ValueError; it stays in the space if there.
         """
         if id(shape) not in self._contacts.plates:
-            raise ValueError(f"shape: {shape!r} is no plate of this attachment")
+            raise ArgumentError("shape", None, f"{shape!r} is no plate of this attachment")
         self._forget_plate(id(shape))
         shape.collision_type = 0
 
@@ -416,7 +419,7 @@ class PymunkImpacts:
     def _step(self, dt: float) -> None:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
-            raise ValueError(f"dt: must be positive and finite [s], got {dt!r}")
+            raise ArgumentError("dt", dt, "must be positive and finite [s]")
         self._contacts.error = None
         self._clean()
         self._handlers.check()

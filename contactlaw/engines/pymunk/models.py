@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
+from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
 from contactlaw.physical.rate import flow_with_rate
 
@@ -26,9 +27,11 @@ class ModelsByBead(dict[int, RestitutionModel]):
 
     def __missing__(self, number: int) -> NoReturn:
         """Raise for a pair of materials that no model is for."""
-        raise ValueError(
-            f"model: none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
-            "attach(space, [model, ...]) takes one for each pair of materials that meets"
+        raise ArgumentError(
+            "model",
+            None,
+            f"none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
+            "attach(space, [model, ...]) takes one for each pair of materials that meets",
         )
 
     def reach(self, bead: tuple[float, int], thickness: float, speed: float) -> float:
@@ -73,13 +76,15 @@ class Models:
         for model in self.all:
             pair = sphere_of(model), plate_of(model)
             if len(self.all) > 1 and None in pair:
-                raise ValueError(
-                    f"model: several are told apart by their pairs, but {model!r} has none; give "
-                    "it one (an attribute `pair`, a contactlaw.Pair), or attach it alone"
+                raise ArgumentError(
+                    "model",
+                    None,
+                    f"several are told apart by their pairs, but {model!r} has none; give it one "
+                    "(an attribute `pair`, a contactlaw.Pair), or attach it alone",
                 )
             if pair in seen:
                 names = f"{_name(pair[0])} on {_name(pair[1])}"
-                raise ValueError(f"model: two are for {names}; give one for each pair")
+                raise ArgumentError("model", None, f"two are for {names}; give one for each pair")
             seen.append(pair)
             if pair[0] not in self.spheres:
                 self.spheres.append(pair[0])
@@ -118,9 +123,8 @@ class Models:
             known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
             if not known:
                 names = ", ".join(_name(s) for s in self.spheres)
-                raise ValueError(
-                    f"model: made for spheres of {_name(sphere)}, but the beads are of {names}"
-                )
+                reason = f"made for spheres of {_name(sphere)}, the beads are of {names}"
+                raise ArgumentError("model", None, reason)
             found.update(dict.fromkeys(known, model))
         return found
 
@@ -154,9 +158,11 @@ class Models:
 
     def _missing(self, kind: str, material: Any, known: list[Any]) -> ValueError:
         names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
-        return ValueError(
-            f"material: no model is attached for {kind} of {_name(material)!r}, only for {names}: "
-            "attach(space, [model, ...]) takes one for each pair of materials"
+        return ArgumentError(
+            "material",
+            None,
+            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
+            "attach(space, [model, ...]) takes one for each pair of materials",
         )
 
 
@@ -173,7 +179,7 @@ def plate_of(model: RestitutionModel) -> Any:
 def _listed(given: Any) -> list[RestitutionModel]:
     models = list(given) if isinstance(given, list | tuple) else [given]
     if not models:
-        raise ValueError("model: expected at least one ImpactModel, got an empty list")
+        raise ArgumentError("model", None, "expected at least one ImpactModel, got an empty list")
     for model in models:
         if not callable(getattr(model, "curve", None)):
             raise TypeError(

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, knows
 from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
@@ -212,11 +213,9 @@ def body_of(
     if shape_of.space not in (None, space):
         raise ValueError(f"{shape!r} belongs to another space")
     if shape_of.collision_type not in (0, collision_type):  # a copied shape has the adapter's type
-        raise ValueError(
-            f"collision_type: the attachment needs its own, {shape!r} has "
-            f"{shape_of.collision_type}; leave it 0 and make handlers for impacts.bead_type and "
-            "impacts.plate_type"
-        )
+        remedy = "leave it 0 and make handlers for impacts.bead_type and impacts.plate_type"
+        reason = f"the attachment needs its own for {shape!r}; {remedy}"
+        raise ArgumentError("collision_type", shape_of.collision_type, reason)
     return body
 
 
@@ -224,20 +223,23 @@ def radius_of(circle: pymunk.Circle) -> float:
     """Radius of a bead, in metres."""
     radius = float(scalars(radius=circle.radius)[0][0])
     if radius > LARGEST:
-        raise ValueError(
-            f"radius: {radius!r} m is above {LARGEST:g} m; are these pixels? Space, gravity, "
-            "speeds and shapes must be in metres and seconds; scale where you draw: "
-            "pymunk.SpaceDebugDrawOptions has a transform"
+        raise ArgumentError(
+            "radius",
+            radius,
+            f"above {LARGEST:g} m; are these pixels? Space, gravity, speeds and shapes must be in "
+            "metres and seconds; where you draw, pymunk.SpaceDebugDrawOptions has a transform",
         )
     return radius
 
 
 def changed(bead: BeadShape, circle: pymunk.Circle) -> ValueError:
     """Make the error for a circle that is no longer what was registered."""
-    return ValueError(
-        f"radius: {bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "
-        "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the mass "
-        "that belongs to the radius"
+    return ArgumentError(
+        "radius",
+        None,
+        f"{bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "
+        "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
+        "mass that belongs to the radius",
     )
 
 

@@ -97,7 +97,7 @@ def assert_refused(model, thickness, words):
 def test_a_foil_is_refused_whatever_the_model_would_integrate():
     """A foil beyond R/H = 100 is refused, the limit of the lookup."""
     model = cl.ImpactModel(PAIR, outside="solve")
-    with pytest.raises(ValueError, match="thickness: .* R/H = 120"):
+    with pytest.raises(ValueError, match="thickness: .* R/H is 120"):
         model.restitution(5.0, R, R / 120)
     assert_refused(model, R / 120, r"thickness: .*R/H = 120 is above 100.*thicker")
 

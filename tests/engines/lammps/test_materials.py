@@ -108,11 +108,11 @@ def test_a_type_without_a_model_is_named():
     [
         (lambda: {4: models(STEEL)[1]}, None, "model: there is no atom type 4, the box has 3"),
         (lambda: {}, None, "model: has none for any atom type"),
-        (lambda: {"1": models(STEEL)[1]}, None, "atom types are integers from 1 on, got '1'"),
+        (lambda: {"1": models(STEEL)[1]}, None, "got '1'; atom types are integers from 1 on"),
         (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel for atom type 1"),
         (lambda: {1: models(STEEL)[1]}, lambda: {2: models(STEEL)[2]}, "type 2, for which"),
-        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "other beads than"),
-        (lambda: models(STEEL), lambda: models(STEEL)[2], "other beads than"),
+        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "in the plate's material only"),
+        (lambda: models(STEEL), lambda: models(STEEL)[2], "in the plate's material only"),
     ],
 )
 def test_models_that_do_not_fit_are_refused(model, plate, message):

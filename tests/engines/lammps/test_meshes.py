@@ -227,9 +227,9 @@ def test_files_that_are_no_mesh(tmp_path):
         Mesh.read(tmp_path / "gone.stl", 1e-3)
     wrong = tmp_path / "wrong.stl"
     wrong.write_text("solid\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 x\nendsolid")
-    with pytest.raises(ValueError, match="path: .*wrong.stl. is no mesh that trimesh reads"):
+    with pytest.raises(ValueError, match="path: got .*wrong.stl.; no mesh that trimesh reads"):
         Mesh.read(wrong, 1e-3)
-    with pytest.raises(ValueError, match="scale: must be positive"):
+    with pytest.raises(ValueError, match="scale: got .*must be positive"):
         Mesh.read(wrong, 1e-3, scale=0.0)
 
 
@@ -248,14 +248,14 @@ def test_triangles_that_are_none_are_left_out(model):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"vertices": [[0, 0, 0], [1, 0, 0], [0, math.nan, 0]]}, r"vertices.*finite.*vertex 2"),
-        ({"vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]}, r"vertices.*none beyond.*vertex 1"),
-        ({"vertices": [[0, 0], [1, 0], [0, 1]]}, r"vertices: expected an array of shape \(n, 3\)"),
-        ({"vertices": "part.stl"}, "vertices: expected an array"),
+        ({"vertices": [[0, 0, 0], [1, 0, 0], [0, math.nan, 0]]}, "vertices: .*element 2.*finite"),
+        ({"vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]}, "vertices: .*element 1.*beyond"),
+        ({"vertices": [[0, 0], [1, 0], [0, 1]]}, r"vertices: .*an array of shape \(n, 3\)"),
+        ({"vertices": "part.stl"}, "vertices: got .*expected an array"),
         ({"triangles": [[0, 1, 3]]}, "triangles: must be numbers of vertices, 0 to 2"),
-        ({"triangles": [[0.0, 1.0, 2.0]]}, "triangles: expected integers"),
-        ({"triangles": np.empty((0, 3), int)}, "triangles: expected integers"),
-        ({"thickness": [1e-3, 2e-3]}, "thickness: expected a number or one for each of 1"),
+        ({"triangles": [[0.0, 1.0, 2.0]]}, "triangles: got .*expected integers"),
+        ({"triangles": np.empty((0, 3), int)}, "triangles: got .*expected integers"),
+        ({"thickness": [1e-3, 2e-3]}, "thickness: got .*expected a number or one for each of 1"),
         ({"thickness": -1e-3}, "thickness: got -0.001; must"),
         ({"thickness": math.nan}, "thickness"),
         ({"model": "glass"}, "model: expected a contactlaw.ImpactModel"),
@@ -272,14 +272,14 @@ def test_what_is_no_mesh_is_refused(change, message):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "start, end: must differ"),
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "start, end: got .*must differ"),
         (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), -1.0, 1e-3), "radius"),
         (lambda: Mesh.cone((0, 0, 0), (0, 0, 1), 0.0, 0.0, 1e-3), "radius"),
-        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), 1.0, 1e-3, facets=2), "facets: expected"),
-        (lambda: Mesh.disc((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "normal: must have a direction"),
-        (lambda: Mesh.disc((0, 0, 0), (0, 0, 1), math.inf, 1e-3), "radius: must be positive"),
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), 1.0, 1e-3, facets=2), "facets: got 2; exp"),
+        (lambda: Mesh.disc((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "normal: got .*must have a direction"),
+        (lambda: Mesh.disc((0, 0, 0), (0, 0, 1), math.inf, 1e-3), "radius: got .*must be positive"),
         (lambda: Plate((0, 0, 0), (1e300, 0, 0), (0, 1, 0), 1e-3), "edge_a: .*none beyond"),
-        (lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3), "corner: expected three"),
+        (lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3), "corner: .* three numbers"),
     ],
 )
 def test_shapes_that_are_none_are_refused(call, message):

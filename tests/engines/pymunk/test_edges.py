@@ -111,9 +111,9 @@ def test_friction_follows_the_normal_impulse(model, sliding):
 @pytest.mark.parametrize(
     "edge, box, error, message",
     [
-        ("loose", False, ValueError, "edge: must be one of free, supported, clamped"),
-        (("free",) * 3, False, ValueError, "edge: expected one kind, or for a segment two"),
-        (("free", "clamped"), True, ValueError, "edge: expected one kind, or for a segment two"),
+        ("loose", False, ValueError, "edge: got .*must be one of free, supported, clamped"),
+        (("free",) * 3, False, ValueError, "edge: got .*expected one kind, or for a segment"),
+        (("free", "clamped"), True, ValueError, "edge: got .*expected one kind, or for a seg"),
         ("free", False, TypeError, "edge: .* leave edge=None.*ImpactModel"),
     ],
 )

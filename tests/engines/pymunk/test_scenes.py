@@ -538,7 +538,7 @@ def test_a_length_in_pixels_is_refused():
     space = make_space()
     impacts = attach(space, Stub())
     circle = make_bead(space, (0, 50), radius=20.0)
-    with pytest.raises(ValueError, match=r"radius: 20.0 m .*pixels.*metres"):
+    with pytest.raises(ValueError, match=r"radius: got 20.0; .*pixels.*metres"):
         impacts.add_bead(circle)
     assert circle.collision_type == 0
 
