@@ -78,8 +78,8 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_425,
-    "contactlaw/answers": 2_773,
+    "contactlaw": 33_428,
+    "contactlaw/answers": 2_776,
     "contactlaw/cli": 3_934,
     "contactlaw/emit": 700,
     "contactlaw/engines": 3_622,
@@ -96,7 +96,7 @@ BUDGETS = {
     "contactlaw templates": 1_083,  # sources of other languages, and pages
     "dem_demo": 6_336,
     "validation": 14_850,  # with spheres that are not solid, and the turning-point form
-    "tests": 24_341,  # a fact is held at one level, the one that is nearest to the user
+    "tests": 24_352,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
