@@ -398,11 +398,9 @@ class LammpsPlates:
             self._after_steps(lammps_error)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
         if gone:
-            whole = not any(
-                self._lmp.has_id(kind, name) for kind, name, _ in _PARTS if kind in _CLEARED
-            )
+            left = {kind for kind, name, _ in _PARTS if (kind, name) not in gone}
             self.detach()
-            if whole:
+            if left.isdisjoint(_CLEARED):
                 return
             names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
             raise RuntimeError(
@@ -435,7 +433,8 @@ class LammpsPlates:
         if count:
             self._parts.append(scene.impacts[:count].copy())
             scene.status["impacts"] = 0
-        own = self._own_error() if self._shared["error"][0] else None
+        shared = self._shared[[name for name in SHARED.names or () if name.startswith("error")]][0]
+        own = shared.item() if shared["error"] else None
         gathered = self._comm.allgather((own, self._clear_marks()))
         self._shared["error"] = 0
         errors = [error for error, _ in gathered if error]
@@ -448,10 +447,6 @@ class LammpsPlates:
                 f"beads {sorted(sum(marked, []))}: marked as wrong in d2_{HISTORY}, which stops a "
                 "run, but not by the plates; write nothing there"
             ) from lammps_error
-
-    def _own_error(self) -> Any:
-        names = [name for name in SHARED.names or () if name.startswith("error")]
-        return self._shared[names][0].item()
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
