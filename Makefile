@@ -94,8 +94,7 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" sh -e
 	$(BIN)/dem-demo sieve --beads 300 --out $(PICTURES)/small
-	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --mesh $(PICTURES)/small/deck.stl --scale 1mm \
-	  --out $(PICTURES)/small/report
+	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --out $(PICTURES)/small/report
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
 	cd $(PICTURES) && cp thickness.png speed.png map.png oblique.png fit.png $(CURDIR)/docs/gallery

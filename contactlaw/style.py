@@ -11,8 +11,7 @@ import re
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -50,23 +49,12 @@ _SETTINGS: dict[Any, Any] = {
     "legend.frameon": False,
     "legend.fontsize": 11,
 }
-
-
-Choice = TypeVar("Choice")
-
-NARROW = 6.0  # inches: the width of a figure that is read on a phone
 _MARGIN = 0.1  # inches of white on either side of the axes and below them
-_narrow: ContextVar[bool] = ContextVar("narrow", default=False)
 
 
 @contextmanager
-def applied(*, narrow: bool = False) -> Iterator[None]:
+def applied() -> Iterator[None]:
     """Within this block figures have the common style; they need no screen.
-
-    Parameters
-    ----------
-    narrow : bool, optional
-        Whether they are for a phone.
 
     Raises
     ------
@@ -77,28 +65,15 @@ def applied(*, narrow: bool = False) -> Iterator[None]:
         import matplotlib as mpl
     except ImportError as error:
         raise ImportError("a plot needs matplotlib: pip install 'contactlaw[demo]'") from error
-    before = _narrow.set(narrow)
-    try:
-        with mpl.rc_context(_SETTINGS):
-            yield
-    finally:
-        _narrow.reset(before)
-
-
-def pick(wide: Choice, narrow: Choice) -> Choice:
-    """Choose the value for a screen, or for a phone if figures are narrow."""
-    return narrow if _narrow.get() else wide
+    with mpl.rc_context(_SETTINGS):
+        yield
 
 
 def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
-    """Make an empty figure of a size in inches, with a message and a line on what it shows.
-
-    A figure for a phone has the same height, but is no wider than `NARROW`.
-    """
+    """Make an empty figure of a size in inches, with a message and a line on what it shows."""
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    width = min(width, NARROW) if _narrow.get() else width
     head, lines = balanced(title, 7.6 * width), balanced(subtitle, 10.6 * width)
     # The axes leave room for the lines above them.
     below = 0.22 + 0.28 * len(head)

@@ -24,18 +24,10 @@ _PATIENCE = 300.0  # [s]; drawing the figures and the page of a rain takes less
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run ``dem-demo``.
+    """Run ``dem-demo``, and return its exit status.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Arguments; those of the command line by default.
-
-    Returns
-    -------
-    int
-        0: done; 1: refused or partial, with a message on stderr; 128 + signal: interrupted. Wrong
-        usage exits with 2.
+    0: done; 1: refused or stopped, with a message on stderr; 128 + signal: interrupted. Wrong usage
+    exits with 2.
     """
     argv = sys.argv[1:] if argv is None else list(argv)
     try:

@@ -10,8 +10,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from contactlaw import _atomic
 from contactlaw.parser import Parser
-from dem_demo.kit.place import results
 from dem_demo.kit.signals import Interrupted, interruptible
 
 
@@ -38,10 +38,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     out = parser.parse_args(argv).out
     try:
-        with interruptible(), results(out) as folder:
+        with interruptible(), _atomic.folder(out) as folder:
             verdicts = _write(folder)
-    except NotADirectoryError as error:
-        parser.error(f"argument {error}")
     except OSError as error:
         print(f"validation: {error}; nothing was written to --out {out}", file=sys.stderr)
         return 1

@@ -7,16 +7,12 @@ has what the pages of the demo draw with, too, and ``explore.js`` the page of ``
 from __future__ import annotations
 
 import dataclasses
-import html
-import json
 import math
 import os
 import shlex
-import string
-from importlib import resources
-from typing import Any
 
 from contactlaw import _atomic, laws
+from contactlaw._template import template
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
 from contactlaw.equation.numbers import Impact
@@ -82,11 +78,12 @@ def _text(model: ImpactModel) -> str:
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options + ("" if default else f" --law {law.family}"),
     }
-    return string.Template(_read("explore.html")).substitute(
-        title=html.escape(f"{pair.sphere.name} on {pair.plate.name}"),
-        made=f"contactlaw {VERSION}; law {html.escape(f'{law.family}: {law.source}')}",
-        hidden="" if registered and all(typed) else " hidden",
-        script=_script(model, shown),
+    return template("contactlaw.export", "explore.html").render(
+        title=f"{pair.sphere.name} on {pair.plate.name}",
+        made=f"contactlaw {VERSION}; law {law.family}: {law.source}",
+        has_command=registered and all(typed),
+        kernels=_kernels(*_bodies(model)),
+        pair=shown,
     )
 
 
@@ -107,18 +104,6 @@ def _kernels(bodies: Bodies, page: Page) -> str:
     add(program, page_functions.shown, pair, hit, asked)
     add(program, page_functions.collide, pair, Known(value=page), asked, DOUBLE, DOUBLE)
     return program.text()
-
-
-def _script(model: ImpactModel, shown: dict[str, Any]) -> str:
-    """Scripts of the page, the kernels that they call, and what they show of a pair."""
-    # the name of a material could end the script
-    data = json.dumps(shown, separators=(",", ":")).replace("<", "\\u003c")
-    kernels, drawing, explore = _kernels(*_bodies(model)), _read("drawing.js"), _read("explore.js")
-    return f"{drawing}\nconst pair = {data};\n{kernels}\n{explore}"
-
-
-def _read(name: str) -> str:
-    return resources.files("contactlaw.export").joinpath(name).read_text("utf-8")
 
 
 def _in_catalogue(body: Material) -> bool:

@@ -14,7 +14,7 @@ class Kind(enum.IntEnum):
     SLIDING_ON = 1  # it was on a wall already and slid or rolled on to this one
     OVER_EDGE = 2  # it left because the wall ended under it
     STRUCK = 3  # something else struck it, or pressed on it, while it was in contact; or the plate
-    # came back from its edge and gave it more energy than it took
+    # came back from its edge and gave it more energy than it took; it may leave faster than it came
     RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
 
 

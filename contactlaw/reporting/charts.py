@@ -71,7 +71,7 @@ def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> 
 
 def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") -> None:
     """Give every wall a column, with its name below."""
-    crowded = len(labels) > style.pick(10, 6)
+    crowded = len(labels) > 10
     axes.set_xticks(range(len(labels)), labels, rotation=60 if crowded else 0)
     axes.set_xlim(-0.55, len(labels) - 0.45)
     axes.set_xlabel(what)

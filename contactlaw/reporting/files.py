@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import html
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +12,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
 from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
-from contactlaw.reporting.gallery import Picture
 from contactlaw.reporting.limits import exceeded
 from contactlaw.reporting.meshes import with_meshes
 from contactlaw.reporting.run import Run
@@ -21,10 +19,6 @@ from contactlaw.reporting.surface import ply, vtk
 from contactlaw.walls.mesh import Mesh
 
 _MAPS = "energy.vtk", "energy.ply"
-_LEDE = (
-    "What the beads did to the walls: each impact had the coefficient of restitution (COR) that "
-    "follows from its speed, the bead and the wall."
-)
 
 
 def report(
@@ -64,7 +58,7 @@ def report(
     with style.applied(), _atomic.folder(out) as folder:
         pictures = {name: figures.draw(name, run) for name in figures.names()}
         for name, picture in pictures.items():
-            (folder / f"{name}.png").write_bytes(picture.wide)
+            (folder / f"{name}.png").write_bytes(picture)
         (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
         run.record.save(folder / "record.h5")
         if run.map is not None:
@@ -80,26 +74,17 @@ def report(
     return Path(out) / "index.html"
 
 
-def _page(run: Run, pictures: dict[str, Picture]) -> str:
+def _page(run: Run, pictures: dict[str, bytes]) -> str:
     made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    body = page.template(__package__, "body.html").substitute(
-        impacts=summary.as_html(summary.impacts(run)),
+    return page.template(__package__, "report.html").render(
+        subject=run.subject,
+        facts=[summary.counts(run), *[run.left_out] * bool(run.left_out)],
+        impacts=summary.impacts(run),
         constant=summary.CONSTANT,
-        energies=summary.as_html(summary.energies(run)),
+        limits=exceeded(run.impacts["flags"]),
+        energies=summary.energies(run),
         energy=summary.ENERGY,
-        limits=page.exceeded(exceeded(run.impacts["flags"]), ""),
         figures=page.shown(figures.module, pictures),
-        maps=_MAP_NOTE if run.map is not None else "",
+        map=run.map is not None,
         made=page.made(made, {"contactlaw": VERSION}),
     )
-    left_out = f" {html.escape(run.left_out)}." if run.left_out else ""
-    return page.whole(
-        body, title=f"Impacts on walls: {html.escape(run.subject)}", heading="Impacts on walls",
-        lede=_LEDE, facts=f"<b>{html.escape(summary.counts(run))}.</b>{left_out}",
-    )  # fmt: skip
-
-
-_MAP_NOTE = (
-    "<code>energy.vtk</code>, the energy map for ParaView and OVITO; <code>energy.ply</code>, the "
-    "same for ParaView, MeshLab and Blender; "
-)

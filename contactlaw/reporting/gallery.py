@@ -10,16 +10,7 @@ import importlib
 import pkgutil
 from collections.abc import Sequence
 from types import ModuleType
-from typing import Any, NamedTuple
-
-
-class Picture(NamedTuple):
-    """One figure, as PNG files."""
-
-    wide: bytes
-    """For a slide or a screen."""
-    narrow: bytes
-    """For a phone."""
+from typing import Any
 
 
 class Gallery:
@@ -37,12 +28,9 @@ class Gallery:
         """Import the module that draws a figure; its docstring is the caption."""
         return importlib.import_module(f"{self._package}.{name}")
 
-    def draw(self, name: str, run: Any) -> Picture:
-        """Draw a figure by its name, of a run as the figures of this folder take it."""
+    def draw(self, name: str, run: Any) -> bytes:
+        """Draw a figure by its name, of a run as the figures of this folder take it, as PNG."""
         from contactlaw import style  # matplotlib is loaded when a figure is drawn
 
-        drawn = []
-        for narrow in (False, True):
-            with style.applied(narrow=narrow):
-                drawn.append(style.png(self.module(name).draw(run)))
-        return Picture(*drawn)
+        with style.applied():
+            return style.png(self.module(name).draw(run))

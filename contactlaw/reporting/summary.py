@@ -1,13 +1,10 @@
-"""The numbers of a run in words: two tables, as text and as HTML."""
+"""The numbers of a run in words: two tables, for the text and the page."""
 
 from __future__ import annotations
 
-import html
-
 import numpy as np
 
-from contactlaw._readable import drawn, relative
-from contactlaw.reporting import page
+from contactlaw._readable import relative, scale_of
 from contactlaw.reporting.limits import exceeded, limits_lines
 from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
 
@@ -69,16 +66,9 @@ def energies(run: Run) -> Table:
     """Energy that each wall and each cause took, and the sums."""
     found: Table = [("wall", "contacts", *CAUSES, "in all", "share")]
     whole = by_cause(run.rows).sum() or 1.0
+    unit, scale = scale_of(whole, "J")
     for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
         parts = by_cause(rows)
-        shown = (drawn(part, "J", 3) for part in (*parts, parts.sum()))
+        shown = (f"{part / scale:.3g} {unit}".replace("u", "µ") for part in (*parts, parts.sum()))
         found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
     return found
-
-
-def as_html(table: Table) -> str:
-    """Make a table of a page."""
-    head, *rows = table
-    cells = "".join(f"<th>{html.escape(name)}</th>" for name in head)
-    body = "".join(page.row(head, row) for row in rows)
-    return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"

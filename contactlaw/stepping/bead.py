@@ -204,9 +204,7 @@ def _contact_with(scene: WallScene, bead: Bead, n: int, touching: bool) -> Conta
         less = pass_gradient(
             scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other]
         )
-        along = (
-            along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
-        )  # fmt: skip
+        along = along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
     return contact_of(scene, bead, row.facet, touch_of(row), along, touching, -1)
 
 

@@ -79,6 +79,7 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
+_ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
 
 
 class Trouble(enum.IntEnum):
@@ -308,7 +309,8 @@ def _kind_of(
     # Another contact shared the force, or the losses do not explain the speed: others did work.
     came = 0.5 * bead.mass * row.approach_speed * row.approach_speed
     others = lost + 0.5 * bead.mass * leaves * abs(leaves) - came
-    if row.disturbance == SHARING or not abs(others) <= _WORK * came:
+    faster = leaves > (1.0 + _ROUNDING) * row.approach_speed
+    if row.disturbance == SHARING or faster or not abs(others) <= _WORK * came:
         return Kind.STRUCK.value
     return Kind.IMPACT.value
 
@@ -485,9 +487,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         if not touch.face and last.force > 0.0 and first and row.disturbance == ALONE:
             # How fast the normal turns is first known in the second step.
             around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
-            row.approach_speed = energy.free_speed(
-                row.approach_speed, around, bead.r, row.overlap
-            )  # fmt: skip
+            row.approach_speed = energy.free_speed(row.approach_speed, around, bead.r, row.overlap)
         row.duration += clock.dt
         if u > _FASTER * max(row.approach_speed, 0.0):
             row.approach_speed = u

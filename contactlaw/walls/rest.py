@@ -41,7 +41,7 @@ def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, Integers, I
     return corners, wall, np.where(box[facet] & (b > a), second[facet], facet), point
 
 
-@kernel(entry=True)
+@kernel(cache=True)
 def _to_rest(frames: Any, number: Any, time: Any, point: Any) -> None:
     """Carry points on walls that move back to where the wall was at time 0."""
     for n in range(len(number)):

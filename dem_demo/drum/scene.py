@@ -28,27 +28,15 @@ _AROUND = 0.01  # [m], room around the drum in the simulation box
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Drum(Bed):
-    """Beads in a drum, which turns about the y axis and begins at y = 0.
+    """Beads in a drum, which turns about the y axis and begins at y = 0."""
 
-    Attributes
-    ----------
-    drum, length : float
-        Radius and length of the drum [m].
-    turns : float
-        Revolutions per second [1/s].
-    """
-
-    NAME, SCHEMA = "drum", 1
-    AXES = (
-        "one row per impact on the drum; bead is a row of /beads, plate one of /plates: 0 the "
-        "shell, 1 and 2 the ends; the drum turns about y, z points up"
-    )
+    NAME, SCHEMA = "drum", 2
     NUMBERS = "thickness", "drum", "length", "turns", "friction", "duration", "seed"
     FRAME_RATE = defaults.FRAME_RATE
 
-    drum: float
-    length: float
-    turns: float
+    drum: float  # its radius [m]
+    length: float  # [m]
+    turns: float  # [1/s]
 
     @property
     def spin(self) -> float:
@@ -111,21 +99,6 @@ def drum(
     seed: int = defaults.SEED,
 ) -> Drum:
     """Make a drum, and put beads into it on a loose lattice.
-
-    Parameters
-    ----------
-    beads, radius, speed : optional
-        Number of beads, their smallest and largest radius [m], which are drawn uniformly, and the
-        speed at which they are thrown down [m/s].
-    sphere, plate : str, optional
-        Names of the materials of beads and walls.
-    drum, length, thickness, turns, friction, duration, seed : optional
-        See `Drum`, in the same units.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range; the message begins with its name.
 
     Examples
     --------

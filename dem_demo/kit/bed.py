@@ -21,58 +21,29 @@ if TYPE_CHECKING:
     from contactlaw import Material
     from contactlaw.walls import Mesh
 
-ENGINE, EXTRAS = "lammps", "demo,lammps"  # no other engine of the demo has mesh walls
+EXTRAS = "demo,lammps"
 
 Corners = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Bed(ABC):
-    """Beads on walls of sheet metal, and the time that is simulated.
-
-    Attributes
-    ----------
-    radius : ndarray, shape (N,)
-        Radii of the beads [m].
-    position : ndarray, shape (N, 3)
-        Centres of the beads at the start [m]; z points up.
-    velocity : ndarray, shape (3,)
-        Velocity of all beads at the start [m/s].
-    thickness : float
-        Thickness of the walls [m].
-    sphere_material, plate_material : Material
-        Materials of the beads and of the walls.
-    friction : float
-        Coulomb's coefficient of friction [-], of beads on the walls and on each other.
-    duration : float
-        Simulated time [s].
-    seed : int
-        Seed that the beads were drawn with.
-    NAME, SCHEMA : str, int
-        Name of the scene, and version of the layout of its record.
-    AXES : str
-        What the columns of the table of impacts mean in the record of this scene.
-    NUMBERS : tuple of str
-        Attributes of the scene that the record stores as attributes of the file.
-    FRAME_RATE : float
-        Recorded frames per second [1/s].
-    """
+    """Beads on walls of sheet metal, and the time that is simulated."""
 
     NAME: ClassVar[str]
-    SCHEMA: ClassVar[int]
-    AXES: ClassVar[str]
-    NUMBERS: ClassVar[tuple[str, ...]]
-    FRAME_RATE: ClassVar[float]
+    SCHEMA: ClassVar[int]  # version of the layout of its record
+    NUMBERS: ClassVar[tuple[str, ...]]  # fields that the record stores as attributes of the file
+    FRAME_RATE: ClassVar[float]  # recorded frames per second [1/s]
 
-    radius: Floats
-    position: Floats
-    velocity: Floats
-    thickness: float
+    radius: Floats  # of the beads, shape (N,) [m]
+    position: Floats  # of their centres at the start, shape (N, 3) [m]; z points up
+    velocity: Floats  # of all at the start, shape (3,) [m/s]
+    thickness: float  # of the walls [m]
     sphere_material: Material
     plate_material: Material
-    friction: float
-    duration: float
-    seed: int
+    friction: float  # Coulomb's coefficient, of beads on the walls and on each other
+    duration: float  # [s]
+    seed: int  # that the beads were drawn with
 
     @property
     def frames(self) -> int:

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from contactlaw import ImpactModel, Pair, laws
-from dem_demo.kit import disk, drawing, lammps, session, tale
-from dem_demo.kit.bed import ENGINE, Bed
+from dem_demo.kit import drawing, lammps, recorder, session, signals, tale
+from dem_demo.kit.bed import Bed
 from dem_demo.kit.constant import LEAST, constant_model
-from dem_demo.kit.recorder import Making, Recorder
+from dem_demo.kit.recorder import Making
 from dem_demo.kit.runs import CONSTANT, bed_recorder, read
 from dem_demo.kit.tale import Tale
 
@@ -55,76 +55,42 @@ def start(
     chosen: Plan,
     texts: Tale,
     drawn: type[drawing.Drawing[Any]],
-    others: frozenset[str] = frozenset(),
 ) -> int:
-    """Simulate both runs, and write the records, figures, summary and page.
-
-    Parameters
-    ----------
-    arguments : Namespace
-        Parsed options; ``out`` is the folder for the results.
-    command : str
-        Command line, for the records.
-    chosen : Plan
-        The scene, its two models and the time step.
-    texts : Tale
-        Titles, facts and figures of the scene.
-    drawn : type of Drawing
-        Class that draws a panel of the scene.
-    others : set of str, optional
-        Names of files that the scene writes beside its records.
-
-    Returns
-    -------
-    int
-        Exit status of the command.
-    """
+    """Simulate both runs, and write the records, figures, summary and page."""
     kind = type(chosen.scene)
     show = session.Show(
-        name=kind.NAME,
-        others=frozenset({CONSTANT, *others}),
-        figures=texts.figures,
-        read=partial(read, scene=kind),
-        summary=partial(tale.summary, texts),
-        progress=tale.progress,
-        page=partial(tale.page, texts),
-        film=partial(drawing.gif, drawn),
-        sentence=_sentence,
+        kind.NAME,
+        texts.figures,
+        partial(read, scene=kind),
+        partial(tale.summary, texts),
+        partial(tale.page, texts),
+        partial(drawing.gif, drawn),
     )
     if lammps.rank() > 0:
-        for constant in (False, True):
-            _run(chosen, None, constant=constant)
+        _simulate(chosen, command, None)
         return 0
-    return session.deliver(arguments.out, show, partial(_simulate, chosen, show, command))
+    return session.deliver(arguments.out, show, partial(_simulate, chosen, command))
 
 
-def _run(chosen: Plan, recorder: Recorder | None, *, constant: bool) -> None:
-    lammps.run(
-        chosen.scene,
-        chosen.constant if constant else chosen.law,
-        recorder,
-        thickness=math.inf if constant else chosen.scene.thickness,
-        step=chosen.step,
-        name=f"COR {chosen.constant_cor:g}" if constant else "law",
-        dump=not constant,
-    )
-
-
-def _simulate(chosen: Plan, show: session.Show, command: str, folder: Path) -> BaseException | None:
-    """Write both records into a folder; returns the exception that stopped a run, if any."""
+def _simulate(chosen: Plan, command: str, folder: Path | None) -> BaseException | None:
+    """Write both records into a folder, which rank 0 knows; returns what stopped a run, if any."""
     from mpi4py import MPI
 
-    chosen.scene.write_files(folder)
-    for name, cor in ((show.record, None), (CONSTANT, chosen.constant_cor)):
-        making = Making(
-            chosen.law, (ENGINE, lammps.version()), command, show.files, chosen.step, cor
-        )
-        recorder = bed_recorder(folder / name, chosen.scene, making, MPI.COMM_WORLD.size)
-        stop = recorder.record(partial(_run, chosen, constant=cor is not None), _sentence)
+    first, scene = folder is not None, chosen.scene
+    folder = MPI.COMM_WORLD.bcast(folder)
+    if first:
+        scene.write_files(folder)
+    MPI.COMM_WORLD.barrier()
+    for name, model, thickness, cor in (
+        (f"{scene.NAME}.h5", chosen.law, scene.thickness, None),
+        (CONSTANT, chosen.constant, math.inf, chosen.constant_cor),
+    ):
+        making = Making(chosen.law, command, chosen.step, cor)
+        writes = bed_recorder(folder / name, scene, making, MPI.COMM_WORLD.size) if first else None
+        begin = partial(lammps.Simulation, scene, model, thickness, chosen.step, folder)
+        title = "law" if cor is None else f"COR {cor:g}"
+        with signals.held():  # a signal has to stop all ranks at the same step
+            stop = recorder.run(begin, scene.frames, title, writes)
         if stop is not None:
             return stop
     return None
-
-
-def _sentence(error: BaseException) -> str:
-    return disk.complaint(error) if isinstance(error, OSError) else str(error) or repr(error)

@@ -21,18 +21,6 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     F = dm^1.5 ((d - dr)/(dm - dr))^1.5 to the residual compression dr = (1 - e^2) dm and returns
     the share e^2 of the work. (A law needs dr = 0 at yield, dm = 1: hence the term -1/dm.)
 
-    Parameters
-    ----------
-    pair : Pair
-        Materials.
-    restitution : float
-        Coefficient of restitution [-].
-
-    Raises
-    ------
-    ValueError
-        If the COR is above 1, or below 0.2, where 20 steps per contact miss it by over 0.005.
-
     Examples
     --------
     >>> import math

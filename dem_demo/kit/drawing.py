@@ -24,25 +24,11 @@ _WIDTH, _ROOM = 9.0, 0.75  # [inches]: width of a film, and height of a panel's 
 class Drawing(ABC, Generic[S]):
     """Walls and beads of one run; `show` moves them. Each scene draws its walls in a subclass.
 
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    run : Run
-        The run.
-    range : tuple of float
-        Lowest and highest COR of the colour scale.
-
-    Attributes
-    ----------
-    STACKED : bool
-        Whether the runs stand one above the other on wide screens too; else side by side.
-    RATE : float
-        Frames per second of the film [1/s].
+    `range` has the lowest and highest COR of the colour scale.
     """
 
-    STACKED: ClassVar[bool]
-    RATE: ClassVar[float]
+    STACKED: ClassVar[bool]  # whether the runs stand one above the other; else side by side
+    RATE: ClassVar[float]  # frames per second of the film [1/s]
 
     def __init__(self, axes: Axes, run: Run[S], range: tuple[float, float]) -> None:
         self.axes, self.run = axes, run
@@ -96,14 +82,14 @@ class Drawing(ABC, Generic[S]):
         self.move_walls(time)
 
 
-def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], alone: str, both: str) -> Figure:
-    """Draw the last frame that both runs have, with a title for the law alone or for both runs."""
-    frame = min(run.time.size for run in runs.every) - 1
+def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], title: str) -> Figure:
+    """Draw the last frame of both runs."""
+    frame = min(run.time.size for run in runs.both) - 1
     scene = runs.law.scene
     figure = style.figure(
         12.0,
-        1.4 + _height(drawn, runs, style.pick(10.0, 5.5), 0.4),
-        both if runs.constant else alone,
+        1.4 + _height(drawn, runs, 10.0, 0.4),
+        title,
         f"{source(runs)}; t = {runs.law.time[frame] * 1e3:.0f} ms, a slice of "
         f"{2.0 * drawn.slice(scene)[1] * MM:.0f} mm along the middle",
     )
@@ -112,7 +98,7 @@ def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], alone: str, both: str) 
         drawing = drawn(axes, run, restitution_range(runs.law))
         drawing.show(frame)
     bar = figure.colorbar(
-        drawing.beads, ax=[axes for axes, _ in shown], location=style.pick("right", "bottom"),
+        drawing.beads, ax=[axes for axes, _ in shown], location="right",
         pad=0.02, fraction=0.03,
     )  # fmt: skip
     bar.set_label("COR of the last impact")
@@ -121,7 +107,7 @@ def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], alone: str, both: str) 
 
 def gif(drawn: type[Drawing[Any]], runs: Runs[Any]) -> bytes:
     """Film all frames that both runs have, in slow motion, as a GIF that repeats itself."""
-    frames = min(run.time.size for run in runs.every)
+    frames = min(run.time.size for run in runs.both)
     with style.applied():
         size = _WIDTH, _height(drawn, runs, 0.85 * _WIDTH, _ROOM)
         figure = Figure(figsize=size, dpi=100, layout="constrained")
@@ -145,7 +131,7 @@ def gif(drawn: type[Drawing[Any]], runs: Runs[Any]) -> bytes:
 def _height(drawn: type[Drawing[Any]], runs: Runs[Any], width: float, room: float) -> float:
     """Height of all panels for their width, with room for the title of each [inches]."""
     left, right, bottom, top = drawn.window(runs.law.scene)
-    count = len(runs.every)
-    rows = count if drawn.STACKED else style.pick(1, count)
+    count = len(runs.both)
+    rows = count if drawn.STACKED else 1
     wide = width if drawn.STACKED else width * rows / count
     return rows * (room + wide * (top - bottom) / (right - left))

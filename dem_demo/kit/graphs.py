@@ -13,13 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from contactlaw import Bodies, Pair, Record, style
-from contactlaw.reporting import run as report
-from contactlaw.reporting.figures import impacts
+from contactlaw import style
 from contactlaw.reporting.limits import label
 from dem_demo.kit.measure import account, curve
 from dem_demo.kit.runs import Run, Runs
-from dem_demo.kit.tale import progress
 
 MM = 1e3
 
@@ -36,19 +33,12 @@ _PARTS = (
 )
 
 
-def histograms(rows: NDArray[np.void], pair: Pair, law: str, engine: str) -> Figure:
-    """Draw speed, COR and angle of the impacts on walls as a report of any run does."""
-    record = Record(rows, [Bodies(pair, law)], made={"engine": engine})
-    return impacts.draw(report.Run(record))
-
-
 def source(runs: Runs[Any]) -> str:
-    """Subtitle: beads, plate material and thickness, and how far a partial run came."""
+    """Subtitle: beads, plate material and thickness."""
     scene = runs.law.scene
-    part = f", partial: {progress(runs)}" if runs.reason else ""
     return (
         f"{scene.radius.size} beads of {scene.sphere_material.name} on "
-        f"{scene.plate_material.name}, {label(scene.thickness)}{part}"
+        f"{scene.plate_material.name}, {label(scene.thickness)}"
     )
 
 
@@ -56,11 +46,11 @@ def panels(
     figure: Figure, runs: Runs[Any], *, stacked: bool = False, projection: str | None = None
 ) -> list[tuple[Axes, Run[Any]]]:
     """Make a panel for each run, titled with the name of the run; all have the same scale."""
-    n = len(runs.every)
-    shape = (n, 1) if stacked else (style.pick(1, n), style.pick(n, 1))
+    n = len(runs.both)
+    shape = (n, 1) if stacked else (1, n)
     kind = {"projection": projection}
     grid = figure.subplots(*shape, sharex=True, sharey=True, squeeze=False, subplot_kw=kind)
-    found = list(zip(grid.flat, runs.every, strict=True))
+    found = list(zip(grid.flat, runs.both, strict=True))
     for axes, run in found:
         cor = run.constant_cor
         name = f"contactlaw, {run.name}" if cor is None else f"constant {run.name}"
@@ -71,7 +61,7 @@ def panels(
 def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
     figure = style.figure(
-        12.0, style.pick(6.0, 8.4), title, f"{source(runs)}; energies of all beads since the start"
+        12.0, 6.0, title, f"{source(runs)}; energies of all beads since the start"
     )
     shown = panels(figure, runs)
     for axes, run in shown:
@@ -95,9 +85,7 @@ def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
     handles: dict[str, Artist] = {}
     for axes, _ in shown:
         handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    figure.legend(
-        handles.values(), list(handles), loc="outside lower center", ncols=style.pick(3, 1)
-    )
+    figure.legend(handles.values(), list(handles), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -105,20 +93,7 @@ def restitution(
     runs: Runs[Any], flat: NDArray[np.bool_], kinds: list[tuple[str, NDArray[np.bool_]]],
     title: str, others: str,
 ) -> Figure:  # fmt: skip
-    """Draw a point per impact under the law, the law's curves, and the constant.
-
-    Parameters
-    ----------
-    runs : Runs
-        As read from their files.
-    flat : ndarray of bool
-        Which impacts are on the flat of one wall, where the COR of the law holds.
-    kinds : list
-        Name and mask of two kinds of beads, smaller ones first. Each kind has curves for its
-        smallest and its largest bead.
-    title, others : str
-        Title of the figure, and legend of the impacts that are not `flat`.
-    """
+    """Draw a point per impact under the law, the law's curves, and the constant."""
     run = runs.law
     figure = style.figure(
         10.5, 6.2, title,
@@ -128,8 +103,8 @@ def restitution(
     rows, radius = run.collisions, run.scene.radius
     rng = np.random.default_rng(0)
     speeds = np.geomspace(_SLOWEST, max(2.0, float(rows["approach_speed"].max(initial=0.0))), 200)
-    flat, cors = flat & run.impact, run.impacts["restitution"]
-    _scatter(axes, rows[~flat & run.impact], rng, style.PALE)
+    flat, cors = flat & run.record.impact, run.impacts["restitution"]
+    _scatter(axes, rows[~flat & run.record.impact], rng, style.PALE)
     lowest, highest = 1.0, float(np.quantile(cors, 0.98)) if cors.size else 1.0
     for (name, which), colour in zip(kinds, (style.ORANGE, style.BLUE), strict=True):
         _scatter(axes, rows[flat & which[rows["bead"]]], rng, colour)
@@ -140,7 +115,7 @@ def restitution(
             axes.plot(speeds, cor, color=style.INK, linewidth=1.0, alpha=0.8)
             lowest, highest = min(lowest, float(cor.min())), max(highest, float(cor.max()))
     axes.scatter([], [], s=30, color=style.PALE, label=others)
-    if runs.constant is not None and runs.constant.constant_cor is not None:
+    if runs.constant.constant_cor is not None:
         axes.axhline(
             runs.constant.constant_cor, color=style.VERMILION, linestyle="--", linewidth=2.0,
             label=f"constant {runs.constant.name}",

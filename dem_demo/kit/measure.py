@@ -16,21 +16,15 @@ from dem_demo.kit.runs import Run
 class Account(NamedTuple):
     """Energy balance of all beads at each frame [J]: input since the start, and where it went."""
 
-    start: Floats
-    """Kinetic energy at the start."""
+    start: Floats  # kinetic energy at the start
     gravity: Floats
-    walls: Floats
-    """Work of the moving walls."""
-    moving: Floats
-    """Translational and rotational kinetic energy at the frame."""
+    walls: Floats  # work of the moving walls
+    moving: Floats  # translational and rotational kinetic energy at the frame
     wave: Floats
     plastic: Floats
-    vibration: Floats
-    """Lost to friction within the contact and to vibration of the bodies."""
-    friction: Floats
-    """Lost to friction on the walls."""
-    others: Floats
-    """The rest: bead on bead, and energy stored in open contacts."""
+    vibration: Floats  # lost to friction within the contact and to vibration of the bodies
+    friction: Floats  # lost to friction on the walls
+    others: Floats  # the rest: bead on bead, and energy stored in open contacts
 
 
 def account(run: Run[Any]) -> Account:

@@ -103,12 +103,11 @@ def _two(words: str, found: tuple[float, ...]) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def add_law(add: Any, cor: str) -> None:
-    """Add the options for the law and for the constant COR, with a help text for the latter."""
+def add_law(add: Any) -> None:
+    """Add the option for the law."""
     add("--law", metavar="NAME", default=argparse.SUPPRESS,
         help="contact law, of those that contactlaw cor --help lists (default: the one there)"
     )  # fmt: skip
-    add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS, help=cor)
 
 
 def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
@@ -123,5 +122,7 @@ def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
         help="simulated time [s]")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help=f"the same seed gives the same {beads}")  # fmt: skip
-    add_law(add, "COR of the other run (default: the law's for a thick block, at the "
-            f"speed of the {beads})")  # fmt: skip
+    add_law(add)
+    add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS,
+        help="COR of the other run (default: the law's for a thick block, at the speed of the "
+        f"{beads})")  # fmt: skip

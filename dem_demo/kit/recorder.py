@@ -1,32 +1,27 @@
-"""Recording a run: its frames and impacts, as an HDF5 file that explains itself.
+"""Running a scene and recording it, as an HDF5 file that explains itself.
 
-The layout of the file is that of `contactlaw.record.file`, plus what the scene writes. The file
-is written when the run has ended, in whichever way: HDF5 can neither be interrupted halfway nor
-close a file that the disk has no room for. The record of a run fits into memory, because figures
-and page need all of it at once.
+The layout of the file is that of `contactlaw.Record`, with groups for what the scene writes and for
+its frames. The file is written when the run has ended, in whichever way: HDF5 can neither be
+interrupted halfway nor close a file that the disk has no room for.
 """
 
 from __future__ import annotations
 
-import traceback
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
-from importlib.metadata import version
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
+from tqdm import tqdm
 
-from contactlaw import ImpactModel, Pair
-from contactlaw.engines.record import IMPACT
-from contactlaw.record.file import Record, bodies_of, write
-from dem_demo.kit import disk, signals
+from contactlaw import ImpactModel, Pair, Record, _atomic
+from contactlaw.record.file import bodies_of, read_from, write
+from dem_demo.kit import signals
+from dem_demo.kit.beads import Floats
 from dem_demo.kit.signals import Interrupted
-
-COMPLETE, PARTIAL = "complete", "partial"  # values of the attribute "state" of a file
-FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # their messages suffice: no traceback
 
 
 class Dataset(NamedTuple):
@@ -39,159 +34,160 @@ class Dataset(NamedTuple):
 
 
 class Making(NamedTuple):
-    """Model, engine and command that a run is made with."""
+    """How a run is made."""
 
-    model: ImpactModel
-    """Model of the impacts; with a constant COR, the model to compare them with."""
-    engine: tuple[str, str]
-    """Name and version of the engine."""
+    model: ImpactModel  # of the impacts; with a constant COR, the model to compare them with
     command: str
-    """Command line of the run."""
-    files: Iterable[str]
-    """Names of the files that will be made of the record; files of the engine are added."""
-    time_step: float
-    """Time step of the engine [s]."""
-    constant_cor: float | None = None
-    """COR of every impact; None if the model gives it."""
+    time_step: float  # of the engine [s]
+    constant_cor: float | None = None  # of every impact; None if the model gives it
+
+
+class Simulation(Protocol):
+    """A scene in an engine; under MPI every rank has one, and all call its functions."""
+
+    def advance(self) -> None:
+        """Simulate one frame."""
+
+    def look(self) -> NamedTuple | None:
+        """Return the current frame, with a field for each dataset; None on all ranks but 0."""
+
+    def record(self) -> Record | None:
+        """Return the contacts so far; None on all ranks but 0."""
 
 
 class Recorder:
-    """Keeps the frames and impacts of one run in memory, and writes them to an HDF5 file.
+    """Keeps the frames of a run in memory, and writes them with its contacts.
 
-    Parameters
-    ----------
-    path : Path
-        File to create.
-    scene : str
-        Name of the scene.
-    making : Making
-        Model, engine and command of the run.
-    attributes : mapping
-        Further attributes of the file.
-    write_scene : callable
-        Writes beads and walls into the open file.
-    trajectories : sequence of Dataset
-        Datasets with one entry per frame; the time of the frame is added.
-    frame_rate : float
-        Frames per second [1/s].
-    axes : str
-        What the columns of the table of impacts mean in this file.
-
-    Attributes
-    ----------
-    folder : Path
-        Folder of the file; an engine may write files of its own there.
+    `attributes` are those of the scene, `write_scene` writes beads and walls into the open file.
     """
 
     def __init__(
-        self,
-        path: Path,
-        scene: str,
-        making: Making,
-        *,
-        attributes: Mapping[str, object],
-        write_scene: Callable[[h5py.File], None],
-        trajectories: Sequence[Dataset],
+        self, path: Path, making: Making, attributes: Mapping[str, object],
+        write_scene: Callable[[h5py.File], None], trajectories: Sequence[Dataset],
         frame_rate: float,
-        axes: str,
-    ) -> None:
-        self.folder, self._path = path.parent, path
-        self._attributes, self._model = {**_made(scene, making), **attributes}, making.model
-        self._files, self._write_scene, self._axes = {*making.files}, write_scene, axes
-        self._trajectories, self._frame_rate = trajectories, frame_rate
+    ) -> None:  # fmt: skip
+        self.path, self._making, self._attributes = path, making, attributes
+        self._write_scene, self._trajectories = write_scene, trajectories
+        self._frame_rate = frame_rate
         self._frames: list[dict[str, NDArray[Any]]] = []
-        self._impacts: list[NDArray[np.void]] = []
 
-    def record(
-        self, run: Callable[[Recorder], None], sentence: Callable[[BaseException], str]
-    ) -> BaseException | None:
-        """Let an engine run, then write the file with a note whether the run is complete.
-
-        Parameters
-        ----------
-        run : callable
-            Runs the engine, and passes frames and impacts to the recorder.
-        sentence : callable
-            Puts an error into words.
-
-        Returns
-        -------
-        BaseException or None
-            What stopped the run or kept frames out of the file, if anything did.
-        """
-        stop: BaseException | None = None
-        reason = ""
-        try:
-            signals.check()
-            run(self)
-        except (Exception, Interrupted) as error:
-            if not isinstance(error, FORESEEN):
-                traceback.print_exc()
-            stop, reason = error, sentence(error)
-        with signals.held():
-            full = self._save(reason)
-        return stop or full
-
-    def frame(self, frame: NamedTuple) -> None:
-        """Append one frame; its fields have the names of the datasets."""
+    def add(self, frame: NamedTuple) -> None:
+        """Append one frame."""
         values = frame._asdict()
         self._frames.append({one.name: np.array(values[one.name], one.kind)
                              for one in self._trajectories})  # fmt: skip
-        signals.check()
 
-    def collisions(self, table: NDArray[np.void]) -> None:
-        """Append collisions, in the columns that their table has."""
-        self._impacts.append(table.copy())  # of the few rows; a view would keep the whole table
+    def save(self, record: Record) -> None:
+        """Write the file; without room for all, an `OSError` after the contacts alone are tried."""
+        making, sphere = self._making, self._making.model.pair.sphere
+        on_wall = bodies_of(making.model)
+        bodies = [on_wall, on_wall._replace(pair=Pair(sphere, sphere))]
+        made = {**record.made, **self._attributes, "command": making.command, "law": on_wall.law,
+                "outside": making.model.outside, "time_step": making.time_step}  # fmt: skip
+        if making.constant_cor is not None:
+            made["constant_cor"] = making.constant_cor
+        on_bead = (record.rows["plate"] < 0).astype(np.int64)
+        whole = replace(record, bodies=bodies, which=on_bead, made=made)
+        try:
+            _atomic.write(self.path, whole.content(self._write_rest))
+        except OSError:
+            _atomic.write(self.path, whole.content())
+            raise
 
-    def _save(self, reason: str) -> OSError | None:
-        """Write the file if there is a frame; returns why it has fewer frames, if it has.
-
-        If the disk has no room, it gets every impact but half of the frames, or half of these, and
-        so on. That leaves room for the other files.
-        """
-        frames, full = len(self._frames), None
-        while frames:
-            try:
-                disk.write(self._path, self._content(frames, reason))
-                break
-            except OSError as error:
-                frames, full, reason = frames // 2, error, reason or disk.complaint(error)
-        return full
-
-    def _content(self, frames: int, reason: str) -> bytes:
-        others = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
-        rows = np.concatenate(self._impacts or [np.empty(0, IMPACT)])
-        on_plate = bodies_of(self._model)
-        sphere = on_plate.pair.sphere
-        bodies = [on_plate, on_plate._replace(pair=Pair(sphere, sphere))]
-        made = {**self._attributes, "state": PARTIAL if reason else COMPLETE, "reason": reason,
-                "files": sorted(self._files | others)}  # fmt: skip
-        record = Record(rows, bodies, (rows["plate"] < 0).astype(np.int64), None, made)
-        return record.content(partial(self._write_rest, frames))
-
-    def _write_rest(self, frames: int, file: h5py.File) -> None:
-        """Write the scene, its frames and what its columns of impacts mean."""
-        file["impacts"].attrs["description"] = self._axes
+    def _write_rest(self, file: h5py.File) -> None:
+        """Write the scene and its frames."""
         self._write_scene(file)
-        group, time = file.create_group("trajectories"), np.arange(frames) / self._frame_rate
-        write(group, "time", time, "s", "time of the frame")
+        group, count = file.create_group("trajectories"), len(self._frames)
+        write(group, "time", np.arange(count) / self._frame_rate, "s", "time of the frame")
         for name, _, unit, description in self._trajectories:
-            values = np.stack([frame[name] for frame in self._frames[:frames]])
+            values = np.stack([frame[name] for frame in self._frames])
             write(group, name, values, unit, description)
 
 
-def _made(scene: str, making: Making) -> dict[str, object]:
-    engine, version_of_engine = making.engine
-    law, cor = making.model.force_law, making.constant_cor
+def run(
+    begin: Callable[[], Simulation], frames: int, name: str, recorder: Recorder | None
+) -> BaseException | None:
+    """Simulate and record a run, and return what stopped it or kept frames out, if anything did.
+
+    The recorder, which is None on all ranks but 0, writes its file in whichever way the run ends.
+    """
+    simulation: Simulation | None = None
+    stop: BaseException | None = None
+    try:
+        simulation = begin()
+        # None: no progress bar unless stderr is a terminal
+        hidden = None if recorder is not None else True
+        for n in tqdm(range(frames + 1), desc=name, unit="frame", disable=hidden):
+            if n > 0:
+                simulation.advance()
+            frame = simulation.look()
+            if recorder is not None and frame is not None:
+                recorder.add(frame)
+    except (Exception, Interrupted) as error:
+        stop = error
+    with signals.held():
+        try:
+            record = None if simulation is None else simulation.record()
+            if recorder is not None and record is not None:
+                recorder.save(record)
+        except OSError as error:
+            stop = stop or error
+    return stop
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recorded:
+    """The parts of a run that the record of any scene has."""
+
+    # all contacts by time; with a constant COR in an engine that resolves an impact in one step,
+    # the columns after the COR are missing
+    record: Record
+    law: str  # contact law; of a run with a constant COR, the law to compare it with
+    outside: Literal["raise", "solve", "clamp"]  # policy for impacts outside the law's table
+    constant_cor: float | None  # of every impact; None if a law gives it
+    time: Floats  # of the frames, shape (T,) [s]
+    position: NDArray[np.float32]  # shape (T, N, 2 or 3) [m]
+    velocity: NDArray[np.float32]  # shape (T, N, 2 or 3) [m/s]
+    status: NDArray[np.uint8]  # shape (T, N)
+
+    @property
+    def collisions(self) -> NDArray[np.void]:
+        """One row per contact, as in `contactlaw.engines.record`."""
+        return self.record.rows
+
+    @property
+    def impacts(self) -> NDArray[np.void]:
+        """Contacts that are impacts; COR and speed of the others mean nothing."""
+        return self.record.impacts
+
+    @property
+    def pair(self) -> Pair:
+        """Materials of beads and walls."""
+        return self.record.bodies[0].pair
+
+    @property
+    def made(self) -> str:
+        """When the record was made, and by which versions."""
+        known = self.record.made
+        versions = sorted(name for name in known if name.startswith("version_"))
+        programs = ", ".join(f"{name.removeprefix('version_')} {known[name]}" for name in versions)
+        return f"{known['created']}; {programs}"
+
+
+def read(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
+    """Read the fields of `Recorded`, and all datasets of the frames, by the names of the fields."""
+    found = tuple(file.attrs.get(one) for one in ("scene", "scene_schema"))
+    if found != (name, schema):
+        raise ValueError(
+            f"{path}: no record of the scene {name!r}, schema {schema}, but of {found[0]!r}, "
+            f"schema {found[1]}: run the {name} again"
+        )
+    record = read_from(file)
+    record = record.part(np.argsort(record.rows["time"], kind="stable"))
     return {
-        "scene": scene,
-        "command": making.command,
-        "engine": engine,
-        f"version_{engine}": version_of_engine,
-        # The family's name suffices where the pair gives the numbers of the law.
-        "law": law.family if law.from_pair else law.name,
-        "outside": making.model.outside,
-        "time_step": making.time_step,
-        **({} if cor is None else {"constant_cor": cor}),
-        "version_numba": version("numba"),
+        "record": record,
+        "law": record.made["law"],
+        "outside": record.made["outside"],
+        "constant_cor": record.made.get("constant_cor"),
+        **{name: dataset[()] for name, dataset in file["trajectories"].items()},
     }

@@ -11,12 +11,11 @@ from typing import Generic, TypeVar
 
 import h5py
 
-from contactlaw import Pair
 from contactlaw.record.file import write
+from dem_demo.kit import recorder
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.bed import Bed
-from dem_demo.kit.reader import Recorded, checked, common
-from dem_demo.kit.recorder import Dataset, Making, Recorder
+from dem_demo.kit.recorder import Dataset, Making, Recorded, Recorder
 
 CONSTANT = "constant.h5"
 
@@ -25,29 +24,14 @@ S = TypeVar("S", bound=Bed)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded, Generic[S]):
-    """One recorded run of a bed.
-
-    Attributes
-    ----------
-    scene : Bed
-        Beads and walls of the run.
-    ranks : int
-        Number of MPI processes.
-    kinetic, rotational, potential, elapsed : ndarray, shape (T,)
-        Energies of all beads [J], and computing time [s].
-    """
+    """One recorded run of a bed."""
 
     scene: S
-    ranks: int
-    kinetic: Floats
+    ranks: int  # MPI processes
+    kinetic: Floats  # energies of all beads at each frame, shape (T,) [J]
     rotational: Floats
     potential: Floats
-    elapsed: Floats
-
-    @property
-    def pair(self) -> Pair:
-        """Materials of beads and walls."""
-        return Pair(self.scene.sphere_material, self.scene.plate_material)
+    elapsed: Floats  # computing time until each frame, shape (T,) [s]
 
     @property
     def dissipated(self) -> Floats:
@@ -64,41 +48,34 @@ class Run(Recorded, Generic[S]):
 
 @dataclass(frozen=True, eq=False)
 class Runs(Generic[S]):
-    """The same bed under the law and with a constant COR, which is None if it never started."""
+    """The same bed under the law and with a constant COR."""
 
     law: Run[S]
-    constant: Run[S] | None
+    constant: Run[S]
 
     @property
-    def every(self) -> list[Run[S]]:
-        """The runs that exist, that of the law first."""
-        return [self.law] if self.constant is None else [self.law, self.constant]
-
-    @property
-    def reason(self) -> str:
-        """Why a run is partial; empty if all are complete."""
-        return next((run.reason for run in self.every if run.reason), "")
+    def both(self) -> list[Run[S]]:
+        """The runs, that of the law first."""
+        return [self.law, self.constant]
 
 
 def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder:
-    """Begin the record of a bed in a file; `ranks` is the number of MPI processes."""
+    """Make the recorder of a bed, for a file; `ranks` is the number of MPI processes."""
     attributes = {name: getattr(scene, name) for name in scene.NUMBERS}
     energy = "kinetic", "rotational", "potential"
     return Recorder(
         path,
-        scene.NAME,
         making,
-        attributes={**attributes, "scene_schema": scene.SCHEMA, "ranks": ranks},
-        write_scene=lambda file: _write(file, scene),
-        trajectories=[
+        {**attributes, "scene": scene.NAME, "scene_schema": scene.SCHEMA, "ranks": ranks},
+        lambda file: _write(file, scene),
+        [
             Dataset("position", "f4", "m", "centre; of a bead that is gone: where it was"),
             Dataset("velocity", "f4", "m/s", "velocity; of a bead that is gone: 0"),
             Dataset("status", "u1", "1", "1 in the box, 2 gone"),
             *(Dataset(name, "f8", "J", f"{name} energy of all beads") for name in energy),
             Dataset("elapsed", "f8", "s", "computing time so far"),
         ],
-        frame_rate=scene.FRAME_RATE,
-        axes=scene.AXES,
+        scene.FRAME_RATE,
     )
 
 
@@ -113,31 +90,24 @@ def _write(file: h5py.File, scene: Bed) -> None:
 
 def read(folder: Path, scene: type[S]) -> Runs[S]:
     """Read the records of a kind of scene in a folder."""
-    constant = folder / CONSTANT
-    law = read_one(folder / f"{scene.NAME}.h5", scene)
-    return Runs(law, read_one(constant, scene) if constant.exists() else None)
+    law, constant = (read_one(folder / name, scene) for name in (f"{scene.NAME}.h5", CONSTANT))
+    return Runs(law, constant)
 
 
 def read_one(path: Path, scene: type[S]) -> Run[S]:
-    """Read one record of a kind of scene.
-
-    Raises
-    ------
-    ValueError
-        If the file is something else, or of another schema.
-    """
+    """Read one record of a kind of scene; a `ValueError` if the file is something else."""
     with h5py.File(path, "r") as file:
-        attributes = checked(file, path, scene.NAME, scene.SCHEMA)
-        shared = common(file)
-        sphere, plate = shared.pop("pair").given
+        fields = recorder.read(file, path, scene.NAME, scene.SCHEMA)
+        made = fields["record"].made
+        sphere, plate = fields["record"].bodies[0].pair.given
         return Run(
             scene=scene(
                 **{name: file[f"beads/{name}"][()] for name in ("radius", "position", "velocity")},
-                **{name: attributes[name].item() for name in scene.NUMBERS},
+                **{name: made[name].item() for name in scene.NUMBERS},
                 **scene.read_walls(file),
                 sphere_material=sphere,
                 plate_material=plate,
             ),
-            ranks=int(attributes["ranks"]),
-            **shared,
+            ranks=int(made["ranks"]),
+            **fields,
         )

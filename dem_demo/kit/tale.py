@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -12,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
+from contactlaw._readable import scale_of
 from contactlaw.reporting import page as common
-from contactlaw.reporting.gallery import Picture
 from contactlaw.reporting.limits import exceeded, limits_lines
 from dem_demo.kit.measure import account, kept
 from dem_demo.kit.runs import Run, Runs
@@ -27,39 +26,27 @@ Marks = NDArray[np.bool_]
 class Tale(NamedTuple):
     """Texts, facts and figures of a scene."""
 
-    wall: str
-    """Name of what the beads hit, such as "deck"."""
+    wall: str  # name of what the beads hit, such as "deck"
+    # where the COR of the law holds, in words, and the mask of such impacts
     flat: tuple[str, Callable[[Run[Any]], Marks]]
-    """Where the COR of the law holds, in words, and the mask of such impacts."""
-    own: Callable[[Run[Any]], Facts]
-    """Names and values of facts that only this scene has."""
+    own: Callable[[Run[Any]], Facts]  # facts that only this scene has
+    # beads and walls in one line, and the motion of the walls in another
     title: Callable[[Run[Any]], tuple[str, str]]
-    """Beads and walls in one line, and the motion of the walls in another."""
     figures: ModuleType
-    page: Mapping[str, str]
-    """Texts of the page: heading, lede, alt (of the film), others (further files)."""
+    page: Mapping[str, str]  # texts of the page: heading, lede, alt (of the film), others (files)
 
 
 def summary(tale: Tale, runs: Runs[Any]) -> str:
-    """Write the summary.
-
-    Returns
-    -------
-    str
-        Title, one line per number with a column for each run, and limits of the model that were
-        exceeded under the law.
-    """
-    columns = [dict(facts(tale, run)) for run in runs.every]
+    """Write the summary."""
+    columns = [dict(facts(tale, run)) for run in runs.both]
     lines = [*title(tale, runs), ""]
     lines += [
         "".join([f"{name:{_WIDTH}}", *(f"{column.get(name, '-'):>18}" for column in columns)])
         for name in columns[0]
     ]
     lines += ["", "Bead on bead is the engine's own, not recorded impact by impact"]
-    lines += [f"{run.name}: {run.left_out}" for run in runs.every if run.left_out]
+    lines += [f"{run.name}: {run.record.left_out}" for run in runs.both if run.record.left_out]
     lines += limits_lines(exceeded(runs.law.impacts["flags"]))
-    if runs.reason:
-        lines += ["", f"Partial, {progress(runs)}: {runs.reason}"]
     return "\n".join(lines)
 
 
@@ -69,16 +56,21 @@ def title(tale: Tale, runs: Runs[Any]) -> tuple[str, str]:
     what, how = tale.title(run)
     ranks = f"{run.ranks} {'rank' if run.ranks == 1 else 'ranks'}"
     friction = f"friction {run.scene.friction:g}"
-    return what, f"{how}, {friction}, in {run.engine} on {ranks}, seed {run.scene.seed}"
+    return what, f"{how}, {friction}, in LAMMPS on {ranks}, seed {run.scene.seed}"
 
 
 def facts(tale: Tale, run: Run[Any]) -> Facts:
     """Names and values of all facts of a run."""
-    words, flat = tale.flat[0], run.collisions[tale.flat[1](run) & run.impact]
+    words, flat = tale.flat[0], run.collisions[tale.flat[1](run) & run.record.impact]
     energy = account(run)
+    unit, scale = scale_of(energy.start[-1], "J")  # the same for both runs
+
+    def written(part: float) -> str:
+        return f"{part / scale:z.1f} {unit}".replace("u", "µ")
+
     found = [("", run.name), (f"impacts on the {tale.wall}", f"{run.impacts.size}")]
-    if run.left_out:
-        found.append(("  contacts that are none, left out", f"{(~run.impact).sum()}"))
+    if run.record.left_out:
+        found.append(("  contacts that are none, left out", f"{(~run.record.impact).sum()}"))
     if flat.size:
         low, middle, high = np.quantile(flat["restitution"], [0.05, 0.5, 0.95])
         found += [
@@ -90,81 +82,38 @@ def facts(tale: Tale, run: Run[Any]) -> Facts:
         ]
     return [
         *found,
-        (f"dissipated at the {tale.wall}", _energy(float(run.dissipated.sum()))),
-        ("  bending wave in the plate", _energy(energy.wave[-1])),
-        ("  lost at the contact", _energy(energy.plastic[-1])),
-        (f"work of the {tale.wall} on the beads", _energy(energy.walls[-1])),
-        (f"friction on the {tale.wall}", _energy(energy.friction[-1])),
-        ("beads on beads", _energy(energy.others[-1])),
-        ("kinetic energy at the start", _energy(energy.start[-1])),
-        ("kinetic energy at the end", _energy(energy.moving[-1])),
+        (f"dissipated at the {tale.wall}", written(float(run.dissipated.sum()))),
+        ("  bending wave in the plate", written(energy.wave[-1])),
+        ("  lost at the contact", written(energy.plastic[-1])),
+        (f"work of the {tale.wall} on the beads", written(energy.walls[-1])),
+        (f"friction on the {tale.wall}", written(energy.friction[-1])),
+        ("beads on beads", written(energy.others[-1])),
+        ("kinetic energy at the start", written(energy.start[-1])),
+        ("kinetic energy at the end", written(energy.moving[-1])),
         *tale.own(run),
         ("simulated", f"{run.time[-1] * 1e3:.0f} ms"),
         ("computed in", f"{run.elapsed[-1]:.0f} s"),
     ]
 
 
-def _energy(energy: float) -> str:
-    return f"{energy * 1e3:.1f} mJ" if abs(energy) >= 10e-3 else f"{energy * 1e6:.0f} µJ"
-
-
-def progress(runs: Runs[Any]) -> str:
-    """Say how far a partial run has come."""
-    last = runs.every[-1]
-    reached = last.time[-1] if last.time.size else 0.0
-    return f"{reached:.4g} of {last.scene.duration:g} s under the {last.name}"
-
-
-def page(
-    tale: Tale, runs: Runs[Any], pictures: Mapping[str, Picture], film: Callable[[], bytes]
-) -> str:
-    """Write index.html, one file that needs no other and no network.
-
-    Parameters
-    ----------
-    tale : Tale
-        Texts and facts of the scene.
-    runs : Runs
-        As read from their files.
-    pictures : mapping of Picture
-        Figures by name; those that are missing are left out.
-    film : callable
-        Makes a GIF of the bed.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+def page(tale: Tale, runs: Runs[Any], pictures: Mapping[str, bytes], film: bytes) -> str:
+    """Write index.html, one file that needs no other and no network, with a GIF of the bed."""
     run = runs.law
     what, how = title(tale, runs)
-    columns = [dict(facts(tale, one)) for one in runs.every]
+    columns = [dict(facts(tale, one)) for one in runs.both]
     head, *names = columns[0]
-    body = common.template("dem_demo.kit", "bed.html").substitute(
+    return common.template("dem_demo.kit", "bed.html").render(
         tale.page,
+        title=f"{tale.page['heading']}: what contactlaw gives a particle simulation",
+        facts=(what, how),
         name=run.scene.NAME,
-        film=f"data:image/gif;base64,{base64.b64encode(film()).decode('ascii')}",
-        head="".join(f"<th>{html.escape(text)}</th>" for text in ["", *(c[head] for c in columns)]),
-        rows="".join(
-            common.row(
-                ["", *(c[head] for c in columns)],
-                [name.strip(), *(c.get(name, "") for c in columns)],
-            )
-            for name in names
-        ),
-        limits=common.exceeded(exceeded(run.impacts["flags"]), ""),
+        film=f"data:image/gif;base64,{base64.b64encode(film).decode('ascii')}",
+        head=["", *(c[head] for c in columns)],
+        rows=[[name.strip(), *(c.get(name, "") for c in columns)] for name in names],
+        limits=exceeded(run.impacts["flags"]),
         figures=common.shown(tale.figures.module, pictures),
-        command=html.escape(run.command),
-        law=html.escape(run.law),
-        source=html.escape(ImpactModel(run.pair, run.law).force_law.source),
-        made=common.made(run.created, run.versions),
-    )
-    heading = tale.page["heading"]
-    return common.whole(
-        body,
-        title=f"{heading}: what contactlaw gives a particle simulation",
-        heading=heading,
-        lede=tale.page["lede"],
-        facts=f"<b>{html.escape(what)}.</b> {html.escape(how)}.",
-        partial=common.partial(progress(runs), runs.reason),
+        command=run.record.made["command"],
+        law=run.law,
+        source=ImpactModel(run.pair, run.law).force_law.source,
+        made=run.made,
     )

@@ -23,18 +23,7 @@ _SIZE = 7.2, 4.3  # [inches]
 
 
 def gif(run: Run) -> bytes:
-    """Film the busiest time of a run.
-
-    Parameters
-    ----------
-    run : Run
-        The run, as read from its file.
-
-    Returns
-    -------
-    bytes
-        A GIF that repeats itself, below 2 MB with the default rain.
-    """
+    """Film the busiest time of a run."""
     made = paths.pieces(run)
     with style.applied():
         figure = Figure(figsize=_SIZE, dpi=100, layout="constrained")

@@ -14,7 +14,6 @@ from dem_demo.rain.scene import Beads, Plate, Scene
 
 # Dimensions of the scene, chosen for clear figures.
 WIDTH, GAP = 0.060, 0.020  # [m], width of a plate, and distance to the next
-DEPTH = 0.060  # [m], depth of a plate in three dimensions
 _LARGEST = 0.05  # [m], largest radius of a bead that suits plates of this size
 MARGIN = 0.012  # [m]: nozzles keep off the edges, so that few beads miss the plates
 HEIGHT = 0.2  # [m], height of the nozzles above the plates
@@ -37,44 +36,10 @@ def rain(
     seed: int = defaults.SEED,
     sphere: Material | str = defaults.SPHERE,
     plate: Material | str = defaults.PLATE,
-    dimensions: int = 2,
-    frame_rate: float = defaults.FRAME_RATE,
     friction: float = 0.0,
     tilt: float = 0.0,
 ) -> Scene:
     """Draw a rain of beads on a row of plates.
-
-    Parameters
-    ----------
-    beads : int, optional
-        Number of beads.
-    thicknesses : sequence of float, optional
-        Thickness of each plate [m]; ``inf`` is a half-space.
-    radius, speed : tuple of float, optional
-        Smallest and largest radius [m] and emission speed [m/s], drawn uniformly.
-    duration : float, optional
-        Simulated time [s]; beads are emitted during its first three quarters.
-    seed : int, optional
-        The same seed gives the same rain.
-    sphere, plate : Material or str, optional
-        Materials of beads and plates.
-    dimensions : int, optional
-        Dimensions of the engine, 2 or 3; in 3 there are as many rows of nozzles as fit.
-    frame_rate : float, optional
-        Recorded frames per second [1/s].
-    friction : float, optional
-        Coefficient of friction on the plates [-].
-    tilt : float, optional
-        Angle between nozzles and the vertical [degrees].
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    ValueError
-        If a value is out of its range, or the beads are so many that they would overlap.
 
     Examples
     --------
@@ -99,27 +64,8 @@ def rain(
         raise ArgumentError("tilt", tilt, f"must lie between 0 and {_STEEPEST:g} degrees")
     if not 0.0 < duration < math.inf:
         raise ArgumentError("duration", duration, "must be positive and finite [s]")
-    rows = max(1, int((DEPTH - 2.0 * MARGIN) / (2.2 * radius[1]))) if dimensions == 3 else 1
-    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows, tilt)
-    return Scene(
-        drops, plates, sphere_material, plate_material, duration, seed, frame_rate, rows, friction
-    )
-
-
-def depths(scene: Scene) -> Floats:
-    """Third coordinate of each bead at its emission [m], from the middle of the plates.
-
-    Successive beads come from successive rows of nozzles.
-
-    Examples
-    --------
-    >>> scene = rain(beads=40, dimensions=3)
-    >>> scene.rows, depths(scene).round(4)[[0, 1, 18]]
-    (18, array([-0.017, -0.015, -0.017]))
-    """
-    row = np.arange(scene.beads.radius.size) % scene.rows
-    depth: Floats = (DEPTH - 2.0 * MARGIN) * ((row + 0.5) / scene.rows - 0.5)
-    return depth
+    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, tilt)
+    return Scene(drops, plates, sphere_material, plate_material, duration, seed, friction=friction)
 
 
 def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive: bool) -> None:
@@ -137,7 +83,6 @@ def _draw(
     speed: tuple[float, float],
     period: float,
     seed: int,
-    rows: int,
     tilt: float,
 ) -> Beads:
     """Draw times, places, sizes and speeds of beads.
@@ -146,32 +91,30 @@ def _draw(
     right in turn, and are moved sideways so that a bead lands where it does without tilt.
     """
     down, aside = math.cos(math.radians(tilt)), math.sin(math.radians(tilt))
-    _check_crowd(n, plates, radius[1], speed[0] * down, period, rows)
+    _check_crowd(n, plates, radius[1], speed[0] * down, period)
     rng = np.random.default_rng(seed)
     time = (np.arange(n) + rng.random(n)) * (period / n)
     # Multiples of the golden ratio: beads that are close in time are far apart in space.
-    place = (rng.random() + GOLDEN * (np.arange(n) // rows)) % 1.0 * plates
+    place = (rng.random() + GOLDEN * np.arange(n)) % 1.0 * plates
     plate = np.minimum(np.floor(place), plates - 1)
     x = plate * (WIDTH + GAP) + MARGIN + (place - plate) * (WIDTH - 2.0 * MARGIN)
     thrown = rng.uniform(*speed, n)
     velocity = np.column_stack((rng.uniform(-SIDEWAYS, SIDEWAYS, n), -down * thrown))
     size: Floats = rng.uniform(*radius, n)
     if tilt:
-        along = aside * thrown * np.where(np.arange(n) // rows % 2, -1.0, 1.0)
+        along = aside * thrown * np.where(np.arange(n) % 2, -1.0, 1.0)
         fall = velocity[:, 1] + np.sqrt(velocity[:, 1] ** 2 + 2.0 * GRAVITY * (HEIGHT - size))
         velocity[:, 0] += along
         x = x - along * fall / GRAVITY
     return Beads(size, time, np.column_stack((x, np.full(n, HEIGHT))), velocity)
 
 
-def _check_crowd(
-    n: int, plates: int, radius: float, speed: float, period: float, rows: int
-) -> None:
+def _check_crowd(n: int, plates: int, radius: float, speed: float, period: float) -> None:
     """Refuse more beads than the nozzles can emit without overlap."""
     fall = 2.0 * radius
     clear = (math.sqrt(speed**2 + 2.0 * GRAVITY * fall) - speed) / GRAVITY
     together = SPACING * plates * (WIDTH - 2.0 * MARGIN) / fall
-    most = rows * max(0, math.floor((together - 2.0) * period / clear))
+    most = max(0, math.floor((together - 2.0) * period / clear))
     if n > most:
         raise ArgumentError(
             "beads",

@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import json
 import math
 from collections.abc import Mapping
@@ -18,20 +17,14 @@ from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
 from contactlaw.reporting import page as common
-from contactlaw.reporting.gallery import Picture
-from contactlaw.reporting.limits import label
+from contactlaw.reporting import run as of_any_run
+from contactlaw.reporting import summary as tables
+from contactlaw.reporting.limits import exceeded, label
 from dem_demo.rain import figures, paths
 from dem_demo.rain.figures import _rain
-from dem_demo.rain.measure import (
-    PlateRow,
-    constant_beside_model,
-    limits,
-    near_edge,
-    plate_rows,
-    restitution_range,
-)
+from dem_demo.rain.measure import near_edge, one_for_all, restitution_range
 from dem_demo.rain.record import Run
-from dem_demo.rain.report import progress, title
+from dem_demo.rain.report import title
 
 _LEDE = (
     "How a bead rebounds from a plate depends on the plate's thickness, on the bead and on its "
@@ -42,44 +35,28 @@ _SAMPLES = 96  # points of the force curve of a contact
 _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
 
 
-def page(run: Run, pictures: Mapping[str, Picture]) -> str:
-    """Write the page of a run.
-
-    Parameters
-    ----------
-    run : Run
-        The run, as read from its file.
-    pictures : mapping of Picture
-        Figures by name; those that are missing are left out.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    first, second = title(run)
-    body = common.template(__package__, "page.html").substitute(
-        script=common.template("contactlaw.export", "drawing.js").template
-        + common.template(__package__, "player.js").template,
-        data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
-        sample=_sample(run),
-        other=_other(run),
-        rows="".join(_row(row, run.scene.friction > 0.0) for row in plate_rows(run)),
-        **_words(run),
-        limits=common.exceeded(limits(run), ", and ringed in the animation and in the figures"),
-        figures=common.shown(figures.module, pictures),
-        command=html.escape(run.command),
-        law=html.escape(run.law),
-        source=html.escape(run.model.force_law.source),
-        made=common.made(run.created, run.versions),
-    )
-    return common.whole(
-        body,
+def page(run: Run, pictures: Mapping[str, bytes], film: bytes) -> str:
+    """Write the page of a run, as HTML; the film is for slides, and not on it."""
+    known = of_any_run.Run(run.record)
+    return common.template(__package__, "page.html").render(
         title="Beads rain on plates: what contactlaw gives a particle simulation",
         heading="Beads rain on plates",
         lede=_LEDE,
-        facts=f"<b>{html.escape(first)}.</b> {html.escape(second)}.",
-        partial=common.partial(progress(run), run.reason),
+        facts=title(run),
+        data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
+        sample=_sample(run),
+        cor=f"{one_for_all(run):.2f}" if run.on_plates.size else "",
+        turning=f"{_rain.TURNING:g}" if run.scene.friction else "",
+        impacts=tables.impacts(known),
+        constant=tables.CONSTANT,
+        energies=tables.energies(known),
+        energy=tables.ENERGY,
+        limits=exceeded(run.on_plates["flags"]),
+        figures=common.shown(figures.module, pictures),
+        command=run.record.made["command"],
+        law=run.law,
+        source=run.model.force_law.source,
+        made=run.made,
     )
 
 
@@ -122,7 +99,7 @@ def _data(run: Run) -> dict[str, object]:
 
 def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     """Describe the hardest contact on a plate, and how its bending wave spreads."""
-    rows = run.modelled
+    rows = run.on_plates
     # The page says that no wave comes back during the contact, so it is one far from edges.
     here = np.flatnonzero((rows["plate"] == plate) & ~near_edge(run))
     if not here.size:
@@ -131,7 +108,6 @@ def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     row, thickness = rows[n], run.scene.plates[plate].thickness
     radius, speed = float(run.scene.beads.radius[row["bead"]]), float(row["approach_speed"])
     contact = run.model.force_history(speed, radius, thickness, samples=_SAMPLES)
-    constant, model = (float(cor[n]) for cor in constant_beside_model(run))
     material = run.scene.plate_material
     # Kirchhoff's plate: waves spread by sqrt(D/(rho H)), D/(rho H) = E H^2/(12 rho (1 - nu^2)).
     stiffness = material.youngs_modulus / (12.0 * material.density)
@@ -146,53 +122,10 @@ def _hardest(run: Run, plate: int) -> dict[str, object] | None:
         "compression": _rounded(contact.compression),
         "displacement": _rounded(contact.plate_displacement),
         "spread": spread,
-        "model": model,
-        "constant": constant,
+        "model": float(row["restitution"]),
+        "constant": one_for_all(run),
     }
 
 
 def _rounded(values: NDArray[np.float64]) -> list[float]:
     return [float(f"{value:.4g}") for value in values]
-
-
-def _other(run: Run) -> str:
-    """Say which COR the rings of the animation follow."""
-    if run.baseline:
-        return "where contactlaw would send them"
-    constant = constant_beside_model(run)[0]
-    return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""
-
-
-def _words(run: Run) -> dict[str, str]:
-    """Words of the page that depend on friction."""
-    left = "left in micro-slip and vibration of the bodies (<i>other</i>)"
-    if not run.scene.friction:
-        return {
-            "friction": "",
-            "spin": "",
-            "sliding": f"and {left}, without the friction of sliding.",
-        }
-    return {
-        "friction": "<th>friction</th>",
-        "spin": " The hand on a bead turns with it, "
-        f"{_rain.TURNING:g} times slower than the bead moves.",
-        "sliding": f"{left}, and taken by <i>friction</i> along the plate. It is the kinetic "
-        "energy at the contact, of the normal motion and of sliding.",
-    }
-
-
-def _row(row: PlateRow, friction: bool) -> str:
-    cells = [("plate", label(row.thickness)), ("impacts", f"{row.impacts}")]
-    if row.impacts:
-        cells += [
-            ("mean speed", f"{row.speed:.2f} m/s"),
-            ("mean COR", f"{row.restitution:.3f}"),
-            ("COR range", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
-            *(
-                (name, "&ndash;" if math.isnan(share) else f"{share:.1%}")
-                for name, share in row.shares._asdict().items()
-                if friction or name != "friction"
-            ),
-            ("outside limits", f"{row.outside}"),
-        ]
-    return "<tr>" + "".join(f"<td data-name='{name}'>{text}</td>" for name, text in cells) + "</tr>"

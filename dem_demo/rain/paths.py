@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dem_demo.kit.beads import FLYING, GRAVITY, Floats
-from dem_demo.rain.measure import constant_beside_model, outside
+from dem_demo.rain.measure import one_for_all, outside
 from dem_demo.rain.record import Run
 
 # One piece: from `start` to `end` [s] at x + u t, y + v t - fall t^2/2 with t since its start.
@@ -36,19 +36,7 @@ _UNMARKED = 0.0, math.nan, math.nan, 0
 
 @functools.lru_cache(maxsize=1)  # shared by snapshot, film and page
 def pieces(run: Run) -> NDArray[np.void]:
-    """Cut the paths of beads into parabolas, and into pieces at rest.
-
-    Parameters
-    ----------
-    run : Run
-        The run, whose frames and impacts are used.
-
-    Returns
-    -------
-    structured ndarray
-        Pieces of dtype `PIECE` of the beads that are `drawn`, by bead and time. A piece ends at a
-        recorded impact, or between two frames where the engine does not record the impact.
-    """
+    """Cut the paths of beads into parabolas, and into pieces at rest."""
     found: list[tuple[float, ...]] = []
     hits = _hits(run)
     for bead in drawn(run).tolist():
@@ -154,9 +142,8 @@ def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
 
 def _mark(made: NDArray[np.void], run: Run) -> None:
     """Write the last impact on a plate, and the rebound with the other COR, into the pieces."""
-    rows = run.modelled
-    constant, model = constant_beside_model(run)
-    other = model if run.baseline else constant
+    rows = run.on_plates
+    constant = one_for_all(run)
     far = outside(run)
     order = np.lexsort((rows["time"], rows["bead"]))
     key = rows["bead"][order], rows["time"][order]
@@ -169,4 +156,4 @@ def _mark(made: NDArray[np.void], run: Run) -> None:
         piece["restitution"] = rows["restitution"][hit]
         piece["outside"] = far[hit]
         if rows["time"][hit] == piece["start"]:
-            piece["other_v"] = other[hit] * rows["approach_speed"][hit]
+            piece["other_v"] = constant * rows["approach_speed"][hit]

@@ -10,57 +10,32 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, Pair, Rebound
-from contactlaw.engines.record import IMPACT, fill
+from contactlaw import ImpactModel, Pair
 from contactlaw.record.file import write
+from dem_demo.kit import recorder
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.reader import Recorded, checked, common
-from dem_demo.kit.recorder import Dataset, Making, Recorder
-from dem_demo.rain.nozzles import DEPTH
+from dem_demo.kit.recorder import Dataset, Making, Recorded, Recorder
 from dem_demo.rain.scene import Beads, Plate, Scene
 
-NAME, SCHEMA = "rain", 3
-
-# What the columns of impacts mean in this file, beside their descriptions for any engine.
-_AXES = (
-    "one row per impact; bead and other are rows of /beads, plate of /plates; x is horizontal, y "
-    "points up, z is the depth"
-)
+NAME, SCHEMA = "rain", 4
 
 
-def rain_recorder(
-    path: Path, scene: Scene, making: Making, *, dimensions: int, bead_on_bead: str | None = None
-) -> Recorder:
-    """Begin the record of a rain.
-
-    Parameters
-    ----------
-    path : Path
-        File to create.
-    scene : Scene
-        Beads and plates.
-    making : Making
-        Model, engine and command of the run.
-    dimensions : int
-        Dimensions of the engine, 2 or 3.
-    bead_on_bead : str, optional
-        How the report describes bead-on-bead contacts, if the engine does not record them.
-    """
-    attributes = {
-        name: getattr(scene, name) for name in ("seed", "duration", "frame_rate", "friction")
-    }
-    attributes["scene_schema"] = SCHEMA
-    if bead_on_bead is not None:
-        attributes["bead_on_bead"] = bead_on_bead
+def rain_recorder(path: Path, scene: Scene, making: Making) -> Recorder:
+    """Make the recorder of a rain, for a file."""
+    numbers = "seed", "duration", "frame_rate", "friction"
+    spin = [Dataset("spin", "f4", "rad/s", "counterclockwise seen from the front; 0 once gone")]
     return Recorder(
         path,
-        NAME,
         making,
-        attributes=attributes,
-        write_scene=lambda file: _write_scene(file, scene),
-        trajectories=_trajectories(dimensions, scene.friction > 0.0),
-        frame_rate=scene.frame_rate,
-        axes=_AXES,
+        {"scene": NAME, "scene_schema": SCHEMA, **{one: getattr(scene, one) for one in numbers}},
+        lambda file: _write_scene(file, scene),
+        [
+            Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
+            Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
+            Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
+            *(spin if scene.friction > 0.0 else []),
+        ],
+        scene.frame_rate,
     )
 
 
@@ -83,143 +58,43 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         write(beads, name, getattr(scene.beads, name), units, description)
 
 
-def _trajectories(dimensions: int, friction: bool) -> list[Dataset]:
-    spin = [Dataset("spin", "f4", "rad/s", "counterclockwise seen from the front; 0 once gone")]
-    depth = [Dataset("depth", "f4", "m", "third coordinate of the centre")]
-    return [
-        Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
-        Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
-        Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
-        *depth[: dimensions - 2],
-        *(spin if friction else []),
-    ]
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Recorded):
-    """One recorded rain; in the baseline every contact has the same COR.
-
-    Attributes
-    ----------
-    scene : Scene
-        Beads and plates of the run.
-    bead_on_bead : str or None
-        How the report describes bead-on-bead contacts, if the engine does not record them.
-    depth : ndarray or None
-        Third coordinate (T, N) [m], if the engine has one.
-    spin : ndarray or None
-        Spins (T, N) [rad/s], counterclockwise in the figures, if there is friction.
-    """
+    """One recorded rain."""
 
     scene: Scene
-    bead_on_bead: str | None
-    depth: NDArray[np.float32] | None = None
-    spin: NDArray[np.float32] | None = None
+    spin: NDArray[np.float32] | None = None  # shape (T, N) [rad/s], counterclockwise; of friction
 
     @cached_property
     def model(self) -> ImpactModel:
-        """The impact model; for the baseline, the model to compare it with.
+        """The impact model.
 
-        Curves and the baseline's impacts may lie outside the table where no recorded impact does:
-        there the model takes the value at the border, and flags it.
+        Its curves may lie outside the table where no recorded impact does: there it takes the value
+        at the border, and flags it.
         """
-        pair = Pair(self.scene.sphere_material, self.scene.plate_material)
         outside = "clamp" if self.outside == "raise" else self.outside
-        return ImpactModel(pair, self.law, outside=outside)
+        return ImpactModel(self.pair, self.law, outside=outside)
 
     @cached_property
-    def modelled(self) -> NDArray[np.void]:
-        """Impacts on plates, with every column that the model can fill.
-
-        They are as recorded if the record has flags. If it has none, as in the baseline, the model
-        fills the missing columns for the same impacts; the COR stays that of the run.
-        """
-        recorded = self.impacts[self.impacts["plate"] >= 0]
-        names = recorded.dtype.names or ()
-        if "flags" in names:
-            return recorded
-        rows = np.zeros(recorded.size, IMPACT)
-        for name in names:
-            rows[name] = recorded[name]
-        fill(rows, self.by_model, self.energy(rows))
+    def on_plates(self) -> NDArray[np.void]:
+        """Impacts on plates."""
+        rows: NDArray[np.void] = self.impacts[self.impacts["plate"] >= 0]
         return rows
-
-    @cached_property
-    def by_model(self) -> Rebound:
-        """The model's results for all impacts on plates."""
-        rows = self.impacts[self.impacts["plate"] >= 0]
-        return self.model.lookup(
-            rows["approach_speed"], self.scene.beads.radius[rows["bead"]], self.thickness,
-            edge="free", edge_distance=self.edge_distance,
-        )  # fmt: skip
-
-    @cached_property
-    def thickness(self) -> Floats:
-        """Thickness [m] of the plate of each impact on plates."""
-        plates = self.impacts["plate"][self.impacts["plate"] >= 0]
-        found: Floats = np.array([plate.thickness for plate in self.scene.plates])[plates]
-        return found
 
     @cached_property
     def edge_distance(self) -> Floats:
         """Distance [m] of all impacts on plates from the nearest edge of the plate."""
-        rows = self.impacts[self.impacts["plate"] >= 0]
+        rows = self.on_plates
         x0, x1 = np.array([(plate.x0, plate.x1) for plate in self.scene.plates])[rows["plate"]].T
         distance: Floats = np.minimum(rows["x"] - x0, x1 - rows["x"])
-        if self.depth is not None:
-            distance = np.minimum(distance, 0.5 * DEPTH - np.abs(rows["z"]))
         return distance.clip(0.0)  # rounding may put a contact with the rim beside the plate
-
-    @property
-    def baseline(self) -> bool:
-        """Whether every contact had the same COR."""
-        return self.constant_cor is not None
-
-    def energy(self, rows: NDArray[np.void]) -> Floats:
-        """Kinetic energy of the normal motion before impacts on plates [J]."""
-        mass = self.scene.beads.mass(self.scene.sphere_material.density)[rows["bead"]]
-        energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
-        return energy
-
-
-def sized(scene: Scene, rows: NDArray[np.void]) -> NDArray[np.void]:
-    """Give impacts sizes of beads and plates, which an engine with a constant COR leaves out."""
-    names = rows.dtype.names or ()
-    if "radius" in names:
-        return rows
-    more = ("radius", "mass", "thickness")
-    found = np.empty(rows.size, [(name, IMPACT[name]) for name in (*names, *more)])
-    for name in names:
-        found[name] = rows[name]
-    beads, plates = scene.beads, np.array([plate.thickness for plate in scene.plates])
-    found["radius"] = beads.radius[rows["bead"]]
-    found["mass"] = beads.mass(scene.sphere_material.density)[rows["bead"]]
-    found["thickness"] = np.where(rows["plate"] < 0, 0.0, plates[rows["plate"]])
-    return found
 
 
 def read(path: Path) -> Run:
-    """Read a file that `dem-demo rain` has written.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Run
-
-    Raises
-    ------
-    ValueError
-        If the file is something else, or of another schema.
-    """
+    """Read a file that `dem-demo rain` has written; a `ValueError` if it is something else."""
     with h5py.File(path, "r") as file:
-        attributes = checked(file, path, NAME, SCHEMA)
-        shared = common(file)
-        scene = _scene(file, shared.pop("pair"))
-        return Run(scene=scene, bead_on_bead=attributes.get("bead_on_bead"), **shared)
+        fields = recorder.read(file, path, NAME, SCHEMA)
+        return Run(scene=_scene(file, fields["record"].bodies[0].pair), **fields)
 
 
 def read_folder(folder: Path) -> Run:

@@ -23,69 +23,27 @@ STEPS_PER_RADIUS = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """A horizontal plate, seen from its edge; nothing holds it at its ends.
+    """A horizontal plate, seen from its edge; nothing holds it at its ends."""
 
-    Parameters
-    ----------
-    thickness : float
-        Thickness [m]; ``inf`` is a half-space.
-    x0, x1 : float
-        Left and right end of the plate [m].
-    y : float, optional
-        Height of its upper face [m].
-
-    Examples
-    --------
-    >>> Plate(thickness=1e-3, x0=0.0, x1=0.06).x1
-    0.06
-    """
-
-    thickness: float
-    x0: float
+    thickness: float  # [m]; inf is a half-space
+    x0: float  # left and right end [m]
     x1: float
-    y: float = 0.0
+    y: float = 0.0  # height of its upper face [m]
 
     def __post_init__(self) -> None:
         """Refuse impossible numbers."""
         if not self.thickness > 0.0:
             raise ArgumentError("plates", self.thickness, "thickness must be positive [m], or inf")
-        if not (math.isfinite(self.y) and -math.inf < self.x0 < self.x1 < math.inf):
-            reason = f"needs finite x0 < x1 and y [m], got {self.x0!r}, {self.x1!r}, {self.y!r}"
-            raise ArgumentError("plate", None, reason)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beads:
-    """Beads in the order of their emission; every field has one row per bead.
+    """Beads in the order of their emission; every field has one row per bead."""
 
-    Parameters
-    ----------
-    radius : ndarray, shape (N,)
-        Radii [m].
-    emission_time : ndarray, shape (N,)
-        When each bead leaves the nozzle row [s], ascending.
-    position, velocity : ndarray, shape (N, 2)
-        Position [m] and velocity [m/s] of the centre at that time, (x, y).
-    """
-
-    radius: Floats
-    emission_time: Floats
-    position: Floats
-    velocity: Floats
-
-    def __post_init__(self) -> None:
-        """Refuse arrays that do not fit together or hold impossible values."""
-        n = self.radius.size
-        shapes = [a.shape for a in (self.radius, self.emission_time, self.position, self.velocity)]
-        if n == 0 or shapes != [(n,), (n,), (n, 2), (n, 2)]:
-            reason = f"need arrays of shape (N,), (N,), (N, 2), (N, 2), got {shapes}"
-            raise ArgumentError("beads", None, reason)
-        everything = np.column_stack((self.emission_time, self.position, self.velocity))
-        if not (np.isfinite(everything).all() and (np.diff(self.emission_time) >= 0.0).all()):
-            reason = "values must be finite, and emission times ascending"
-            raise ArgumentError("beads", None, reason)
-        if not ((self.radius > 0.0) & (self.radius < math.inf)).all():
-            raise ArgumentError("radius", self.radius.min(), "must be positive and finite [m]")
+    radius: Floats  # [m]
+    emission_time: Floats  # when each leaves the nozzle row [s], ascending
+    position: Floats  # of the centre at that time, (x, y) [m]
+    velocity: Floats  # at that time, (x, y) [m/s]
 
     def mass(self, density: float) -> Floats:
         """Masses of the beads as spheres [kg], from their density [kg/m3]."""
@@ -96,37 +54,16 @@ class Beads:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Beads that fall on plates, and the time that is simulated.
-
-    Parameters
-    ----------
-    beads : Beads
-        The beads.
-    plates : sequence of Plate
-        The plates.
-    sphere_material, plate_material : Material
-        Materials of the beads and of the plates.
-    duration : float
-        Simulated time [s].
-    seed : int
-        Seed that the beads were drawn with.
-    frame_rate : float, optional
-        Recorded frames per second [1/s].
-    rows : int, optional
-        Rows of nozzles, one behind the other.
-    friction : float, optional
-        Coulomb's coefficient of friction of beads on plates [-]; beads on each other have none.
-    """
+    """Beads that fall on plates, and the time that is simulated."""
 
     beads: Beads
     plates: Sequence[Plate]
     sphere_material: Material
     plate_material: Material
-    duration: float
-    seed: int
-    frame_rate: float = defaults.FRAME_RATE
-    rows: int = 1
-    friction: float = 0.0
+    duration: float  # [s]
+    seed: int  # that the beads were drawn with
+    frame_rate: float = defaults.FRAME_RATE  # recorded frames per second [1/s]
+    friction: float = 0.0  # Coulomb's coefficient on plates; beads on each other have none
 
     def __post_init__(self) -> None:
         """Refuse a scene without plates or time."""

@@ -48,7 +48,6 @@ def add(commands: Any) -> None:
 def _start(arguments: argparse.Namespace, command: str) -> int:
     with options.needing(EXTRAS):
         from dem_demo.kit import comparison
-        from dem_demo.sieve.deck import FORM
         from dem_demo.sieve.drawing import Sheet
         from dem_demo.sieve.scene import sieve
         from dem_demo.sieve.tale import TALE
@@ -57,4 +56,4 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
     with options.refusing(arguments):
         scene = sieve(**options.of(sieve, arguments))
         plan = comparison.plan(arguments, scene, abs(float(scene.velocity[2])))
-    return comparison.start(arguments, command, plan, TALE, Sheet, frozenset({FORM}))
+    return comparison.start(arguments, command, plan, TALE, Sheet)

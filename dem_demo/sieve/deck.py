@@ -119,15 +119,7 @@ def _strip(inner: Floats, outer: Floats, *, closed: bool = False) -> Floats:
 
 
 def write_stl(path: Path, triangles: Floats) -> None:
-    """Write triangles as a binary STL file, in millimetres as CAD programs do.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    triangles : ndarray, shape (n, 3, 3)
-        Corners [m].
-    """
+    """Write triangles as a binary STL file, in millimetres as CAD programs do."""
     import trimesh
 
     corners = 1e3 * triangles.reshape(-1, 3)

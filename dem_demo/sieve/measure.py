@@ -41,7 +41,7 @@ def loss_by_openings(run: Run[Sieve]) -> float:
     The same impacts are compared: their recorded COR, with the law's on a sheet without openings.
     NaN without such impacts.
     """
-    rows, scene = run.collisions[on_faces(run) & run.impact], run.scene
+    rows, scene = run.collisions[on_faces(run) & run.record.impact], run.scene
     speed, bead = rows["approach_speed"], rows["bead"]
     model = ImpactModel(run.pair, run.law, outside="clamp")
     endless = model.restitution(speed, scene.radius[bead], scene.thickness)

@@ -35,27 +35,15 @@ LIFT = 2.0  # [amplitude], extra height of the feed, above the deck's highest po
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Sieve(Bed):
-    """A feed of two sizes on a deck that vibrates about z = 0.
+    """A feed of two sizes on a deck that vibrates about z = 0, at 45 degrees to it."""
 
-    Attributes
-    ----------
-    deck : Deck
-        Mesh of the deck at rest.
-    frequency, amplitude : float
-        Frequency [1/s] and amplitude [m] of the vibration, which is at 45 degrees to the deck.
-    """
-
-    NAME, SCHEMA = "sieve", 1
-    AXES = (
-        "one row per impact on the deck; bead is a row of /beads, triangle one of /deck/triangles; "
-        "z points up"
-    )
+    NAME, SCHEMA = "sieve", 2
     NUMBERS = "thickness", "frequency", "amplitude", "friction", "duration", "seed"
     FRAME_RATE = defaults.FRAME_RATE
 
-    deck: Deck
-    frequency: float
-    amplitude: float
+    deck: Deck  # at rest
+    frequency: float  # [1/s]
+    amplitude: float  # [m]
 
     @property
     def small(self) -> np.ndarray:
@@ -140,23 +128,6 @@ def sieve(
     seed: int = defaults.SEED,
 ) -> Sieve:
     """Make a sieve with a deck in proportion to the number of beads.
-
-    Parameters
-    ----------
-    beads, radius, speed : optional
-        Number of beads, of either size by chance, radius of those that pass the openings and of
-        those that do not [m], and the speed at which the feed comes down [m/s].
-    opening : float, optional
-        Diameter of the openings [m].
-    sphere, plate : str, optional
-        Names of the materials of beads and deck.
-    thickness, frequency, amplitude, friction, duration, seed : optional
-        See `Sieve`, in the same units.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range; the message begins with its name.
 
     Examples
     --------

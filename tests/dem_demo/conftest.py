@@ -38,7 +38,6 @@ def made(name, *options, rendered=False):
 
 
 rain = made("rain", *RAIN, rendered=True)
-baseline = made("baseline", *RAIN, "--constant-cor", "0.9")
 oblique = made("oblique", *RAIN, "--friction", "0.2")  # from tilted nozzles
 drum = made("drum", *DRUM)
 sieve = made("sieve", *SIEVE, rendered=True)
@@ -47,4 +46,4 @@ sieve = made("sieve", *SIEVE, rendered=True)
 @pytest.fixture
 def nothing_drawn(monkeypatch):
     """Runs leave their record and summary alone: to draw takes most of a short one."""
-    monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: {})
+    monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: None)

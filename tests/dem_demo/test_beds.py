@@ -104,7 +104,7 @@ def test_the_record_gives_a_constant(which, name, folder, capsys):
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(name, folder):
     """Without friction, the energy from gravity and the walls is kinetic or was lost there."""
-    for run in read(folder, KINDS[name]).every:
+    for run in read(folder, KINDS[name]).both:
         energy = account(run)
         source, least = (energy.gravity, 0.01) if name == "drum" else (energy.walls, 0.05)
         assert abs(source[-1]) > least * energy.start[0]

@@ -15,7 +15,7 @@ PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
 
 
-@pytest.fixture(params=["rain", pytest.param("baseline", marks=pytest.mark.long), "oblique"])
+@pytest.fixture(params=["rain", "oblique"])
 def folder(request):
     return request.getfixturevalue(request.param)
 

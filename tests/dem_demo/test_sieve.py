@@ -23,7 +23,6 @@ from contactlaw.reporting.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
 from dem_demo.kit.constant import constant_model  # noqa: E402
-from dem_demo.kit.lammps import Gathering  # noqa: E402
 from dem_demo.kit.measure import kept  # noqa: E402
 from dem_demo.kit.runs import read  # noqa: E402
 from dem_demo.sieve import measure  # noqa: E402
@@ -71,7 +70,7 @@ def test_the_nearest_opening_of_a_point():
 
 
 def test_impacts_lie_on_their_triangles_where_the_deck_is_then(runs):
-    for run in runs.every:
+    for run in runs.both:
         rows, scene = run.collisions, run.scene
         assert rows.size > 10
         end = rows["time"] + rows["contact_time"]
@@ -107,9 +106,9 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
     scene.write_files(tmp_path)
     model = cl.ImpactModel(PAIR, LAW, outside="clamp")
     step = lammps.time_step(scene, model)
-    simulation = lammps._Simulation(scene, model, scene.thickness, step, tmp_path)
+    simulation = lammps.Simulation(scene, model, scene.thickness, step, tmp_path)
     simulation.advance()
-    rows = np.sort(simulation.collisions(), order="bead")
+    rows = np.sort(simulation.record().rows, order="bead")
     simulation.lmp.close()
     assert rows["bead"].tolist() == list(range(6)) and not rows["kind"].any()
     rim = from_rims(scene.deck, rows["x"], rows["y"])
@@ -125,9 +124,9 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
 
 
 def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
-    law, constant = runs.every
+    law, constant = runs.both
     model = cl.ImpactModel(PAIR, LAW)
-    flat = law.collisions[measure.on_faces(law) & law.impact]
+    flat = law.collisions[measure.on_faces(law) & law.record.impact]
     assert flat.size >= 8
     sizes = flat["approach_speed"], law.scene.radius[flat["bead"]], law.scene.thickness
     moved = np.array([law.scene.deck_place(t) for t in flat["time"] + flat["contact_time"]])
@@ -164,7 +163,9 @@ def test_energy_in_proportion_to_area_has_one_density(runs):
     area = areas(run.scene.deck.triangles()[sheet])
     rows = np.zeros(area.size, IMPACT)
     rows["triangle"], rows["wave_energy"] = np.flatnonzero(sheet), 7.0 * area
-    found = measure.density(dataclasses.replace(run, collisions=rows))
+    found = measure.density(
+        dataclasses.replace(run, record=dataclasses.replace(run.record, rows=rows))
+    )
     assert found == pytest.approx(np.full(area.size, 7.0))
 
 
@@ -177,34 +178,6 @@ def test_beads_below_the_deck_have_passed(runs):
     assert found.tolist() == [0.0] * 8 + [1.0]
 
 
-class Fake:
-    """Walls, and a communicator of one rank."""
-
-    def __init__(self):
-        self.rows = np.empty(0, IMPACT)
-
-    def end(self, bead, start):
-        row = np.zeros(1, IMPACT)
-        row["bead"], row["time"] = bead, start
-        self.rows = np.append(self.rows, row)
-
-    def collisions(self):
-        return self.rows
-
-    def gather(self, part):
-        return [part.copy()]
-
-
-def test_an_impact_that_began_early_and_ended_late_is_told_once():
-    walls = Fake()
-    gathering, told = Gathering(walls, walls), []
-    for step in ([(1, 0.2), (2, 0.1)], [(3, 0.15)], [], [(4, 0.05), (5, 0.6)]):
-        for bead, start in step:
-            walls.end(bead, start)
-        told += gathering.take()["bead"].tolist()
-    assert told == [1, 0, 2, 3, 4]
-
-
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
     mpirun = Path(sys.executable).with_name("mpirun")
     command = [mpirun, "-np", "2", *unrendered.UNDRAWN, *SIEVE, "--out", tmp_path / "o"]
@@ -212,7 +185,7 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1
     two = read(tmp_path / "o", Sieve)
-    for one, other in zip(runs.every, two.every, strict=True):
+    for one, other in zip(runs.both, two.both, strict=True):
         assert (one.ranks, other.ranks) == (1, 2)
         assert np.array_equal(one.position, other.position)
         for name in IMPACT.names:

@@ -8,18 +8,21 @@ from pymunk_room import DT, Full, drop
 import contactlaw as cl
 from contactlaw.engines.needs import knows, knows_rebounds
 from contactlaw.engines.record import IMPACT
-from dem_demo.rain.baseline import ConstantRestitution
+
+
+def constant(radius, other):
+    return lambda speed: 0.5
 
 
 @pytest.mark.parametrize(
     ("make", "beads", "rebounds"),
     [
         (lambda: cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc"), True, True),
-        (lambda: ConstantRestitution(cl.Pair("gamma-alumina", "glass"), 0.9), True, False),
-        (lambda: SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5), False, False),
+        (lambda: SimpleNamespace(curve=constant, sphere_sphere_curve=constant), True, False),
+        (lambda: SimpleNamespace(curve=constant), False, False),
         (Full, True, True),
     ],
-    ids=["ImpactModel", "ConstantRestitution", "curve alone", "stub"],
+    ids=["ImpactModel", "two curves", "curve alone", "stub"],
 )
 def test_who_knows_what(make, beads, rebounds):
     model = make()

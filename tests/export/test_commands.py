@@ -73,7 +73,9 @@ def test_a_failure_leaves_what_was_there(kind, tmp_path, monkeypatch):
     with pytest.raises(TypeError, match=r"model: expected a contactlaw.ImpactModel, got 'myc'"):
         export(tmp_path / "out", "myc")
     assert list(tmp_path.iterdir()) == []
-    export(tmp_path / "out", MODEL)
+    other = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    for model in (other, MODEL):  # the tables of both are kept from now on
+        export(tmp_path / "out", model)
     before = contents(tmp_path / "out")
     if kind != "liggghts":
         assert (tmp_path / "out").stat().st_mode & 0o777 == 0o644
@@ -83,7 +85,7 @@ def test_a_failure_leaves_what_was_there(kind, tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
-        export(tmp_path / "out", cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+        export(tmp_path / "out", other)
     assert contents(tmp_path / "out") == before
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 

@@ -124,7 +124,7 @@ def test_the_page_is_whole_in_one_small_file_and_fits_the_screen(folder, page, w
     text = (folder / "index.html").read_text()
     assert len(text) < 2e6
     sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
-    assert len(sources) == 7 and all(one.startswith("data:") for one in sources)
+    assert len(sources) == 4 and all(one.startswith("data:") for one in sources)
     assert "http" not in text
     page.open(folder / "index.html", width)
     assert page.value("innerWidth") == width and page.value(WIDE) == 0

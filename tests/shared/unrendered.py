@@ -16,7 +16,7 @@ COMMAND = [
 UNDRAWN = [  # leaves the record alone
     sys.executable,
     "-c",
-    f"from dem_demo.kit import session; session.make = lambda *_: {{}}; {RUN}",
+    f"from dem_demo.kit import session; session.make = lambda *_: None; {RUN}",
 ]
 
 

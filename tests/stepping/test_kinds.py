@@ -86,6 +86,14 @@ def test_a_bead_that_is_struck_in_contact(when, kick):
     assert found == ["STRUCK"]
 
 
+def test_a_bead_that_leaves_faster_than_it_came_was_struck():
+    """A neighbour's push of 0.8 % of its energy is less than what else counts as a strike."""
+    block = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), math.inf)
+    push = {"kick": (0.0, 0.0, 4e-5), "when": 150}
+    found, rows = kinds([block], (0.0, 0.0, R + 1e-9), (0.0, 0.0, -0.01), **push)
+    assert found == ["STRUCK"] and 1.0 < rows["restitution"] < 1.005
+
+
 def test_a_bead_in_a_groove_presses_on_both_sides():
     sides = [Plate((0, -0.05, 0), (x, 0, 0.03), (0, 0.1, 0), 1e-3) for x in (-0.02, 0.02)]
     found, _ = kinds(sides, (0.0, 0.0, 1.9 * R), (1e-3, 0.0, -1.0))

@@ -21,12 +21,12 @@ def draw(run: Run) -> Figure:
     share = 100.0 * causes[most] / (causes.sum() or 1.0)
     height = 2.6 + 0.5 * max(len(walls), 3)
     figure = style.figure(
-        12.0, style.pick(height, 2.0 * height - 1.0),
+        12.0, height,
         f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
-        f"{run.subject}; {style.pick('left', 'above')}: energy that all contacts took, "
-        f"{style.pick('right', 'below')}: shares of the energy that the impacts brought",
+        f"{run.subject}; {'left'}: energy that all contacts took, "
+        f"{'right'}: shares of the energy that the impacts brought",
     )  # fmt: skip
-    left, right = figure.subplots(*style.pick((1, 2), (2, 1)), sharey=True)
+    left, right = figure.subplots(*(1, 2), sharey=True)
     unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
     for n, wall in enumerate(walls):
         part = by_cause(wall.rows)
@@ -47,5 +47,5 @@ def draw(run: Run) -> Figure:
         axes.grid(visible=False, axis="y")
     handles = dict(zip(*reversed(right.get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), list(handles), loc="outside lower center",
-                  ncols=style.pick(4 if len(handles) < 5 else 3, 2))  # fmt: skip
+                  ncols=4 if len(handles) < 5 else 3)  # fmt: skip
     return figure

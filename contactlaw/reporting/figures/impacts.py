@@ -28,7 +28,7 @@ def draw(run: Run) -> Figure:
         title = f"Nine in ten impacts have a COR of {low:.2f} to {high:.2f}"
         title = f"The impacts have a COR of {low:.2f}" if high - low < 0.005 else title
     figure = style.figure(
-        13.0, style.pick(4.9, 11.0), title,
+        13.0, 4.9, title,
         f"{run.subject}; {rows.size} impact{'s' * (rows.size != 1)}"
         f"{'; ' * bool(run.left_out)}{run.left_out}",
     )  # fmt: skip
@@ -39,7 +39,7 @@ def draw(run: Run) -> Figure:
         "coefficient of restitution": (lambda hits: hits["restitution"], None, 1.0),
         "angle of impact [°]": (angle, 0.0, 90.0),
     }
-    panels = figure.subplots(*style.pick((1, 3), (3, 1)))
+    panels = figure.subplots(*(1, 3))
     for axes, (label, (column, least, most)) in zip(panels, columns.items(), strict=True):
         values = [column(hits) for _, hits in walls]
         whole = np.concatenate(values)
@@ -57,7 +57,7 @@ def draw(run: Run) -> Figure:
                           xycoords=("data", "axes fraction"), fontsize=11)  # fmt: skip
     panels[2].set_xticks(range(0, 91, 15))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center",
-                  ncols=style.pick(len(walls), 2))  # fmt: skip
+                  ncols=len(walls))  # fmt: skip
     return figure
 
 

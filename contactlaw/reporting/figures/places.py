@@ -41,9 +41,9 @@ def draw(run: Run) -> Figure:
     size = np.ptp(found.corners, axis=(0, 1))
     thin = np.flatnonzero(size <= _FLAT * size.max())
     views = 1 if thin.size else len(_VIEWS)
-    figure = style.figure(12.0, style.pick(6.6 if thin.size else 5.8, 5.8 * views), _TITLE,
+    figure = style.figure(12.0, 6.6 if thin.size else 5.8, _TITLE,
                           f"{run.subject}; energy of all contacts per area{within}")  # fmt: skip
-    panels = np.atleast_1d(figure.subplots(*style.pick((1, views), (views, 1))))
+    panels = np.atleast_1d(figure.subplots(*(1, views)))
     if thin.size:
         x, y = (n for n in range(3) if n != thin[0])
         _paint(panels[0], found.corners[:, :, [x, y]], found, colours(found))
@@ -84,7 +84,7 @@ def _points(run: Run, within: str) -> Figure:
     x, y = (n for n in range(3) if n != 2 - int(np.argmin(spread[::-1])))
     # points on one flat wall, or a single one, need some room beside them
     wide, high = np.maximum(spread[[x, y]], 0.12 * spread.max() or 1.0)
-    height = float(np.clip(style.pick(11.0, 5.2) * high / wide, 1.2, 6.0))
+    height = float(np.clip(11.0 * high / wide, 1.2, 6.0))
     figure = style.figure(12.0, 1.9 + height, _TITLE, f"{run.subject}; contacts{within}")
     axes = figure.add_subplot()
     few = np.argsort(-energy)[:_POINTS]

@@ -26,7 +26,7 @@ _LOSSES = ("wave", "bending wave in the plate"), ("plastic", "lost at the contac
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw the shell as a clock, under the law and with a constant COR."""
     figure = style.figure(
-        12.0, style.pick(7.5, 10.4), "Where round the drum its shell dissipates energy",
+        12.0, 7.5, "Where round the drum its shell dissipates energy",
         f"{graphs.source(runs)}; seen along the axis, {360 // _BINS} degrees per bar, "
         f"energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms",
     )  # fmt: skip

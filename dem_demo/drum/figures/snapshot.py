@@ -14,6 +14,5 @@ from dem_demo.kit.runs import Runs
 
 
 def draw(runs: Runs[Drum]) -> Figure:
-    """Draw the last frame that both runs have."""
-    both = "The same beads in the same drum, with two kinds of rebound"
-    return snapshot(Section, runs, "Beads in a drum of thin sheet metal", both)
+    """Draw the last frame of both runs."""
+    return snapshot(Section, runs, "The same beads in the same drum, with two kinds of rebound")

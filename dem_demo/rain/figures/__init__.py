@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from contactlaw.reporting.gallery import Gallery, Picture
-
-__all__ = ["Picture", "draw", "module", "names"]
+from contactlaw.reporting.gallery import Gallery
 
 _GALLERY = Gallery(__name__, __path__)
 names, module, draw = _GALLERY.names, _GALLERY.module, _GALLERY.draw

@@ -11,16 +11,13 @@ from numpy.typing import NDArray
 from contactlaw import style
 from dem_demo.kit.beads import Floats
 from dem_demo.rain.record import Run
-from dem_demo.rain.report import progress
 
 
 def source(run: Run) -> str:
-    """Subtitle: materials, engine, law, and how far a partial run came."""
+    """Subtitle: materials, engine and law."""
     scene = run.scene
-    law = f"COR {run.constant_cor:g} everywhere" if run.baseline else f"law {run.law}"
-    law += f", friction {scene.friction:g}" if scene.friction else ""
-    part = f", partial: {progress(run)}" if run.reason else ""
-    return f"{scene.sphere_material.name} on {scene.plate_material.name}, {run.engine}, {law}{part}"
+    law = f"law {run.law}" + (f", friction {scene.friction:g}" if scene.friction else "")
+    return f"{scene.sphere_material.name} on {scene.plate_material.name}, pymunk, {law}"
 
 
 def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:

@@ -119,5 +119,5 @@ def _draw_plates(axes: Axes, scene: Scene) -> None:
             label(plate.thickness),
             (0.5 * (plate.x0 + plate.x1) * MM, (plate.y - depth) * MM),
             xytext=(0, -4), textcoords="offset points", ha="center", va="top",
-            fontsize=style.pick(12, 8.5), fontweight="bold",
+            fontsize=12, fontweight="bold",
         )  # fmt: skip

@@ -16,7 +16,7 @@ from contactlaw.reporting.charts import wall_axis
 from contactlaw.reporting.limits import label
 from dem_demo.kit.beads import Floats
 from dem_demo.rain.figures._labels import ring, ringed, source
-from dem_demo.rain.measure import constant_beside_model, outside
+from dem_demo.rain.measure import one_for_all, outside
 from dem_demo.rain.record import Run
 
 _HALO = withStroke(linewidth=3.0, foreground="white")
@@ -24,25 +24,26 @@ _HALO = withStroke(linewidth=3.0, foreground="white")
 
 def draw(run: Run) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
-    constant, model = constant_beside_model(run)
-    error = 100.0 * (constant**2 - model**2)  # of the impact energy: a COR may be nearly 0
-    figure = style.figure(10.5, 6.2, _title(run, constant, error), _subtitle(run))
+    error = 100.0 * (
+        one_for_all(run) ** 2 - run.on_plates["restitution"] ** 2
+    )  # of the impact energy: a COR may be nearly 0
+    figure = style.figure(10.5, 6.2, _title(run, error), _subtitle(run))
     axes = figure.add_subplot()
     for n in range(len(run.scene.plates)):
         _column(axes, run, n, error)
     axes.axhline(0.0, color=style.INK, linewidth=1.4)
     wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
-    of_what = style.pick("% of impact energy", "%")  # the longer label does not fit on a phone
-    axes.set_ylabel(f"error of rebound energy [{of_what}]")
+    axes.set_ylabel("error of rebound energy [% of impact energy]")
     return figure
 
 
-def _title(run: Run, constant: Floats, error: Floats) -> str:
-    if not error.size:
+def _title(run: Run, error: Floats) -> str:
+    known = error[~outside(run)]  # the model is an estimate for the others, which are ringed
+    if not known.size:
         return "What a constant COR would do instead"
     return (
-        f"One COR for all, {constant[0]:.2f}, gets the rebound energy wrong by "
-        f"{_signed(error.min())} to {_signed(error.max())} of the impact's"
+        f"One COR for all, {one_for_all(run):.2f}, gets the rebound energy wrong by "
+        f"{_signed(known.min())} to {_signed(known.max())} of the impact's"
     )
 
 
@@ -51,18 +52,17 @@ def _signed(percent: float) -> str:
 
 
 def _subtitle(run: Run) -> str:
-    which = "the run" if run.baseline else "the mean of all impacts"
     return (
-        f"{source(run)}; {which} against the model for the same impacts, in each column from slow "
-        f"(left) to fast (right); bar: median{ringed(outside(run))}"
+        f"{source(run)}; the mean of all impacts against the model for the same impacts, in each "
+        f"column from slow (left) to fast (right); bar: median{ringed(outside(run))}"
     )
 
 
 def _column(axes: Axes, run: Run, plate: int, error: Floats) -> None:
-    here = run.modelled["plate"] == plate
+    here = run.on_plates["plate"] == plate
     if not here.any():
         return
-    speed = run.modelled["approach_speed"]
+    speed = run.on_plates["approach_speed"]
     x = plate + 0.8 * (speed[here] / speed.max() - 0.5)
     colour = np.where(error[here] > 0.0, style.VERMILION, style.BLUE)
     axes.scatter(x, error[here], s=16, c=list(colour), alpha=0.6, linewidths=0)

@@ -10,40 +10,29 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.reporting.charts import KEPT, PARTS, bar, wall_axis
+from contactlaw.reporting.charts import PARTS, bar, wall_axis
 from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import source
-from dem_demo.rain.measure import model_shares, plate_rows
+from dem_demo.rain.measure import plate_shares
 from dem_demo.rain.record import Run
-
-_LOST = ("lost, nobody knows where", style.MUTED)
 
 
 def draw(run: Run) -> Figure:
-    """Draw a stacked bar per plate; for the baseline, beside the model's answer for its impacts."""
-    constant = run.baseline
+    """Draw a stacked bar per plate."""
     energy = "normal kinetic energy"
     if run.scene.friction:
         energy = "kinetic energy at the contact, normal and sliding,"
     figure = style.figure(
         10.5,
         6.2,
-        "A constant COR takes the same share from every impact"
-        if constant
-        else "Where the energy of the impacts went",
-        f"{source(run)}; shares of the {energy} of all impacts on each plate"
-        + ("; left: the run, right: contactlaw for the same impacts" if constant else ""),
+        "Where the energy of the impacts went",
+        f"{source(run)}; shares of the {energy} of all impacts on each plate",
     )
     axes = figure.add_subplot()
-    for n, row in enumerate(plate_rows(run)):
-        if not row.impacts:
-            continue
-        if constant:
-            kept = row.shares.kept
-            bar(axes, n - 0.25, 0.3, [(KEPT, kept), (_LOST, 1.0 - kept)])
-            bar(axes, n + 0.15, 0.3, list(zip(PARTS, model_shares(run, n), strict=True)))
-        else:
-            bar(axes, n, style.pick(0.6, 0.5), list(zip(PARTS, row.shares, strict=True)))
+    for n in range(len(run.scene.plates)):
+        found = plate_shares(run, n)
+        if found is not None:
+            bar(axes, n, 0.6, list(zip(PARTS, found, strict=True)))
     wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("share of the impact energy [%]")
     axes.set_ylim(0.0, 104.0)
@@ -60,5 +49,5 @@ def _legend(axes: Axes) -> None:
     if unique:
         axes.legend(
             unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
-            ncols=style.pick(columns, 2), columnspacing=1.4, handlelength=1.2,
+            ncols=columns, columnspacing=1.4, handlelength=1.2,
         )  # fmt: skip

@@ -13,20 +13,17 @@ from contactlaw import style
 from contactlaw.reporting.charts import wall_axis
 from contactlaw.reporting.limits import label
 from dem_demo.rain.figures._labels import ring, ringed, source
-from dem_demo.rain.measure import Rebounds, first_rebounds
+from dem_demo.rain.measure import Rebounds, first_rebounds, one_for_all
 from dem_demo.rain.record import Run
 
 
 def draw(run: Run) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
-    constant = run.baseline
     columns = [first_rebounds(run, n) for n in range(len(run.scene.plates))]
     figure = style.figure(
         10.5,
         6.2,
-        "A constant COR sends every bead back to the same share of its height"
-        if constant
-        else "How high beads rebound depends on the plate and on speed",
+        "How high beads rebound depends on the plate and on speed",
         f"{source(run)}; first impact of each bead, in each column from slow (left) to fast "
         f"(right){ringed(np.concatenate([far for _, _, far in columns]))}",
     )
@@ -34,13 +31,15 @@ def draw(run: Run) -> Figure:
     fastest = float(np.max(run.impacts["approach_speed"], initial=1.0))
     for n, column in enumerate(columns):
         _column(axes, run, n, column, fastest)
-    _constant_line(axes, run)
+    cor = one_for_all(run)
+    axes.axhline(
+        cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0,
+        label=f"one COR for all: the run's mean, {cor:.2f}",
+    )  # fmt: skip
     wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
-    axes.legend(
-        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=style.pick(3, 1), columnspacing=1.4
-    )
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.4)
     return figure
 
 
@@ -62,18 +61,3 @@ def _column(axes: Axes, run: Run, plate: int, column: Rebounds, fastest: float) 
             x, np.square(e), color=style.INK, linewidth=1.4,
             label="model, smallest and largest bead" if first and r == radius.min() else None,
         )  # fmt: skip
-
-
-def _constant_line(axes: Axes, run: Run) -> None:
-    """Draw what one COR for all plates would give: the baseline's own, or the run's mean."""
-    if run.constant_cor is not None:
-        cor, text = run.constant_cor, "constant COR {:.2f}"
-    else:
-        on_plates = run.impacts["plate"] >= 0
-        if not on_plates.any():
-            return
-        cor = float(run.impacts["restitution"][on_plates].mean())
-        text = "one COR for all: the run's mean, {:.2f}"
-    axes.axhline(
-        cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0, label=text.format(cor)
-    )

@@ -19,15 +19,12 @@ from dem_demo.rain.record import Run
 def draw(run: Run) -> Figure:
     """Draw a panel per plate with a common scale."""
     plates = run.scene.plates
-    columns = min(style.pick(5, 2), len(plates))
+    columns = min(5, len(plates))
     rows = math.ceil(len(plates) / columns)
-    constant = run.baseline
     figure = style.figure(
         13.0,
-        1.6 + style.pick(3.8, 2.6) * rows,
-        f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
-        if constant
-        else "The COR depends on thickness, bead size and speed",
+        1.6 + 3.8 * rows,
+        "The COR depends on thickness, bead size and speed",
         f"{source(run)}; points: impacts of the run, lines: model for the smallest, middle "
         f"and largest bead, triangle: yield speed{ringed(outside(run))}",
     )
@@ -59,8 +56,8 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
         if yields <= speed[-1]:
             at = run.model.restitution(yields, r, thickness)
             axes.plot(yields, at, marker="v", color=colour, markersize=9, markeredgecolor="white")
-    here = run.modelled["plate"] == plate
-    rows = run.modelled[here]
+    here = run.on_plates["plate"] == plate
+    rows = run.on_plates[here]
     ring(axes, rows["approach_speed"], rows["restitution"], outside(run)[here])
     axes.scatter(
         rows["approach_speed"],

@@ -22,11 +22,11 @@ from dem_demo.sieve.scene import Sieve
 
 def draw(runs: Runs[Sieve]) -> Figure:
     """Draw the deck seen from above, under the law and with a constant COR."""
-    values = [density(run) for run in runs.every]
+    values = [density(run) for run in runs.both]
     scale = density_scale(values)
     figure = style.figure(
         12.0,
-        style.pick(5.9, 7.6),
+        5.9,
         _title(runs),
         f"{source(runs)}; energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms, averaged over "
         "neighbouring openings",
@@ -39,15 +39,14 @@ def draw(runs: Runs[Sieve]) -> Figure:
 
 
 def _title(runs: Runs[Sieve]) -> str:
-    if runs.constant is None:
-        return "Where the deck dissipates energy"
-    law, constant = (float(run.dissipated.sum()) for run in runs.every)
+    law, constant = (float(run.dissipated.sum()) for run in runs.both)
     if not min(law, constant) > 0.0:
         return "Where the deck dissipates energy"
+    cor = f"one COR, {runs.constant.constant_cor:.3g}"
     more = law / constant
     if more > 1.0:
-        return f"The deck dissipates {more:.1f} times as much energy as with a constant COR"
-    return f"With a constant COR the deck dissipates {1.0 / more:.1f} times as much energy"
+        return f"The deck dissipates {more:.1f} times as much energy as with {cor}"
+    return f"With {cor}, the deck dissipates {1.0 / more:.1f} times as much energy"
 
 
 def _sheet(axes: Axes, run: Run[Sieve], value: np.ndarray, scale: LogNorm) -> PolyCollection:

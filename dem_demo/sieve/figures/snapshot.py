@@ -14,6 +14,5 @@ from dem_demo.sieve.scene import Sieve
 
 
 def draw(runs: Runs[Sieve]) -> Figure:
-    """Draw the last frame that both runs have."""
-    both = "The same feed on the same deck, with two kinds of rebound"
-    return snapshot(Sheet, runs, "The feed on the deck", both)
+    """Draw the last frame of both runs."""
+    return snapshot(Sheet, runs, "The same feed on the same deck, with two kinds of rebound")

@@ -2,44 +2,32 @@
 
 from __future__ import annotations
 
-from importlib import metadata
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from tqdm import tqdm
+import pymunk
+from numpy.typing import NDArray
 
-from dem_demo.kit.beads import FLYING, GONE, GRAVITY, WAITING
-from dem_demo.rain import defaults
-from dem_demo.rain.frame import Frame
+from contactlaw.engines import pymunk as adapter
+from dem_demo.kit import signals
+from dem_demo.kit.beads import FLYING, GONE, GRAVITY, WAITING, Floats
 from dem_demo.rain.scene import Scene
 
 if TYPE_CHECKING:
-    import pymunk
-
-    from contactlaw import ImpactModel
-    from dem_demo.kit.recorder import Recorder
-    from dem_demo.rain.baseline import ConstantRestitution
-
-ABOUT, EXTRAS = "two dimensions", "demo"
-DIMENSIONS = 2
-DURATION, FRAME_RATE = defaults.DURATION, defaults.FRAME_RATE
-NO_CONSTANT_COR = None
-BEAD_ON_BEAD = None
+    from contactlaw import ImpactModel, Record
 
 
-def version() -> str:
-    """Version of pymunk."""
-    return metadata.version("pymunk")
+class Frame(NamedTuple):
+    """One instant of every bead.
 
+    Position (N, 2) [m], velocity (N, 2) [m/s], status (N,), and spin (N,) [rad/s],
+    counterclockwise in the figures.
+    """
 
-def rank() -> int:
-    """Return 0: pymunk runs in one process."""
-    return 0
-
-
-def time_step(scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
-    """Step [s], so short that no bead jumps through a plate."""
-    return scene.time_step
+    position: Floats
+    velocity: Floats
+    status: NDArray[np.uint8]
+    spin: Floats
 
 
 class Rain:
@@ -49,16 +37,11 @@ class Rain:
     ----------
     scene : Scene
         Beads and plates.
-    model : ImpactModel or ConstantRestitution
+    model : ImpactModel
         Where each collision's COR comes from.
     """
 
-    def __init__(self, scene: Scene, model: ImpactModel | ConstantRestitution) -> None:
-        import pymunk
-
-        from contactlaw.engines import pymunk as adapter
-        from dem_demo.rain.baseline import ConstantRestitution
-
+    def __init__(self, scene: Scene, model: ImpactModel) -> None:
         self.scene = scene
         self.space = pymunk.Space()
         self.space.gravity = (0.0, -GRAVITY)
@@ -67,15 +50,12 @@ class Rain:
         cell, cells = 4.0 * float(scene.beads.radius.max()), 10 * scene.beads.radius.size
         self.space.use_spatial_hash(cell, cells)
         self.impacts = adapter.attach(self.space, model)
-        constant = isinstance(model, ConstantRestitution)  # it knows no edges
         for plate in scene.plates:
             ends = (plate.x0, plate.y), (plate.x1, plate.y)
             segment = pymunk.Segment(self.space.static_body, *ends, radius=0.0)
             self.space.add(segment)
             friction = scene.friction or None
-            self.impacts.add_plate(
-                segment, plate.thickness, friction=friction, edge=None if constant else "free"
-            )
+            self.impacts.add_plate(segment, plate.thickness, friction=friction, edge="free")
         self.mass = scene.beads.mass(scene.sphere_material.density)
         # First step of each bead: the one that begins after its emission.
         self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()
@@ -85,13 +65,14 @@ class Rain:
         n = scene.beads.radius.size
         self.now = Frame(
             scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8),
-            spin=np.zeros(n),
+            np.zeros(n),
         )  # fmt: skip
 
-    def advance(self, steps: int) -> None:
-        """Step the engine, emitting beads when their time has come."""
+    def advance(self) -> None:
+        """Simulate one frame, emitting beads when their time has come."""
+        signals.check()
         dt, first, space = self.scene.time_step, self.first_step, self.space
-        for _ in range(steps):
+        for _ in range(self.scene.steps_per_frame):
             while self.emitted < len(first) and first[self.emitted] <= self.steps:
                 self._emit(self.emitted)
                 self.emitted += 1
@@ -99,8 +80,6 @@ class Rain:
             self.steps += 1
 
     def _emit(self, n: int) -> None:
-        import pymunk
-
         beads = self.scene.beads
         mass, radius = float(self.mass[n]), float(beads.radius[n])
         body = pymunk.Body(mass, 0.4 * mass * radius**2)  # moment of inertia of a solid sphere
@@ -115,7 +94,6 @@ class Rain:
 
     def look(self) -> Frame:
         """Read the bodies, and take those below the floor out of the space."""
-        assert self.now.spin is not None
         for n, (body, circle) in list(self.flying.items()):
             self.now.position[n] = body.position
             self.now.velocity[n] = body.velocity
@@ -127,29 +105,6 @@ class Rain:
                 del self.flying[n]
         return self.now
 
-
-def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Recorder | None) -> None:
-    """Simulate the rain, and record it.
-
-    Parameters
-    ----------
-    scene : Scene
-        Beads and plates.
-    model : ImpactModel or ConstantRestitution
-        Where each collision's COR comes from.
-    recorder : Recorder
-        Records every frame and all collisions.
-    """
-    from dem_demo.rain.record import sized  # h5py, which help shall not wait for
-
-    assert recorder is not None  # the only process is rank 0
-    rain = Rain(scene, model)
-    recorder.frame(rain.look())
-    recorded = 0
-    # disable=None: no progress bar unless stderr is a terminal
-    for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
-        rain.advance(scene.steps_per_frame)
-        collisions = rain.impacts.collisions()
-        recorder.collisions(sized(scene, collisions[recorded:]))
-        recorded = collisions.size
-        recorder.frame(rain.look())
+    def record(self) -> Record:
+        """All impacts so far."""
+        return self.impacts.record()
