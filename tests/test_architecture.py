@@ -16,17 +16,8 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {
-        "_folder",
-        "_atomic",
-        "_template",
-        "_content",
-        "_errors",
-        "_escaped",
-        "_readable",
-        "parser",
-        "style",
-    },
+    {"_folder", "_atomic", "_template", "_content", "_errors", "_escaped", "_readable", "parser"},
+    {"quantities", "style"},
     {"_inner", "_kept"},
     {"_jit"},
     {"emit"},  # kernels in other languages; knows none of them
@@ -69,7 +60,7 @@ FILES = {
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
     "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "edges",
                        "lookahead", "contacts", "impacts", "attachment"],
-    "cli/parts": ["quantities", "wording", "columns", "impacts", "options", "plots", "own",
+    "cli/parts": ["wording", "columns", "impacts", "options", "plots", "own",
                   "chosen", "layout", "figure"],
     "cli/constant": ["records", "walls", "lines"],
     "cli/cor": ["bands", "inverse"],
@@ -209,7 +200,7 @@ def test_a_subcommand_knows_no_other():
             assert home == "__init__" or name[0] in ("parts", home), path
             if name[0] == "parts" and len(name) > 1:
                 users[name[1]].add(path.stem if home == "parts" else home)
-    assert {"cor", "fit", "constant"} <= users["quantities"]
+    assert {"cor", "fit", "constant"} <= users["wording"]
     for part in reversed(users):  # the parts that import it come later, and are subcommands by now
         users[part] = set().union(*(users.get(one, {one}) for one in users[part]))
         assert len(users[part]) > 1, part
@@ -290,7 +281,7 @@ def test_the_demo_has_layers(path):
         package, *parts = name.split(".")
         if package == "contactlaw":
             assert name in SHARED or not any(part.startswith("_") for part in parts), name
-            shared = ["quantities"], ["wording"], []
+            shared = ["wording"], []
             assert parts[:2] != ["cli", "parts"] or parts[2:3] in shared, name
         elif package == "dem_demo" and parts:
             assert parts[0] in {"kit", home if home in {"kit", *scenes} else "cli"}, name

@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from contactlaw import style
+from contactlaw import quantities, style
 from contactlaw._readable import drawn
-from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.plots import plate_of, save
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory

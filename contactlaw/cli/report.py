@@ -6,8 +6,9 @@ import argparse
 import math
 from typing import Any
 
-from contactlaw.cli.parts import options, quantities, wording
-from contactlaw.cli.parts.quantities import LENGTH
+from contactlaw import quantities
+from contactlaw.cli.parts import options, wording
+from contactlaw.quantities import LENGTH
 from contactlaw.record.file import read_record
 from contactlaw.reporting.files import report
 from contactlaw.reporting.run import Run

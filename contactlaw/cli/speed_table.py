@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw.answers.speed_table import SpeedTable
-from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import aligned, asked, explained, in_words
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.cli.parts.quantities import SPEED
+from contactlaw.quantities import SPEED
 
 
 def add(commands: Any) -> None:

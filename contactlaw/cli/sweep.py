@@ -11,9 +11,9 @@ from typing import Any
 
 import h5py
 
-from contactlaw import _atomic
+from contactlaw import _atomic, quantities
 from contactlaw._version import VERSION
-from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import ImpactTable, explained, tabulate, units, write_csv
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import refuse_units
@@ -51,6 +52,13 @@ _LABELS = {
 }
 # What an entry of the catalogue takes from the one that it is `like`: the same metal in another
 # temper, in which these hardly differ.
+# Short names of numbers, and the quantities of those that may be texts with a unit.
+SHORT = {"E": "youngs_modulus", "nu": "poissons_ratio", "rho": "density", "yield": "yield_strength"}
+_QUANTITIES = {
+    "youngs_modulus": quantities.STRESS, "poissons_ratio": quantities.SHARE,
+    "density": quantities.DENSITY, "yield_strength": quantities.STRESS,
+    "hardness": quantities.STRESS,
+}  # fmt: skip
 _ALIKE = ("kind", "youngs_modulus", "poissons_ratio", "density")
 
 
@@ -424,9 +432,10 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     Parameters
     ----------
     path : path-like
-        A TOML file with a table for each material: numbers as in `Material`, in SI units, its
-        ``kind`` and, if you like, ``aliases``, ``grade``, ``source`` and ``uncertainty``. Another
-        entry, of the file or of the catalogue, gives modulus, ratio and density with ``like``.
+        A TOML file with a table for each material: numbers as in `Material`, in SI units or as
+        texts with a unit, its ``kind`` and, if you like, ``aliases``, ``grade``, ``source`` and
+        ``uncertainty``. ``E``, ``nu``, ``rho`` and ``yield`` are short names. Another entry, of the
+        file or of the catalogue, gives modulus, ratio and density with ``like``.
 
     Returns
     -------
@@ -466,6 +475,30 @@ def _catalogue() -> dict[str, Material]:
     return _read(_tables(), {})
 
 
+def number_of(field: str, text: str) -> float | str:
+    """Read a number of a material with its unit; a hardness in HRC, HV or HB stays a text.
+
+    Examples
+    --------
+    >>> number_of("youngs_modulus", "210 GPa"), number_of("hardness", "62 HRC")
+    (210000000000.0, '62 HRC')
+    """
+    if field == "hardness" and "H" in text.upper():
+        return text
+    return quantities.value(text, _QUANTITIES[field])
+
+
+def _spelled_out(table: dict[str, Any]) -> dict[str, Any]:
+    """Write short names in full, and numbers with a unit in SI units."""
+    long = {SHORT.get(key, key): value for key, value in table.items()}
+    if len(long) < len(table):
+        raise ValueError(f"{', '.join(SHORT)}: give the short name or the long one, not both")
+    return {
+        key: number_of(key, value) if key in _QUANTITIES and isinstance(value, str) else value
+        for key, value in long.items()
+    }
+
+
 def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]:
     """Materials by name and by alias; an entry may be `like` one of other tables."""
     references = others.pop("references", {}) | tables.pop("references", {})
@@ -481,7 +514,12 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
             if (key := _key(one)) in owner and not (one != name and key == _key(name)):
                 raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
             owner[key] = name
-    found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}
+        tables[name] = _spelled_out(table)
+    known = {
+        _key(one): table for name, table in (others | tables).items()
+        for one in (name, *table.get("aliases", ()))
+    }  # fmt: skip
+    found = {name: _from_table(name, tables[name], known, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
 
 
@@ -493,16 +531,8 @@ def _from_table(
         near = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise ValueError(f"[{name}]: unknown {key!r}; {hint}known: {', '.join(known)}")
-    source = _sources(table)
-    if "like" in table:
-        if table["like"] not in tables:
-            raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
-        other = tables[table["like"]]
-        table = {field: other[field] for field in _ALIKE if field in other} | table
-        theirs = _sources(other)
-        source = {field: theirs[field] for field in _ALIKE[1:] if field in theirs} | source
-        alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
-        table["uncertainty"] = alike | table.get("uncertainty", {})
+    table = _with_like(name, table, tables)
+    source = table["source"]
     if missing := [field for field in _ALIKE[1:] if field not in table]:
         raise ValueError(f"[{name}]: give {', '.join(missing)}, in SI units")
     # Hardening and rate are of the same fit as the yield strength A.
@@ -529,6 +559,21 @@ def _from_table(
             error, reason = errors[number][0], _cited(errors[number][1], references)
             parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
     return replace(body, source="; ".join(parts))
+
+
+def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
+    """Add what an entry takes from the one that it is `like`; sources are by number."""
+    source = _sources(table)
+    if "like" in table:
+        if (other := tables.get(_key(str(table["like"])))) is None:
+            raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
+        other = _with_like(table["like"], other, tables)
+        table = {field: other[field] for field in _ALIKE if field in other} | table
+        theirs = other["source"]
+        source = {field: theirs[field] for field in _ALIKE[1:] if field in theirs} | source
+        alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
+        table["uncertainty"] = alike | table.get("uncertainty", {})
+    return table | {"source": source}
 
 
 def _sources(table: dict[str, Any]) -> dict[str, str]:

@@ -83,7 +83,7 @@ def speeds(words: str) -> tuple[float, float]:
 
 
 def _values(words: str, quantity: str) -> tuple[float, ...]:
-    from contactlaw.cli.parts import quantities
+    from contactlaw import quantities
 
     try:
         return quantities.values(words, getattr(quantities, quantity))

@@ -142,3 +142,25 @@ def test_a_length_without_a_unit_draws_a_warning(capsys, tmp_path):
         Mesh.read(part, 1e-3)
     assert {one.filename for one in (*said, *again)} == {__file__}
     assert Mesh.read(part, 1e-3, scale=1.0).area == pytest.approx(2500)
+
+
+def test_numbers_of_a_file_may_have_units_and_short_names(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('[sheet]\nlike = "dc01"\nyield = "250 N/mm2"\nhardness = "1.1 GPa"\n'
+                    '[bead]\nE = "2.8 GPa"\nnu = 0.35\nrho = "1.41 g/cm3"\nhardness = "80 HV"\n'
+                    '[other]\nlike = "BEAD"\nE = 3e9')  # fmt: skip
+    mine, steel = cl.read_materials(path), cl.material("DC01")
+    sheet, bead = mine["sheet"], mine["bead"]
+    assert (sheet.youngs_modulus, sheet.density) == (steel.youngs_modulus, steel.density)
+    assert (sheet.yield_strength, sheet.hardness) == (250e6, 1.1e9)
+    assert (bead.youngs_modulus, bead.poissons_ratio, bead.density) == (2.8e9, 0.35, 1410.0)
+    assert bead.hardness == cl.Material("bead", 2.8e9, 0.35, 1410.0, hardness="80 HV").hardness
+    assert (mine["other"].youngs_modulus, mine["other"].density) == (3e9, 1410.0)
+    for old, new, said in (
+        ("2.8 GPa", "2.8 psi", "'psi' is no unit of stress"),
+        ("nu =", "youngs_modulus = 1e9\nnu =", "give the short name or the long one"),
+    ):
+        path.write_text(path.read_text().replace(old, new))
+        with pytest.raises(ValueError, match=f"mine.toml: .*{said}"):
+            cl.read_materials(path)
+        path.write_text(path.read_text().replace(new, old))

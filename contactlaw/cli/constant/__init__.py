@@ -6,14 +6,14 @@ import argparse
 import sys
 from typing import Any
 
-from contactlaw import laws
+from contactlaw import laws, quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.constant import lines, records, walls
-from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import asked, in_words
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.model import ImpactModel
+from contactlaw.quantities import SPEED
 
 
 def add(commands: Any) -> None:

@@ -15,11 +15,11 @@ from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.physical.arguments import check
 from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.quantities import SPEED
 from contactlaw.record import hdf5
 from contactlaw.record.file import HDF5, Record, read_record, saved
 

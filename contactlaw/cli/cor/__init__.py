@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import quantities
 from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import bands, inverse
-from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
+from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
 

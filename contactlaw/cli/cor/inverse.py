@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw.answers.inverse import Solutions
 from contactlaw.cli.cor import bands
-from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}

@@ -13,16 +13,17 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.fit import figure, measured, printed
-from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import in_words
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.pair import Pair
+from contactlaw.quantities import LENGTH
 from contactlaw.record.file import HDF5, read_record
 
 

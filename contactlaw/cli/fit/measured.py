@@ -9,13 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts import columns, quantities, wording
+from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import FORCE, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
+from contactlaw.quantities import FORCE, SHARE, SPEED, TIME
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _atomic
+from contactlaw import _atomic, quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
-from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
+from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts.quantities import LENGTH, Quantity
+from contactlaw.quantities import LENGTH, Quantity
 
 Array = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
 
     Examples
     --------
-    >>> from contactlaw.cli.parts.quantities import SPEED
+    >>> from contactlaw.quantities import SPEED
     >>> locate(["No", "Speed [cm/s]"], {"speed": TextColumn(("speed",), SPEED)})
     {'speed': Located(place=1, per_unit=100.0)}
     """

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts.quantities import ANGLE, FRICTION, LENGTH, SPEED, Quantity
+from contactlaw.quantities import ANGLE, FRICTION, LENGTH, SPEED, Quantity
 
 Array = NDArray[np.float64]
 

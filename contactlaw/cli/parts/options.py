@@ -6,12 +6,12 @@ import argparse
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from contactlaw import laws
-from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, Quantity
+from contactlaw import laws, quantities
+from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
+from contactlaw.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, Quantity
 
 Reader = Callable[[str, Quantity], Any]
 Run = Callable[[argparse.Namespace], None]

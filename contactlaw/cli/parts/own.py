@@ -3,31 +3,17 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import value
-from contactlaw.physical.materials import Material, find
+from contactlaw.cli.parts import wording
+from contactlaw.physical.materials import SHORT, Material, find, number_of
 
 _NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
 
 
-def _hardness(text: str) -> object:
-    return text if "H" in text.upper() else value(text, quantities.STRESS)  # HRC, HV, HB
-
-
-_READERS: dict[str, tuple[str, Callable[[str], object]]] = {
-    "E": ("youngs_modulus", functools.partial(value, quantity=quantities.STRESS)),
-    "nu": ("poissons_ratio", functools.partial(value, quantity=quantities.SHARE)),
-    "rho": ("density", functools.partial(value, quantity=quantities.DENSITY)),
-    "yield": ("yield_strength", functools.partial(value, quantity=quantities.STRESS)),
-    "hardness": ("hardness", _hardness),
-    "kind": ("kind", str),
-    "name": ("name", str),
-}
+_FIELDS = SHORT | {name: name for name in ("hardness", "kind", "name")}
 
 # Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
 _BARE = re.compile(r"[\d.eE+-]+")
@@ -44,20 +30,20 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             return find(text, own)
         given: dict[str, object] = {}
         if first := re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;"):
-            raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_READERS)}")
+            raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}")
         for key, word in _NUMBER.findall(text):
-            if key not in _READERS:
-                near = difflib.get_close_matches(key, _READERS, n=1)
+            if key not in _FIELDS:
+                near = difflib.get_close_matches(key, _FIELDS, n=1)
                 hint = f"did you mean {near[0]}? " if near else ""
-                raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_READERS)}")
-            field, read = _READERS[key]
+                raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_FIELDS)}")
+            field = _FIELDS[key]
             if field in given:
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
-            given[field] = found = read(word)
+            given[field] = found = word if key in ("kind", "name") else number_of(field, word)
             least, likely = _LIKELY.get(key, (0.0, ""))
             if isinstance(found, float) and found < least and _BARE.fullmatch(word):
                 wording.print_warning(f"{key}={word} is {word} {likely}?")
-        if missing := [key for key in ("E", "nu", "rho") if _READERS[key][0] not in given]:
+        if missing := [key for key in ("E", "nu", "rho") if _FIELDS[key] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:

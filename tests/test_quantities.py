@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from contactlaw._readable import in_unit
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.cli.parts.quantities import ANGLE, FRICTION, LENGTH, SPEED, value, values
+from contactlaw.quantities import ANGLE, FRICTION, LENGTH, SPEED, value, values
 
 POWERS = {"m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}

@@ -1,4 +1,4 @@
-"""Quantities on the command line: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
+"""Quantities as people write them: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
 
 A library of units such as pint would be one more dependency for two dozen units, and lists and
 ranges would still have to be read here.
@@ -44,7 +44,7 @@ SPEED = _quantity("speed", "m/s 1, cm/s 0.01, mm/s 1e-3, km/h 0.2777777777777777
 TIME = _quantity("time", "s 1, ms 1e-3, us 1e-6, ns 1e-9")
 FORCE = _quantity("force", "N 1, kN 1000, mN 1e-3, uN 1e-6")
 MASS = _quantity("mass", "kg 1, g 1e-3, mg 1e-6, ug 1e-9")
-STRESS = _quantity("stress", "Pa 1, kPa 1000, MPa 1e6, GPa 1e9")
+STRESS = _quantity("stress", "Pa 1, kPa 1000, MPa 1e6, GPa 1e9, N/mm2 1e6")
 DENSITY = _quantity("density", "kg/m3 1, g/m3 1e-3, g/cm3 1000")
 SHARE = _quantity("share", "- 1, 1 1, % 0.01")
 ANGLE = Quantity(
