@@ -80,7 +80,6 @@ def pair_coeff(
         modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus
         restitution = float(beads.integrated(speed, radius, radius))
         types = f"{i} {j}" if len(found) > 1 else "* *"
-        lines.append(
-            f"pair_coeff {types} {hertz_material(modulus, restitution, ratio, tangential)}"
-        )
+        contact = hertz_material(modulus, restitution, ratio, tangential)
+        lines.append(f"pair_coeff {types} {contact}")
     return "\n".join(lines)
