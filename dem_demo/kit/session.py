@@ -33,12 +33,12 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     have until then is whole, and an earlier run in the folder stays as it is.
     """
     with _atomic.folder(out) as folder:
-        stop = simulate(folder)
+        text, stop = "", simulate(folder)
         if stop is None:
             run = show.read(folder)
-            print(show.summary(run), flush=True)
+            text = f"{show.summary(run)}\n"
             try:
-                make(show, run, folder)
+                make(show, run, text, folder)
             except (Exception, Interrupted) as error:
                 stop = error
         else:
@@ -51,7 +51,7 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
         if not written:
             assert stop is not None
             raise stop
-    print(f"\nWritten to {out}: {written}", flush=True)
+    print(f"{text}\nWritten to {out}: {written}", flush=True)
     if stop is None:
         return 0
     if not isinstance(stop, FORESEEN):
@@ -60,9 +60,9 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     return int(getattr(stop, "exit_status", 1))
 
 
-def make(show: Show, run: Any, folder: Path) -> None:
+def make(show: Show, run: Any, summary: str, folder: Path) -> None:
     """Make all files of a run, the summary first."""
-    (folder / "summary.txt").write_text(f"{show.summary(run)}\n", encoding="utf-8")
+    (folder / "summary.txt").write_text(summary, encoding="utf-8")
     pictures = {name: show.figures.draw(name, run) for name in show.figures.names()}
     film = show.film(run)
     (folder / "index.html").write_text(show.page(run, pictures, film), encoding="utf-8")

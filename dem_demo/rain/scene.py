@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from contactlaw import Material
 
 # Steps in which the fastest falling bead crosses the smallest radius. Beads that strike each other
-# may be faster: up to three times that speed, no bead can jump through a plate.
-STEPS_PER_RADIUS = 3.0
+# may be faster: up to twice that speed, no bead can jump through a plate.
+STEPS_PER_RADIUS = 2.0
 
 
 @dataclass(frozen=True, slots=True)
