@@ -78,7 +78,7 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_442,
+    "contactlaw": 33_444,
     "contactlaw/answers": 2_776,
     "contactlaw/cli": 3_938,
     "contactlaw/emit": 700,
@@ -89,14 +89,14 @@ BUDGETS = {
     "contactlaw/laws": 2_085,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_348,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 687,
-    "contactlaw/reporting": 1_075,
+    "contactlaw/reporting": 1_077,
     "contactlaw/stepping": 1_977,
     "contactlaw/table": 2_993,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_962,
     "contactlaw templates": 1_102,  # sources of other languages, and pages
     "dem_demo": 6_336,
     "validation": 14_850,  # with spheres that are not solid, and the turning-point form
-    "tests": 24_386,  # a fact is held at one level, the one that is nearest to the user
+    "tests": 24_387,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
