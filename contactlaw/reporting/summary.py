@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlaw._readable import relative, scale_of
+from contactlaw._readable import relative, rounded, scale_of
 from contactlaw.reporting.limits import exceeded, limits_lines
 from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
 
@@ -63,12 +63,13 @@ def _impacts(wall: WallRow) -> tuple[str, ...]:
 
 
 def energies(run: Run) -> Table:
-    """Energy that each wall and each cause took, and the sums."""
+    """Energy that each wall and each cause took, and the sums, in the unit that suits the whole."""
     found: Table = [("wall", "contacts", *CAUSES, "in all", "share")]
     whole = by_cause(run.rows).sum() or 1.0
     unit, scale = scale_of(whole, "J")
     for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
         parts = by_cause(rows)
-        shown = (f"{part / scale:.3g} {unit}".replace("u", "µ") for part in (*parts, parts.sum()))
+        sizes = (rounded(part / scale, 3) for part in (*parts, parts.sum()))
+        shown = (f"{size} {unit.replace('u', 'µ')}" for size in sizes)
         found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
     return found

@@ -62,6 +62,7 @@ def test_the_energies_of_walls_and_causes_are_those_of_the_record(run, folder):
     text = (folder / "summary.txt").read_text()
     shown = re.findall(r"^(\d|all).*?((?: +[\d.e-]+ [nµm]?J)+)", text, re.M)
     assert [name for name, _ in shown] == ["0", "1", "2", "all"]
+    assert len(set(re.findall(r" ([nµm]?J)\b", "".join(cells for _, cells in shown)))) == 1
     units = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0}
     for (name, cells), own in zip(shown, [rows["plate"] == n for n in range(3)] + [slice(None)],
                                   strict=True):  # fmt: skip
