@@ -405,7 +405,7 @@ def time_step(
     units = bodies.numbers(bodies.impact(given))
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
-        raise OutsideTableError(0, too_thin(lam, largest))
+        raise OutsideTableError(0, too_thin(lam, largest), mass)
     found = solved_within(bodies.data, units, RTOL, None, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4

@@ -80,25 +80,25 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_231,
-    "contactlaw/answers": 2_787,
-    "contactlaw/cli": 3_799,
+    "contactlaw": 33_259,
+    "contactlaw/answers": 2_792,
+    "contactlaw/cli": 3_803,
     "contactlaw/emit": 700,
-    "contactlaw/engines": 3_642,
+    "contactlaw/engines": 3_641,
     "contactlaw/equation": 2_776,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_070,
+    "contactlaw/export": 1_077,
     "contactlaw/fitting": 2_135,
     "contactlaw/laws": 2_060,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_298,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/physical": 3_300,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 688,
-    "contactlaw/reporting": 1_051,
+    "contactlaw/reporting": 1_062,
     "contactlaw/stepping": 1_984,
     "contactlaw/table": 2_997,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_953,
-    "contactlaw templates": 1_079,  # sources of other languages, and pages
+    "contactlaw templates": 1_098,  # sources of other languages, and pages
     "dem_demo": 4_378,
     "validation": 14_861,  # with spheres that are not solid, and the turning-point form
-    "tests": 24_028,  # a fact is held at one level, the one that is nearest to the user
+    "tests": 24_100,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

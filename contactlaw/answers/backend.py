@@ -53,17 +53,20 @@ class OutsideTableError(ValueError):
         Index of the impact in the arguments.
     reason : str
         Which limit of the table it exceeds, and by how much.
+    mass : float or None
+        Mass that answers at the contact [kg], if it was given.
     """
 
-    def __init__(self, impact: int, reason: str) -> None:
-        super().__init__(impact, reason)  # the arguments as given: pickle needs them
-        self.impact, self.reason = impact, reason
+    def __init__(self, impact: int, reason: str, mass: float | None = None) -> None:
+        super().__init__(impact, reason, mass)  # the arguments as given: pickle needs them
+        self.impact, self.reason, self.mass = impact, reason, mass
 
     def __str__(self) -> str:
+        heavy = "" if self.mass is None else f", mass={self.mass:g}"
         return (
-            f"speed, radius, thickness: impact {self.impact} is outside the table, {self.reason}. "
-            'ImpactModel(..., outside="solve") integrates the equation there, "clamp" takes the '
-            "value at the table's border."
+            f"speed, radius, thickness{heavy}: impact {self.impact} is outside the table, "
+            f'{self.reason}. ImpactModel(..., outside="solve") integrates the equation there, '
+            '"clamp" takes the value at the table\'s border.'
         )
 
 
@@ -111,15 +114,19 @@ def _above(value: float, limit: float) -> str:
 def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -> NoReturn:
     """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
     n = int(np.argmax(beyond))
-    thin = f"under a bead of {impacts.radius[n]:g} m the inelasticity at yield is above {limit:.4g}"
+    heavy = "" if impacts.mass is None else f" and mass={impacts.mass[n]:g} kg"
+    bead = f"a bead of {impacts.radius[n]:g} m{heavy}"
+    thin = f"under {bead} the inelasticity at yield is above {limit:.4g}"
     raise ArgumentError("thickness", impacts.thickness[n], f"too thin for the table: {thin}")
 
 
 @contextmanager
-def renumbered(some: NDArray[np.intp]) -> Iterator[None]:
-    """Make errors about one of some impacts name it by its number among all."""
+def renumbered(some: NDArray[np.intp], mass: NDArray[np.float64] | None = None) -> Iterator[None]:
+    """Make errors about one of some impacts name it by its number among all, and the mass given."""
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
         impact, *rest = error.args
+        if mass is not None and isinstance(error, OutsideTableError):
+            rest[-1] = float(mass[impact])
         raise type(error)(int(some[impact]), *rest) from None

@@ -13,6 +13,7 @@ from contactlaw.answers.backend import (
     OutsideTableError,
     UnsolvedError,
     refuse_to_yield,
+    renumbered,
     too_fast,
     too_thin,
 )
@@ -73,7 +74,8 @@ def integrate(
     if impacts.edge_distance is not None and impacts.hole_radius is not None:
         near = impacts.edge, impacts.edge_distance, impacts.hole_radius
         edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
-    found = solved_within(bodies.data, units, rtol, extent, few, edges)
+    with renumbered(np.arange(impacts.speed.size), impacts.mass):
+        found = solved_within(bodies.data, units, rtol, extent, few, edges)
     return Integrated(bodies, impacts, units, found, edges)
 
 
@@ -116,9 +118,7 @@ class Solver:
         found = self._integrated(impacts)
         outcome, flags = found.outcome, found.rebound().flags
         contacts, path = histories_and_path(self.bodies.data, outcome, samples, found.edges)
-        return with_units(
-            contacts, found.units, outcome.inelasticity, impacts.shape, flags, path
-        )  # fmt: skip
+        return with_units(contacts, found.units, outcome.inelasticity, impacts.shape, flags, path)
 
     def _integrated(self, impacts: Impacts) -> Integrated:
         few = impacts.edge_distance is not None and impacts.speed.size <= _FEW

@@ -92,9 +92,8 @@ class Border:
 
 def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     """Say why the first of some impacts is outside a table."""
-    lam, y, s = (
-        float(one[0]) for one in (beyond.inelasticity, beyond.yield_ratio, beyond.strength)
-    )
+    numbers = beyond.inelasticity, beyond.yield_ratio, beyond.strength
+    lam, y, s = (float(one[0]) for one in numbers)
     limit, most = lookup.lam_max(table), lookup.strongest(table)
     if lam > limit:
         raise OutsideTableError(0, too_thin(lam, limit))
@@ -104,9 +103,8 @@ def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     chi = math.exp(lookup.log_elastic_compression(table, lam, s)) / y
     border = outcome.part(beyond, slice(1))
     lookup.fields(table, True, border)
-    raise OutsideTableError(
-        0, too_fast(chi, (border.elastic_compression / border.yield_ratio).item())
-    )
+    fastest = (border.elastic_compression / border.yield_ratio).item()
+    raise OutsideTableError(0, too_fast(chi, fastest))
 
 
 class TableLookup:
@@ -260,7 +258,7 @@ class TableLookup:
             part = impacts.part(beyond)
             units = self.bodies.numbers(self.bodies.impact(part))
             lam[beyond], y[beyond] = units.inelasticity, units.yield_ratio
-            with renumbered(beyond):
+            with renumbered(beyond, part.mass):
                 if self.border.outside == "solve":
                     refuse_rates(self.bodies, part, units)
                 looked, flags[beyond] = self.border.look_up(self.bodies.data, self.packed, units)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 from typing import Any
 
 from contactlaw import export
@@ -14,14 +15,18 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "a page for a browser: sliders, curves, energy, one hit in slow motion"
     command = options.command(commands, "explore", about, _run)
-    options.add_pair(command)
+    options.add_pair(command, action="append")
     options.add_name_of_law(command)
     command.add_argument("--out", default="page.html", metavar="FILE",
                          help="file to write (default: %(default)s)")  # fmt: skip
+    command.epilog = "Give --sphere or --plate again for a page with a menu of pairs."
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    model = ImpactModel(chosen.pair(arguments), law=arguments.law)
+    models = []
+    for bodies in itertools.product(arguments.sphere, arguments.plate):
+        arguments.sphere, arguments.plate = bodies
+        models.append(ImpactModel(chosen.pair(arguments), law=arguments.law))
     with wording.writing("out", arguments.out):
-        export.page(arguments.out, model)
+        export.page(arguments.out, models)
     print(arguments.out)

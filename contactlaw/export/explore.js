@@ -6,7 +6,7 @@ const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, mass: 1, angle: 0, fric
 const COLOURS = { rebound: BLUE, wave: "#56b4e9", plastic: "#e69f00", other: "#cc79a7",
   friction: "#009e73" };
 const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after touch; seconds
-let hit, curves, phase = still ? 0.5 : -BEFORE, playing = !still, larger = 1, last = null;
+let pair = pairs[0], hit, curves, phase = still ? 0.5 : -BEFORE, playing = !still, larger = 1, last = null;
 const round = (x, digits = 3) => Number(x.toPrecision(digits));
 const place = ([low, high], x) => (low > 0 ? Math.log(x / low) / Math.log(high / low) : x / high);
 const $min = (one, other) => other < one ? other : one; // what the kernels call beside Math
@@ -51,16 +51,16 @@ function show() {
   const { speed, radius, thickness, mass, angle, friction } = asked;
   const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
-    const x = low * (high / low) ** (n / 72), given = at(x), one = $for_curve(given);
-    return [x, one.restitution, one.restitution >= 0 ? $exceeded(one, given) : 0];
+    const x = low * (high / low) ** (n / 72), given = at(x), one = pair.for_curve(given);
+    return [x, one.restitution, one.restitution >= 0 ? pair.exceeded(one, given) : 0];
   });
   curves = { speed: curve(SLIDERS.speed, (v) => ({ ...asked, speed: v * tilt })),
     thickness: curve(SLIDERS.thickness, (h) => ({ ...asked, speed: speed * tilt, thickness: h })) };
   hit = collide(asked);
-  const outside = Object.keys(pair.words).filter((bit) => !hit || hit.flags & bit);
-  const words = !hit ? ["No answer: a number is out of range, or the plate is far too thin for this bead."]
-    : outside.length ? outside.map((bit) => pair.words[bit]) : ["Inside every limit of the model."];
-  fill("flags", words.map((text) => ["li", text]));
+  const outside = Object.keys(words).filter((bit) => !hit || hit.flags & bit);
+  const said = !hit ? ["No answer: a number is out of range, or the plate is far too thin for this bead."]
+    : outside.length ? outside.map((bit) => words[bit]) : ["Inside every limit of the model."];
+  fill("flags", said.map((text) => ["li", text]));
   byId("flags").className = outside.length ? "outside" : "";
   byId("cor").textContent = hit ? hit.restitution.toFixed(4) : "–";
   const facts = {}, shares = {};
@@ -97,11 +97,11 @@ function show() {
   redraws.forEach((redraw) => redraw());
 }
 function collide(given) { // null for what is refused
-  const { impact, ...oblique } = $collide(given, given.angle, given.friction);
+  const { impact, ...oblique } = pair.collide(given, given.angle, given.friction);
   return impact.restitution >= 0 ? { ...given, ...impact, ...oblique } : null;
 }
 function sample(one) { // the contact at even times, as drawHit takes it; the tail of a long one is cut
-  const path = $shown(one, one);
+  const path = pair.shown(one, one);
   Object.assign(one, { duration: path.time.at(-1), model: one.restitution, force: path.force,
     compression: path.compression, displacement: path.impulse,
     spread: pair.wave_path * Math.min(one.thickness, 4 * one.radius) });
@@ -171,6 +171,13 @@ redraws.push(surface("over-speed", 0.56, drawCurve("speed", "speed of the bead [
   surface("force", 0.56, drawForce), surface("contact", 0.56, (pen, width, tall) =>
     hit && drawHit(pen, width, tall, hit, phase, larger, BLUE)));
 
+byId("pair").onchange = () => {
+  pair = pairs[byId("pair").selectedIndex];
+  document.title = byId("title").textContent = pair.title;
+  byId("law").textContent = pair.law;
+  byId("shell").hidden = !pair.options;
+  show();
+};
 byId("play").onclick = () => {
   playing = !playing;
   byId("play").textContent = playing ? "Pause" : "Play";

@@ -16,6 +16,7 @@ class Kind(enum.IntEnum):
     STRUCK = 3  # something else struck it, or pressed on it, while it was in contact; or the plate
     # came back from its edge and gave it more energy than it took; it may leave faster than it came
     RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
+    IN_CLUMP = 5  # it is a part of a rigid body; the wall answered it as if it flew alone
 
 
 def only_impacts(kinds: NDArray[Any]) -> tuple[NDArray[np.bool_], str]:

@@ -31,8 +31,9 @@ class Rebound:
         Rebound speed over impact speed [-]; smaller ones than 1e-7 are rounded up to that.
     contact_time
         Time from first touch to separation [s]; for a sphere that stays (restitution 1e-7), until
-        the energy that is left in the contact could throw it off no faster. Near an edge a sphere
-        that stays is followed for 50 times the unit of time T_H, and has a restitution of 0.
+        so little energy is left in the contact that it could not rebound faster. Near an edge a
+        sphere that stays is followed for 50 times the unit of time T_H, and has a restitution of
+        0.
     peak_force
         Largest contact force [N].
     peak_compression, residual_compression

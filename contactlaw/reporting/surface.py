@@ -21,11 +21,12 @@ _GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most
 class EnergyMap(NamedTuple):
     """Energy that parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
 
-    The density is energy over area [J/m2], an average over the neighbourhood on the same wall.
+    The density is energy over area [J/m2], an average over the neighbourhood on the same wall. Of
+    contacts whose points are unknown each part of their triangle has its share, by its area.
     """
 
     corners: Floats
-    impacts: Integers  # number of contacts on each triangle
+    impacts: Floats  # number of contacts on each triangle
     energy: Floats  # that these took [J]
     density: Floats
 
@@ -36,16 +37,26 @@ def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     reach = math.sqrt(_FEW * areas(corners).sum() / max(1, np.count_nonzero(hit)))
     reach = min(max(reach, _FINEST * extent), _COARSEST * extent)
-    where, wall = surface.triangle[hit], surface.wall
-    if surface.point is not None:
-        corners, where, whole = refined(corners, where, surface.point[hit], 0.7 * reach)
-        wall = wall[whole]
-    count, density = len(corners), np.empty(len(corners))
-    taken: Floats = np.bincount(where, energy[hit], count).astype(float)
+    where, point = surface.triangle, surface.point
+    if point is None:  # parts of triangles are found for the triangles alone
+        where, point = where[:0], np.empty((0, 3))
+    else:
+        where, point = where[hit], point[hit]
+    corners, where, whole = refined(corners, where, point, 0.7 * reach)
+    count, wall = len(corners), surface.wall[whole]
+    share = areas(corners) / areas(surface.corners)[whole]
+
+    def summed(values: Floats) -> Floats:
+        if surface.point is None:
+            on = np.bincount(surface.triangle[hit], values, len(surface.corners))
+            return np.asarray(on[whole] * share)
+        return np.bincount(where, values, count).astype(float)
+
+    taken, density = summed(energy[hit]), np.empty(count)
     for one in np.unique(wall):
         here = wall == one
         density[here] = averaged(corners[here], taken[here], reach)
-    return EnergyMap(corners, np.bincount(where, minlength=count), taken, density)
+    return EnergyMap(corners, summed(np.ones(hit.sum())), taken, density)
 
 
 def areas(corners: NDArray[np.floating]) -> Floats:

@@ -28,7 +28,7 @@ def main():
         region box block {-DRUM} {DRUM} 0 {LENGTH} {-DRUM} {DRUM}
         create_box 2 box
         pair_style granular
-        {pair_coeff(SPHERES[0], radius=RADIUS, speed=SPEED, friction=0.3)}
+        {pair_coeff(SPHERES, radius=RADIUS, speed=SPEED, friction=0.3)}
         fix move all nve/sphere
         fix weight all gravity 9.80665 vector 0 0 -1
         timestep {dt}""")

@@ -71,7 +71,7 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     page.open(tmp_path / "page.html", 1280)
     found = page.value(
         f"{json.dumps(settings)}.map(collide).map((hit) => ({{...hit,"
-        " curve: $for_curve(hit).restitution}))"
+        " curve: pair.for_curve(hit).restitution}))"
     )
     rows = {name: np.array([one[name] for one in found]) for name in found[0]}
     mass *= model.pair.sphere.density * 4 / 3 * math.pi * radius**3
@@ -100,7 +100,7 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     texts = page.value(
         f"{json.dumps(settings)}.map((one) => (({{ impact, ...rest }}) => ["
         "...Object.values(impact), ...Object.values(rest)].map(String))("
-        "$collide(one, one.angle, one.friction)))"
+        "pair.collide(one, one.angle, one.friction)))"
     )
     for one, found in zip(settings, texts, strict=True):
         *given, angle, friction = one.values()
@@ -163,6 +163,23 @@ def test_the_example_is_what_the_command_writes(steel):
     assert made == kept
     assert steel.stat().st_size < 1e6
     assert not re.findall(r"https?:|url\(|src=", kept)
+
+
+def test_a_menu_chooses_a_pair(tmp_path, page):
+    out, own = tmp_path / "page.html", "E=193GPa nu=0.29 rho=8000 yield=205MPa"
+    assert cli.main([*EXPLORE, str(out), "--sphere", "glass", "--plate", own]) == 0
+    page.complaints.clear()
+    page.open(out, 1280)
+    names = page.value("[...document.getElementById('pair').options].map((one) => one.text)")
+    assert len(names) == 4 and names[0] == f"{STEEL.sphere.name} on {STEEL.plate.name}"
+    page.value("document.getElementById('pair').selectedIndex = 3")
+    page.value("document.getElementById('pair').onchange()")
+    assert page.value("document.querySelector('h1').textContent") == names[3]
+    made = {}
+    exec(page.value("document.getElementById('python').textContent"), made)
+    assert made["model"].pair.sphere == cl.material("glass")
+    assert float(page.value(COR)) == pytest.approx(made["hit"].restitution, abs=5.1e-5)
+    assert page.complaints == [] and out.stat().st_size < 0.5e6
 
 
 def test_a_material_of_numbers_is_asked_in_a_shell_by_these(tmp_path, page, capsys):

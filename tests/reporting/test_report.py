@@ -12,6 +12,7 @@ from pymunk_room import make_bead, make_plate, make_space, steps
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
+from contactlaw.record.file import Surface
 from contactlaw.reporting import summary, surface
 from contactlaw.reporting.figures import energy, impacts, places
 from contactlaw.reporting.figures.impacts import angle
@@ -190,6 +191,19 @@ def test_parts_of_triangles_cover_them_and_have_their_own_points():
     assert ((inside * np.cross(b - a, c - a)).sum(axis=-1) > -1e-12).all()
     even = surface.averaged(parts, 2.5 * surface.areas(parts), 0.5)
     assert even == pytest.approx(2.5, rel=1e-12)
+
+
+def test_a_fan_of_slivers_has_no_spikes_where_points_are_unknown():
+    """Energy that one sliver of a disc took is spread over it, and averaged with its neighbours."""
+    turn = np.linspace(0.0, 2.0 * math.pi, 121)
+    rim = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
+    corners = np.stack([0.0 * rim[1:], rim[:-1], rim[1:]], axis=1)
+    hit = np.repeat([3, 4], 20)
+    walls = Surface(corners, np.zeros(120, int), hit, None)
+    found = surface.energy_map(walls, np.full(40, 0.1))
+    assert (found.energy.sum(), found.impacts.sum()) == pytest.approx((4.0, 40.0))
+    centre = found.density[(np.linalg.norm(found.corners, axis=2) == 0.0).any(axis=1)]
+    assert centre.size == 120 and centre.min() > 0.5 * centre.max()
 
 
 @pytest.mark.parametrize("walls", [7, 10, 30])

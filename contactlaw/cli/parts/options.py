@@ -71,13 +71,12 @@ def add_speed(
 OF_RECORD = " (default: that of the record)"
 
 
-def add_pair(command: argparse.ArgumentParser, otherwise: str = "") -> None:
+def add_pair(command: argparse.ArgumentParser, otherwise: str = "", action: str = "store") -> None:
     """Add the options of materials, required unless their help says what holds `otherwise`."""
-    add, required = command.add_argument, not otherwise
-    add("--sphere", required=required, metavar="NAME",
-        help=f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}",
-        )  # fmt: skip
-    add("--plate", required=required, metavar="NAME", help=f"material of the plate{otherwise}")
+    given: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
+    bead = f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}"
+    command.add_argument("--sphere", help=bead, **given)
+    command.add_argument("--plate", help=f"material of the plate{otherwise}", **given)
     add_materials(command)
 
 

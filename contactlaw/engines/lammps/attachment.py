@@ -30,7 +30,7 @@ from contactlaw.engines.lammps.memory import (
 )
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
-from contactlaw.record.columns import IMPACT
+from contactlaw.record.columns import IMPACT, Kind
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
 from contactlaw.stepping import Trouble, WallContacts
@@ -261,8 +261,9 @@ class LammpsPlates:
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
+        self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
         self._check_masses()
-        self._warn_of_walls()
+        self._look_at_fixes()
         try:
             self._install()
         except BaseException:
@@ -359,12 +360,9 @@ class LammpsPlates:
         """Pass the C function to LAMMPS, so that it is called without Python."""
         self._callback = callback()
         setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
-        setter(
-            ctypes.cast(self._lmp.lmp, ctypes.c_void_p),
-            ctypes.c_char_p(f"{HISTORY}_force".encode()),
-            self._callback.address,
-            self._shared.ctypes.data,
-        )
+        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
+        fix = ctypes.c_char_p(f"{HISTORY}_force".encode())
+        setter(handle, fix, self._callback.address, self._shared.ctypes.data)
 
     def _wrapped(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Wrap a method of the LAMMPS object: check its commands before, raise errors after."""
@@ -394,15 +392,14 @@ class LammpsPlates:
 
     def _after_command(self, calls: int, lammps_error: Exception | None = None) -> None:
         """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
+        self._look_at_fixes()
         if self._shared["calls"][0] != calls:
             self._after_steps(lammps_error)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
         if gone:
-            whole = not any(
-                self._lmp.has_id(kind, name) for kind, name, _ in _PARTS if kind in _CLEARED
-            )
+            left = {kind for kind, name, _ in _PARTS if (kind, name) not in gone}
             self.detach()
-            if whole:
+            if left.isdisjoint(_CLEARED):
                 return
             names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
             raise RuntimeError(
@@ -410,16 +407,17 @@ class LammpsPlates:
                 "LammpsPlates.detach() is the way to do it"
             ) from lammps_error
         commands.check_integrator(self._lmp)
-        self._warn_of_walls()
 
-    def _warn_of_walls(self) -> None:
-        """Warn once of each granular wall of LAMMPS's own, which may act on the same beads."""
+    def _look_at_fixes(self) -> None:
+        """Find rigid bodies; warn once of each granular wall of LAMMPS's own."""
         fixes = self._lmp.available_ids("fix")
         if fixes == self._fixes:
             return
         self._fixes = fixes
-        for name, style in commands.granular_walls(self._lmp).items():
-            if name not in self._warned:
+        found = commands.fixes(self._lmp)
+        self._rigid = [group for _, style, group in found if style.startswith("rigid")]
+        for name, style, _ in found:
+            if style.startswith("wall/gran") and name not in self._warned:
                 self._warned.add(name)
                 warnings.warn(
                     f"fix {name} has the style {style}: a bead that touches that wall and a plate "
@@ -431,11 +429,12 @@ class LammpsPlates:
     def _after_steps(self, lammps_error: Exception | None) -> None:
         """Collect the impacts and raise the errors of time steps; all ranks have to call it."""
         scene = self._contacts.scene
-        count = int(scene.status["impacts"][0])
-        if count:
-            self._parts.append(scene.impacts[:count].copy())
-            scene.status["impacts"] = 0
-        own = self._own_error() if self._shared["error"][0] else None
+        rows, clumped = scene.impacts[: scene.status["impacts"][0]].copy(), self._clumped()
+        rows["kind"][np.isin(rows["bead"], clumped)] = Kind.IN_CLUMP
+        self._parts += [rows] if rows.size else []
+        scene.status["impacts"] = 0
+        shared = self._shared[[name for name in SHARED.names or () if name.startswith("error")]][0]
+        own = shared.item() if shared["error"] else None
         gathered = self._comm.allgather((own, self._clear_marks()))
         self._shared["error"] = 0
         errors = [error for error, _ in gathered if error]
@@ -449,9 +448,15 @@ class LammpsPlates:
                 "run, but not by the plates; write nothing there"
             ) from lammps_error
 
-    def _own_error(self) -> Any:
-        names = [name for name in SHARED.names or () if name.startswith("error")]
-        return self._shared[names][0].item()
+    def _clumped(self) -> NDArray[np.int64]:
+        """IDs of the beads that are parts of rigid bodies, of all ranks; all ranks call it."""
+        run, name, found = type(self._lmp).command, f"{HISTORY}_clumped", [np.zeros(0, int)]
+        for group in self._comm.bcast(self._rigid):
+            run(self._lmp, f"variable {name} atom gmask({group})")
+            inside = np.array(self._lmp.extract_variable(name, "all", 1) or [])
+            run(self._lmp, f"variable {name} delete")
+            found.append(self._beads("id")[inside > 0.0])
+        return np.concatenate(self._comm.allgather(np.concatenate(found)))
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
+
 from contactlaw.answers.beads import Beads
 from contactlaw.answers.tabulated import Border
 from contactlaw.laws import DEFAULT
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.materials import Material, material
+from contactlaw.physical.materials import Material
 from contactlaw.stepping.friction import check_friction
 
 
@@ -24,14 +27,15 @@ def hertz_material(
 
 
 def pair_coeff(
-    sphere: Material | str, *, radius: float, speed: float, friction: float = 0.0
-) -> str:
-    """Write LAMMPS's ``pair_coeff`` line for ``pair_style granular``, for beads of one material.
+    sphere: Material | str | Sequence[Material | str], *, radius: float, speed: float,
+    friction: float = 0.0,
+) -> str:  # fmt: skip
+    """Write LAMMPS's ``pair_coeff`` for ``pair_style granular``.
 
     Parameters
     ----------
-    sphere : Material or str
-        Material of the beads.
+    sphere : Material or str, or a sequence of them
+        Material of the beads, or those of the atom types from 1 on.
     radius : float
         Radius of a typical bead [m]; the COR does not depend on it.
     speed : float
@@ -43,7 +47,8 @@ def pair_coeff(
     Returns
     -------
     str
-        A command for ``lmp.command``, after ``pair_style granular``.
+        A line for ``lmp.commands_string``, after ``pair_style granular``; for several materials,
+        one for each pair of types.
 
     Raises
     ------
@@ -53,9 +58,10 @@ def pair_coeff(
 
     Notes
     -----
-    ``hertz/material`` takes the Young's modulus of one bead and combines it with the other's
-    itself; its ``coeff_restitution`` gives the COR of the line. The springs are those of LAMMPS's
-    manual; the plastic flow of the beads affects the COR alone.
+    ``hertz/material`` takes both beads of a pair for alike: the line of two materials has their
+    mean Poisson's ratio, and the Young's modulus that then gives the effective one of the pair. Its
+    ``coeff_restitution`` gives the COR of the line. The springs are those of LAMMPS's manual; the
+    plastic flow of the beads affects the COR alone.
 
     Examples
     --------
@@ -63,12 +69,17 @@ def pair_coeff(
     >>> pair_coeff("gamma-alumina", radius=0.9e-3, speed=40.0).split(" tangential")[0]
     'pair_coeff * * hertz/material 1.223e+10 0.86996 0.21'
     """
-    one = material(sphere) if isinstance(sphere, str) else sphere
+    found = sphere if isinstance(sphere, (list, tuple)) else [sphere]
     scalars(radius=radius, speed=speed)
     check_friction(friction)
-    beads = Beads(one, one, DEFAULT, Border("raise"))
-    restitution = beads.integrated(speed, radius, radius)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
-    return "pair_coeff * * " + hertz_material(
-        one.youngs_modulus, float(restitution), one.poissons_ratio, tangential
-    )
+    lines = []
+    for (i, one), (j, two) in itertools.combinations_with_replacement(enumerate(found, 1), 2):
+        beads = Beads(one, two, DEFAULT, Border("raise"))
+        ratio = 0.5 * (beads.pair.sphere.poissons_ratio + beads.pair.plate.poissons_ratio)
+        modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus
+        restitution = float(beads.integrated(speed, radius, radius))
+        types = f"{i} {j}" if len(found) > 1 else "* *"
+        contact = hertz_material(modulus, restitution, ratio, tangential)
+        lines.append(f"pair_coeff {types} {contact}")
+    return "\n".join(lines)

@@ -231,8 +231,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             interact(scene, clock, bead)
             for k in range(3):
                 force[i, k] += loads[0, k] * seconds**2 / (shared.mass * length)
-            if sliding > 0:
-                for k in range(3):
+                if sliding > 0:
                     torque[i, k] += loads[1, k] * seconds**2 / (shared.mass * length**2)
             for n in range(recorded, status.impacts):
                 if scene.impacts[n].kind == Kind.IMPACT.value:  # other kinds have no COR

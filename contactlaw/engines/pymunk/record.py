@@ -152,9 +152,8 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownE
     rows["friction_energy"] *= mass[bead]
     radius = beads["radius"]
     rows["radius"], rows["mass"], rows["material"] = radius[bead], mass[bead], material[bead]
-    target = np.where(
-        on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]
-    )
+    thickness = np.append(plates["thickness"], math.nan)[rows["plate"]]
+    target = np.where(on_bead, radius[other], thickness)
     rows["thickness"] = np.where(on_bead, 0.0, target)
     # m1 m2/(m1 + m2); a plate has an infinite mass
     reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
@@ -167,17 +166,15 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownE
         for kind in np.unique(edge[own]).tolist():
             some = own & (edge == kind)
             questions.append((model.lookup, some, (kind, distance[some]) if kind else ()))
-    for pair in np.unique(
-        np.stack((material[bead], material[other]))[:, on_bead], axis=1
-    ).T.tolist():
-        own = on_bead & (material[bead] == pair[0]) & (material[other] == pair[1])
+    met = np.stack((material[bead], material[other]), axis=1)
+    for pair in np.unique(met[on_bead], axis=0).tolist():
+        own = on_bead & (met == pair).all(axis=1)
         by: Any = register.models.of_bead(pair[0])
         questions.append((by.lookup_sphere_sphere, own, register.models.extra_arguments(*pair)))
     for lookup, own, more in questions:
         part = rows[own]
-        fill(
-            part, lookup(part["approach_speed"], radius[bead[own]], target[own], *more), energy[own]
-        )
+        found = lookup(part["approach_speed"], radius[bead[own]], target[own], *more)
+        fill(part, found, energy[own])
         rows[own] = part
 
 

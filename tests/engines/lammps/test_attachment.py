@@ -363,6 +363,37 @@ def test_two_beads_rebound_as_asked(speed, friction):
     assert expected < 0.97 or speed == 5.0
 
 
+def test_beads_of_a_clump_are_told_from_others(model):
+    lmp = make([above(1e-4, x) for x in (0, 1.5 * R, 0.02)])
+    walls = attach(lmp, model, [flat(1e-3)])
+    lmp.commands_string("""
+        thermo_style custom step
+        group clump id 1 2
+        group free id 3
+        unfix move
+        fix move free nve/sphere
+        fix pair clump rigid single
+        run 1500""")
+    record = walls.record()
+    assert record.impacts["bead"].tolist() == [3] and {*record.rows["bead"]} == {1, 2, 3}
+    n = len(record.rows)
+    assert record.left_out == f"{n - 1} of {n} rows are no impacts and left out: {n - 1} in clump"
+
+
+def test_beads_of_two_materials_rebound_as_asked():
+    names, speed, place = ("glass", "carbon-steel-1020"), 5.0, R + 1e-5
+    settings = (box.BOX + box.MOTION).format(processors="* * *", dt=2e-8, gravity=0)
+    lmp = box.quiet(settings.replace("create_box 1", "create_box 2"))
+    speeds = [speed / 2, 0, 0, -speed / 2, 0, 0]
+    lmp.create_atoms(2, [1, 2], [1, 2], [-place, 0, 0.02, place, 0, 0.02], speeds)
+    lmp.command(f"set group all diameter {2 * R} density 2500")
+    lines = pair_coeff(names, radius=R, speed=speed, friction=0.4)
+    lmp.commands_string(f"comm_modify vel yes\npair_style granular\n{lines}\nrun 2000")
+    v = lmp.numpy.extract_atom("v")[:2, 0]
+    expected = cl.restitution_sphere_sphere(*names, speed, R, R)
+    assert abs(v[0] - v[1]) / speed == pytest.approx(expected, abs=1e-3) and expected < 0.6
+
+
 def test_beads_meet_each_other_and_plates(model):
     """A pair style acts beside the plates: one of two beads that meet rebounds from a plate."""
     lmp = make([above(1e-5), above(2 * R + 1e-4)], (0, 0, -3), dt=5e-8)
