@@ -80,13 +80,13 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_259,
+    "contactlaw": 33_260,
     "contactlaw/answers": 2_792,
     "contactlaw/cli": 3_803,
     "contactlaw/emit": 700,
     "contactlaw/engines": 3_641,
     "contactlaw/equation": 2_776,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_077,
+    "contactlaw/export": 1_078,
     "contactlaw/fitting": 2_135,
     "contactlaw/laws": 2_060,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_300,  # with laws, impacts, bodies: 700 less in answers and export
