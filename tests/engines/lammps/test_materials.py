@@ -111,8 +111,8 @@ def test_a_type_without_a_model_is_named():
         (lambda: {"1": models(STEEL)[1]}, None, "got '1'; atom types are integers from 1 on"),
         (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel for atom type 1"),
         (lambda: {1: models(STEEL)[1]}, lambda: {2: models(STEEL)[2]}, "type 2, for which"),
-        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "in the plate's material only"),
-        (lambda: models(STEEL), lambda: models(STEEL)[2], "in the plate's material only"),
+        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "other beads than"),
+        (lambda: models(STEEL), lambda: models(STEEL)[2], "other beads than"),
     ],
 )
 def test_models_that_do_not_fit_are_refused(model, plate, message):

@@ -9,14 +9,14 @@ from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
 from contactlaw.walls.frame import FRAME
-from contactlaw.walls.motion import place
+from contactlaw.walls.motion import move_one
 
 
 def placed(motion, time, dt=1e-6):
     """Row of numbers of a motion at a time."""
     rows = np.zeros(1, FRAME)
     motion.fill(rows[0])
-    place(rows[0], time, dt)
+    move_one(rows[0], time, dt)
     return rows[0]
 
 
