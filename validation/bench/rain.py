@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from unittest import mock
 
@@ -13,10 +12,9 @@ from contactlaw.engines import pymunk as adapter
 from dem_demo.rain import nozzles
 from dem_demo.rain.baseline import ConstantRestitution
 from dem_demo.rain.engines.pymunk import Rain
-from dem_demo.rain.scene import Scene
-from validation.bench.row import Row
+from validation.bench.row import Row, in_turns
 
-BEADS, COR, REPEAT = 1000, 0.9, 2
+BEADS, COR = 1000, 0.9
 DURATION = 0.6  # [s]; beads enter in the first third, all have hit a plate by the end
 
 
@@ -26,7 +24,7 @@ class _Elasticities:
     def __init__(self, space: pymunk.Space, model: ConstantRestitution) -> None:
         self.each = model.restitution**0.5  # pymunk multiplies the two
 
-    def add_plate(self, segment: pymunk.Segment, thickness: float) -> None:
+    def add_plate(self, segment: pymunk.Segment, thickness: float, **_: object) -> None:
         segment.elasticity = self.each
 
     def add_bead(self, circle: pymunk.Circle) -> None:
@@ -34,30 +32,24 @@ class _Elasticities:
 
 
 def rows() -> Iterator[Row]:
-    """Measure the same rain with the model, with one COR, and with pymunk alone, in turn."""
+    """Measure the same rain with the model, with one COR, and with pymunk alone."""
     pair = cl.Pair("gamma-alumina", "glass")
-    scene = nozzles.rain(beads=BEADS, duration=DURATION)
-    constant = ConstantRestitution(pair, COR)
-    times: dict[str, list[float]] = {"model": [], "adapter": [], "plain": []}
-    for _ in range(REPEAT):
-        times["model"].append(_run(scene, cl.ImpactModel(pair, law="myc")))
-        times["adapter"].append(_run(scene, constant))
+    scene, constant = nozzles.rain(beads=BEADS, duration=DURATION), ConstantRestitution(pair, COR)
+
+    def run(model: cl.ImpactModel | ConstantRestitution) -> None:
+        rain = Rain(scene, model)
+        for _ in range(scene.frames):
+            rain.advance(scene.steps_per_frame)
+
+    def plain() -> None:
         with mock.patch.object(adapter, "attach", _Elasticities):
-            times["plain"].append(_run(scene, constant))
-    least = {name: min(values) for name, values in times.items()}
-    yield Row(
-        f"rain, {BEADS} beads, over one COR", least["model"] / least["adapter"], "x", 1.25,
-        note=f"{least['model']:.2f} s; with --constant-cor {least['adapter']:.2f} s",
-    )  # fmt: skip
-    yield Row(
-        "the same over pymunk alone", least["model"] / least["plain"], "x",
-        note=f"{least['plain']:.2f} s: no adapter, so no records and no look-ahead either",
-    )  # fmt: skip
+            run(constant)
 
-
-def _run(scene: Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
-    rain = Rain(scene, model)
-    start = time.perf_counter()
-    for _ in range(scene.frames):
-        rain.advance(scene.steps_per_frame)
-    return time.perf_counter() - start
+    model = cl.ImpactModel(pair, law="myc")
+    tasks = {"model": lambda: run(model), "adapter": lambda: run(constant), "plain": plain}
+    least = {name: float(taken.min()) for name, taken in in_turns(tasks, 2).items()}
+    for peer, target in (("adapter", 1.25), ("plain", None)):
+        yield Row(
+            f"rain, {BEADS} beads, over one COR, {peer}", least["model"] / least[peer], "x", target,
+            note=f"{least['model']:.2f} s; with one COR {least[peer]:.2f} s",
+        )  # fmt: skip
