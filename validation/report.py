@@ -23,7 +23,7 @@ from validation.accuracy import compare, trust
 from validation.accuracy.trust import Score
 from validation.bench import census
 from validation.fem.census import pairs
-from validation.figures import fig26_oblique
+from validation.figures.practice import oblique_points
 from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
 
@@ -178,7 +178,7 @@ def _oblique() -> Table:
         [
             (name, f"{source}", f"{angle:.2f}", _number(value), _number(model),
              _signed(model / value - 1.0))
-            for name, source, angle, value, model in fig26_oblique.points()
+            for name, source, angle, value, model in oblique_points()
         ],
     )  # fmt: skip
 

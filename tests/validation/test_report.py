@@ -57,19 +57,17 @@ def drawn(tmp_path_factory):
     """Numbers of all figures, and the folder of the report."""
     out = tmp_path_factory.mktemp("report")
     numbers = {}
-    original = figures.module
+    original = figures.drawings()
 
-    class Watched:
-        def __init__(self, name):
-            self.name, self.module = name, original(name)
-            self.__doc__, self.PART = self.module.__doc__, self.module.PART
+    def watched(name):
+        def draw():
+            figure, numbers[name] = original[name].draw()
+            return figure, numbers[name]
 
-        def draw(self):
-            figure, numbers[self.name] = self.module.draw()
-            return figure, numbers[self.name]
+        return original[name]._replace(draw=draw)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(figures, "module", Watched)
+        patch.setattr(figures, "drawings", lambda: {name: watched(name) for name in original})
         assert main(["--out", str(out)]) == 0
     return numbers, out
 
@@ -77,7 +75,7 @@ def drawn(tmp_path_factory):
 @pytest.mark.long
 def test_every_figure_is_drawn_and_checked(drawn):
     numbers, out = drawn
-    assert set(numbers) == set(NUMBERS) == set(figures.names())
+    assert set(numbers) == set(NUMBERS) == set(figures.drawings())
     assert {path.stem for path in out.glob("*.png")} == set(NUMBERS)
 
 
@@ -89,6 +87,11 @@ def test_numbers_of_figures(drawn, name):
     for key, value in NUMBERS[name].items():
         expected = pytest.approx(0.0, abs=5e-6) if value is None else pytest.approx(value, rel=2e-3)
         assert found[key] == expected, key
+
+
+def only(monkeypatch, *names):
+    every = figures.drawings()
+    monkeypatch.setattr(figures, "drawings", lambda: {name: every[name] for name in names})
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +152,11 @@ def test_the_parts_of_the_report_come_in_order(drawn):
     parts = re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL)
     assert [name for name, _ in parts] == ["practice", "finite-elements", "paper", "derivations"]
     for name, part in parts[:3]:
-        expected = [one for one in NUMBERS if figures.module(one).PART == name.replace("-", " ")]
+        expected = [
+            one
+            for one, drawing in figures.drawings().items()
+            if drawing.part == name.replace("-", " ")
+        ]
         assert re.findall(r"<figure id='(\w*)'", part) == expected
         words = re.findall(r"<img [^>]*alt='([^']*)'", part)
         assert len(words) == len(expected) and all(len(alt) > 40 for alt in words)
@@ -229,7 +236,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path, capsys):
     ids=["Ctrl-C", "unreadable"],
 )
 def test_an_unfinished_report_leaves_nothing(tmp_path, monkeypatch, capsys, stop, status, message):
-    monkeypatch.setattr(figures, "names", lambda: ["fig09b_energy"])
+    only(monkeypatch, "fig09b_energy")
     monkeypatch.setattr(report, "page", stop)  # the picture is there by then
     assert main(["--out", str(tmp_path / "report")]) == status
     assert list(tmp_path.iterdir()) == []
@@ -237,16 +244,15 @@ def test_an_unfinished_report_leaves_nothing(tmp_path, monkeypatch, capsys, stop
 
 
 def test_captions_name_their_figure():
-    for name in figures.names():
+    for name, drawing in figures.drawings().items():
         number = re.match(r"fig0?(\d+)([ab]?)_", name)
-        caption = figures.module(name).__doc__
-        assert caption.startswith(f"Fig. {number[1]}{number[2].upper()}: "), name
+        assert drawing.caption.startswith(f"Fig. {number[1]}{number[2].upper()}: "), name
 
 
 def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
     """One figure of each part and the first claims make a whole page in seconds."""
     few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
-    monkeypatch.setattr(figures, "names", lambda: few)
+    only(monkeypatch, *few)
     monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
     monkeypatch.setattr("contactlaw.style.png", blank)
     pairs = census.pairs()[::20]
