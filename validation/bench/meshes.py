@@ -16,8 +16,10 @@ import numpy as np
 from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from validation.bench import lammps as plane
-from validation.bench.lammps import BEADS, LAYERS, OWN_WALL, RADIUS, THICKNESS, lammps
+from validation.bench.lammps import BEADS, LAYERS, OWN_WALL, RADIUS, THICKNESS
 from validation.bench.row import Row, on_ranks
+
+from lammps import lammps  # isort: skip
 
 FIGURE = Path(__file__).with_name("meshes.png")
 FEW = 2000  # beads above many plates
@@ -163,7 +165,7 @@ def main(beads: int, flat_only: bool) -> dict[str, Any]:
     found["clouds"] = {}
     for count in CLOUDS:
         side = plane.width(count)
-        both = {"plate": [plane.floor(side)], "mesh": [square(71, side)]}
+        both: dict[str, list[Any]] = {"plate": [plane.floor(side)], "mesh": [square(71, side)]}
         found["clouds"][count] = over(count, both)
     found["drum"] = drums(beads)
     many = {str(count): tiles(count) for count in PLATES}

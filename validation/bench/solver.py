@@ -73,8 +73,8 @@ def by_model() -> Iterator[Row]:
     for what, body, least in listed:
         model = cl.ImpactModel(cl.Pair(body, "glass"), what.partition(",")[0])
         took = seconds(functools.partial(model.solve, *given)) / N
-        peer = ("the row above", last / took) if least else ("", None)
-        yield Row(f"solve, {what}", took * 1e6, "us", None, *peer, least)
+        ratio = last / took if least else None
+        yield Row(f"solve, {what}", took * 1e6, "us", None, "the row above", ratio, least)
         last = took
 
 
