@@ -170,7 +170,7 @@ def main(beads: int) -> dict[str, float]:
         f"fix wall all wall/gran {OWN_WALL.format(modulus=modulus)} zplane 0 NULL"
     )
     walls = attach(simulations["plate"], paper(), plate)
-    found = times(simulations, 300)  # so that some beads are in contact
+    found = times(simulations, 1000)  # so that some beads are in contact
     impacts = walls.gather()
     found["impacts"] = 0 if impacts is None else len(impacts)
     slides = {name: pressed(beads) for name in ("frictionless", "sliding")}
