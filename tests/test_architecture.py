@@ -80,7 +80,7 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_260,
+    "contactlaw": 33_261,
     "contactlaw/answers": 2_792,
     "contactlaw/cli": 3_803,
     "contactlaw/emit": 700,
@@ -97,8 +97,8 @@ BUDGETS = {
     "contactlaw/walls": 1_953,
     "contactlaw templates": 1_098,  # sources of other languages, and pages
     "dem_demo": 4_378,
-    "validation": 14_861,  # with spheres that are not solid, and the turning-point form
-    "tests": 24_094,  # a fact is held at one level, the one that is nearest to the user
+    "validation": 14_093,  # finite elements are 5,529 of them
+    "tests": 24_101,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -64,11 +64,12 @@ def _write(folder: Path) -> collections.Counter[str]:
 
     drawn = []
     with style.applied():
-        for name in tqdm(figures.names(), "validation: figures", disable=None):
-            module = figures.module(name)
-            figure, numbers = module.draw()
+        for name, (part, caption, draw) in tqdm(
+            figures.drawings().items(), "validation: figures", disable=None
+        ):
+            figure, numbers = draw()
             numbers = {key: float(number) for key, number in numbers.items()}
-            one = Picture(name, module.PART, str(module.__doc__), numbers, style.png(figure))
+            one = Picture(name, part, caption, numbers, style.png(figure))
             (folder / one.file).write_bytes(one.png)
             drawn.append(one)
     found = tuple(judge(row) for row in tqdm(ROWS, "validation: claims", disable=None))

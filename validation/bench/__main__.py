@@ -11,22 +11,9 @@ from tqdm import tqdm
 from contactlaw.parser import Parser
 
 SUBJECTS = (
-    "lookups",
-    "histories",
-    "solver",
-    "fits",
-    "uncertainty",
-    "startup",
-    "processes",
-    "rain",
-    "edges",
-    "elements",
-    "c_header",
-    "lammps",
-    "meshes",
-    "liggghts",
+    "lookups", "solver", "fits", "processes", "rain", "c_header", "lammps", "meshes", "liggghts",
     "census",
-)
+)  # fmt: skip
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -39,13 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
     met = True
     for name in tqdm(names, desc="bench", disable=None, leave=False):
         for row in importlib.import_module(f"{__package__}.{name}").rows():
-            target = "-" if row.target is None else f"{row.target:g}"
-            ratio = "" if row.ratio is None else f"{row.peer}: {row.ratio:.3g}x"
-            if row.least_ratio is not None:
-                ratio += f" (target {row.least_ratio:g}x)"
-            verdict = "" if row.met else "NOT MET  "
-            line = f"{row.name:34s} {row.measured:9.3g} {row.unit:2s} {target:>8s}  {ratio}"
-            tqdm.write(f"{line}  {verdict}{row.note}".rstrip())
+            tqdm.write(str(row))
             met &= row.met
     return 0 if met else 1
 

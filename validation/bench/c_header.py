@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw._jit import kernel
 from contactlaw.softsphere import PARTED, Spring, advance, resized, unit_spring
-from validation.bench.row import Row
+from validation.bench.row import Row, in_turns
 
 Array = NDArray[np.float64]
 
 N, WALK = 200_000, 400  # impacts; overlaps of one contact, loading and unloading
-ROUNDS = 30  # C and numba take turns, so that both see the same noise
+ROUNDS = 30
 _SOURCE = """
 #include "contactlaw.h"
 void lookups(int n, const double *v, const double *r, const double *h, double *out)
@@ -73,16 +73,10 @@ def _pointer(values: Array) -> Any:
     return values.ctypes.data_as(ctypes.c_void_p)
 
 
-def _in_turns(one: Callable[[], object], other: Callable[[], object]) -> tuple[float, float]:
-    """Least CPU time of each after a first call [s]; wall time would count other processes."""
-    least = [math.inf, math.inf]
-    for turn in range(ROUNDS + 1):
-        for n, function in enumerate((one, other)):
-            start = time.process_time()
-            function()
-            if turn > 0:
-                least[n] = min(least[n], time.process_time() - start)
-    return least[0], least[1]
+def _in_turns(in_c: Callable[[], object], in_numba: Callable[[], object]) -> tuple[float, float]:
+    """Least CPU time of each [s]; wall time would count other processes."""
+    taken = in_turns({"C": in_c, "numba": in_numba}, ROUNDS, time.process_time)
+    return float(taken["C"].min()), float(taken["numba"].min())
 
 
 def _lookups(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:

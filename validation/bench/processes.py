@@ -20,8 +20,7 @@ import numpy as np
 
 import contactlaw as cl
 from validation.bench import fits
-from validation.bench.row import Row
-from validation.bench.startup import HIDDEN
+from validation.bench.row import Row, seconds
 
 EVERY_METHOD = """
 import contactlaw as cl
@@ -79,20 +78,40 @@ attach(lmp, model, [plate])
 lmp.command("run 1")
 print(time.perf_counter() - start)
 """
-
-
+# numba imports scipy.linalg where scipy is installed, as it is for these benchmarks: 0.3 s that a
+# user of contactlaw alone does not wait for. Hidden, it is as if it were not installed.
+HIDDEN = "import sys; sys.modules['scipy'] = None\n"
+FIRST = """import contactlaw as cl
+cl.ImpactModel(cl.Pair("gamma-alumina", "glass")).restitution(5.0, 0.9e-3, 1e-3)
+"""
 COR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm --speed 12"
 FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 --radius 1mm"
 ROOT = Path(__file__).parent.parent.parent
 LAMMPS = "docs/examples/plates_lammps.py"
 # Without these, byte code is kept on disk as for users, and caches lie in the empty home folder.
 _UNSET = (
-    "PYTHONDONTWRITEBYTECODE",
-    "XDG_CACHE_HOME",
-    "NUMBA_CACHE_DIR",
-    "CONTACTLAW_CACHE_DIR",
+    "PYTHONDONTWRITEBYTECODE", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR",
     "MPLCONFIGDIR",
-)
+)  # fmt: skip
+
+
+def rows() -> Iterator[Row]:
+    """Measure processes, the interpreter's own start included."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from first_answers(Path(folder))
+        start = time.perf_counter()
+        run(FIRST, folder)
+        cold = time.perf_counter() - start
+        yield Row("first answer, warm cache", seconds(lambda: run(FIRST, folder), 3), "s", 1)
+        yield Row("first answer, cold cache", cold, "s", 6)
+        run(NEW_LAW, folder)
+        taken = [run(NEW_LAW, folder, str(Path(folder) / f"tables-{n}")) for n in range(3)]
+        first, build = np.min(taken, axis=0)
+        yield Row("a new law's first answer", first, "s", 2, note="jackson_green: 22 s in 0.1")
+        yield Row("table of a new law", build, "s", 0.2, note="with its certificate")
+        run(ATTACH, folder)
+        attach = min(run(ATTACH, folder)[0] for _ in range(5))
+        yield Row("LAMMPS: model, attach, first step", attach, "s", 1, note="9 s in 0.1")
 
 
 def cpu_time(command: Sequence[str], home: Path, folder: Path, **variables: str) -> float:
@@ -138,35 +157,10 @@ def first_answers(folder: Path) -> Iterator[Row]:
     yield Row("make demo in a fresh clone", taken, "s", 60, note="of the last commit")
 
 
-def run(code: str, folder: str, tables: str | None = None) -> tuple[float, list[float]]:
-    """Wall time of a fresh process [s], and the numbers that it prints."""
+def run(code: str, folder: str, tables: str | None = None) -> list[float]:
+    """Give the numbers that a fresh process prints."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
     environment["CONTACTLAW_CACHE_DIR"] = tables or str(Path(folder) / "tables")
-    start = time.perf_counter()
-    done = subprocess.run(
-        [sys.executable, "-c", HIDDEN + "\n" + code],
-        check=True,
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
-    return time.perf_counter() - start, [float(word) for word in done.stdout.split()]
-
-
-def rows() -> Iterator[Row]:
-    """Measure processes, the interpreter's own start included."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from first_answers(Path(folder))
-        run(NEW_LAW, folder)
-        firsts, builds = [], []
-        for n in range(3):
-            first, build = run(NEW_LAW, folder, str(Path(folder) / f"tables-{n}"))[1]
-            firsts.append(first)
-            builds.append(build)
-        yield Row(
-            "a new law's first answer", min(firsts), "s", 2, note="jackson_green: 22 s in 0.1"
-        )
-        yield Row("table of a new law", min(builds), "s", 0.2, note="with its certificate")
-        run(ATTACH, folder)
-        attach = min(run(ATTACH, folder)[1][0] for _ in range(5))
-        yield Row("LAMMPS: model, attach, first step", attach, "s", 1, note="9 s in 0.1")
+    command = [sys.executable, "-c", HIDDEN + code]
+    done = subprocess.run(command, check=True, env=environment, capture_output=True, text=True)
+    return [float(word) for word in done.stdout.split()]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
+from typing import Any
 from unittest import mock
 
 import pymunk
@@ -12,10 +12,9 @@ import contactlaw as cl
 from contactlaw.engines import pymunk as adapter
 from dem_demo.rain import nozzles
 from dem_demo.rain.engine import Rain
-from dem_demo.rain.scene import Scene
-from validation.bench.row import Row
+from validation.bench.row import Row, in_turns
 
-BEADS, COR, REPEAT = 1000, 0.9, 2
+BEADS, COR = 1000, 0.9
 DURATION = 0.6  # [s]; beads enter in the first third, all have hit a plate by the end
 
 
@@ -47,30 +46,24 @@ class _Elasticities:
 
 
 def rows() -> Iterator[Row]:
-    """Measure the same rain with the model, with one COR, and with pymunk alone, in turn."""
+    """Measure the same rain with the model, with one COR, and with pymunk alone."""
     pair = cl.Pair("gamma-alumina", "glass")
-    scene = nozzles.rain(beads=BEADS, duration=DURATION)
-    constant = _Constant(pair)
-    times: dict[str, list[float]] = {"model": [], "adapter": [], "plain": []}
-    for _ in range(REPEAT):
-        times["model"].append(_run(scene, cl.ImpactModel(pair, law="myc")))
-        times["adapter"].append(_run(scene, constant))
+    scene, constant = nozzles.rain(beads=BEADS, duration=DURATION), _Constant(pair)
+
+    def run(model: Any) -> None:
+        rain = Rain(scene, model)
+        for _ in range(scene.frames):
+            rain.advance()
+
+    def plain() -> None:
         with mock.patch.object(adapter, "attach", _Elasticities):
-            times["plain"].append(_run(scene, constant))
-    least = {name: min(values) for name, values in times.items()}
-    yield Row(
-        f"rain, {BEADS} beads, over one COR", least["model"] / least["adapter"], "x", 1.25,
-        note=f"{least['model']:.2f} s; with one COR {least['adapter']:.2f} s",
-    )  # fmt: skip
-    yield Row(
-        "the same over pymunk alone", least["model"] / least["plain"], "x",
-        note=f"{least['plain']:.2f} s: no adapter, so no records and no look-ahead either",
-    )  # fmt: skip
+            run(constant)
 
-
-def _run(scene: Scene, model: cl.ImpactModel | _Constant) -> float:
-    rain = Rain(scene, model)  # type: ignore[arg-type]
-    start = time.perf_counter()
-    for _ in range(scene.frames):
-        rain.advance()
-    return time.perf_counter() - start
+    model = cl.ImpactModel(pair, law="myc")
+    tasks = {"model": lambda: run(model), "adapter": lambda: run(constant), "plain": plain}
+    least = {name: float(taken.min()) for name, taken in in_turns(tasks, 2).items()}
+    for peer, target in (("adapter", 1.25), ("plain", None)):
+        yield Row(
+            f"rain, {BEADS} beads, over one COR, {peer}", least["model"] / least[peer], "x", target,
+            note=f"{least['model']:.2f} s; with one COR {least[peer]:.2f} s",
+        )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A row of the benchmark's output, and how times are taken."""
+"""A row of the benchmark's output, and the one way to take times."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass
@@ -31,16 +34,39 @@ class Row:
         fast = self.target is None or self.measured <= self.target
         return fast and (self.least_ratio is None or (self.ratio or 0.0) >= self.least_ratio)
 
+    def __str__(self) -> str:
+        """Put the row in the columns that `validation.bench` prints."""
+        target = "-" if self.target is None else f"{self.target:g}"
+        ratio = "" if self.ratio is None else f"{self.peer}: {self.ratio:.3g}x"
+        if self.least_ratio is not None:
+            ratio += f" (target {self.least_ratio:g}x)"
+        verdict = "" if self.met else "NOT MET  "
+        line = f"{self.name:34s} {self.measured:9.3g} {self.unit:2s} {target:>8s}  {ratio}"
+        return f"{line}  {verdict}{self.note}".rstrip()
 
-def seconds(function: Callable[[], object], repeat: int = 7) -> float:
-    """Least time of some calls after a first one, which may compile [s]."""
-    function()
-    times = []
-    for _ in range(repeat):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return min(times)
+
+def in_turns(
+    tasks: Mapping[str, Callable[[], object]],
+    rounds: int = 7,
+    clock: Callable[[], float] = time.perf_counter,
+) -> dict[str, NDArray[np.float64]]:
+    """Take the times of each task in every round [s], after a first one, which may compile.
+
+    They take turns, so that all see the same noise of the machine.
+    """
+    times: dict[str, list[float]] = {name: [] for name in tasks}
+    for turn in range(rounds + 1):
+        for name, task in tasks.items():
+            start = clock()
+            task()
+            if turn > 0:
+                times[name].append(clock() - start)
+    return {name: np.array(taken) for name, taken in times.items()}
+
+
+def seconds(task: Callable[[], object], rounds: int = 7) -> float:
+    """Least time of some calls after a first one [s]."""
+    return float(in_turns({"": task}, rounds)[""].min())
 
 
 def per_call(function: Callable[[], object], calls: int = 20_000) -> float:
@@ -50,22 +76,7 @@ def per_call(function: Callable[[], object], calls: int = 20_000) -> float:
         for _ in range(calls):
             function()
 
-    return seconds(loop, repeat=5) / calls
-
-
-def in_turns(simulations: dict[str, Any], steps: int, rounds: int) -> dict[str, list[float]]:
-    """Time of a step of each LAMMPS in every round [us]; they take turns, to see the same noise."""
-    from mpi4py import MPI
-
-    times: dict[str, list[float]] = {name: [] for name in simulations}
-    for _ in range(rounds):
-        for name, lmp in simulations.items():
-            MPI.COMM_WORLD.Barrier()
-            start = time.perf_counter()
-            lmp.command(f"run {steps} pre no post no")
-            MPI.COMM_WORLD.Barrier()
-            times[name].append((time.perf_counter() - start) / steps * 1e6)
-    return times
+    return seconds(loop, 5) / calls
 
 
 def on_ranks(module: str, ranks: int, *arguments: object) -> Any:

@@ -20,8 +20,7 @@ _CLOSE = 1e-5  # error of COR by the table, also as docs/c.md says
 def faults(count: int, seed: int) -> Iterator[str]:
     """Write the headers of that many pairs."""
     pairs = list(itertools.product(cl.materials(), repeat=2))
-    chosen = np.random.default_rng(seed).permutation(len(pairs))[:count]
-    for n in chosen:
+    for n in np.random.default_rng(seed).permutation(len(pairs))[:count]:
         yield from of_pair(*pairs[n])
 
 
