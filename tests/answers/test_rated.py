@@ -45,7 +45,7 @@ def model(name, **options):
 
 
 def factors(name, speed, radius):
-    return rate.factors(rate.rated(PAIRS[name], model(name).force_law), speed, radius)
+    return rate.factors(rate.flow_with_rate(PAIRS[name], model(name).force_law), speed, radius)
 
 
 @functools.cache
@@ -163,7 +163,7 @@ def test_beads(other):
     """The rate goes with the reduced radius."""
     v, r, o = 3.0, R, 3.0 * R
     beads = cl.Pair(COPPER, other or COPPER)
-    flow = rate.rated(beads, model("sphere").force_law)
+    flow = rate.flow_with_rate(beads, model("sphere").force_law)
     pair = rate.strengthened(beads, float(rate.factors(flow, v, r * o / (r + o))))
     alone = cl.ImpactModel(pair).lookup_sphere_sphere(v, r, o, pair.plate)
     found = model("sphere").lookup_sphere_sphere(v, r, o, other)

@@ -18,7 +18,7 @@ GLASS = cl.Material("glass", 73e9, 0.21, 2500)
 
 
 def flow_of(pair):
-    return rate.rated(pair, law_of(pair, "fem"))
+    return rate.flow_with_rate(pair, law_of(pair, "fem"))
 
 
 @pytest.mark.parametrize(("slope", "rate0"), [(0.06, 1.0), (0.06, 1e3), (1e-9, 1e9), (0.3, 1e-3)])

@@ -72,7 +72,7 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
     v, r = (np.exp(rng.uniform(*np.log(ends), 8)) for ends in ((0.05, 60.0), (5e-6, 5e-3)))
     v[0], r[0] = 1e-4, 1e-2
     found = model.solve(v, r, 2.0 * r)
-    factors = rate.factors(rate.rated(pair, model.force_law), v, r)
+    factors = rate.factors(rate.flow_with_rate(pair, model.force_law), v, r)
     for n, factor in enumerate(factors.tolist()):
         exact = cl.ImpactModel(rate.strengthened(pair, factor)).solve(v[n], r[n], 2.0 * r[n])
         assert found.restitution[n] == pytest.approx(exact.restitution, abs=2e-6)
