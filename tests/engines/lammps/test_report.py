@@ -94,7 +94,10 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     corners, triangles = square(1, 25.0)
     trimesh.Trimesh(corners, triangles, process=False).export(tmp_path / "other.stl")
     assert main([*command, "--mesh", str(tmp_path / "other.stl"), "--scale", "1mm"]) == 1
-    assert "which the record has hits on: it is not the mesh of wall 0" in capsys.readouterr().err
+    assert (
+        "not the mesh of wall 0: it has no triangle 4, which the record has hits on"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_report_that_fails_on_rank_0_is_an_error(model, tmp_path):
