@@ -52,9 +52,12 @@ def kernel(
         # users may pass to C need a C function.
         inner = not (cache or entry or switched_off())
         options: dict[str, Any] = {
-            "error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "forceinline": inline,
+            "error_model": "numpy",
+            "nogil": True,
+            "fastmath": {"contract"},
+            "forceinline": inline,
             "no_cfunc_wrapper": cache or inner,
-        }  # fmt: skip
+        }
         if inner:
             options |= {"nopython": True, "no_cpython_wrapper": True}
             return Inner(python, targetoptions=options, pipeline_class=InnerCompiler)  # type: ignore[return-value]
@@ -102,9 +105,7 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
         If numba is switched off.
     """
     if switched_off():
-        raise RuntimeError(
-            "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
-        )
+        raise RuntimeError("numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler")
     made: Any = CFunc(function, normalize_signature(signature), {}, {"error_model": "numpy"})
     if cache:
         keep(made)

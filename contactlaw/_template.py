@@ -14,9 +14,13 @@ def _read(path: str) -> str:
 
 
 _PAGES = jinja2.Environment(
-    loader=jinja2.FunctionLoader(_read), undefined=jinja2.StrictUndefined, autoescape=True,
-    trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
-)  # fmt: skip
+    loader=jinja2.FunctionLoader(_read),
+    undefined=jinja2.StrictUndefined,
+    autoescape=True,
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+)
 
 
 def template(package: str, name: str) -> jinja2.Template:

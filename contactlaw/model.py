@@ -80,9 +80,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     """
 
     def __init__(
-        self, pair: Pair, law: str | Law = DEFAULT, table: TableArgument = None,
-        outside: Outside = "raise",
-    ) -> None:  # fmt: skip
+        self, pair: Pair, law: str | Law = DEFAULT, table: TableArgument = None, outside: Outside = "raise"
+    ) -> None:
         if not isinstance(pair, Pair):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         self._border = Border(outside)
@@ -147,10 +146,15 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             self._border.clamped = count
 
     def restitution(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-    ) -> float | NDArray[np.float64]:  # fmt: skip
+    ) -> float | NDArray[np.float64]:
         """Coefficient of restitution, from the table.
 
         Parameters
@@ -194,9 +198,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         array([0.592, 0.714])
         """
         if mass is not None or edge != "free" or not edge_distance is hole_radius is math.inf:
-            impacts = self._bodies.given(
-                speed, radius, thickness, edge, edge_distance, hole_radius, mass
-            )
+            impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
             if impacts.edge_distance is not None:
                 by = with_edges(self._tabulated, Solver(self._bodies), impacts)
                 return by.rebounds(impacts).restitution
@@ -211,10 +213,15 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return shaped(self._tabulated.restitutions(impacts), impacts.shape)
 
     def lookup(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-    ) -> Rebound:  # fmt: skip
+    ) -> Rebound:
         """Everything about the impact, from the table.
 
         Parameters
@@ -238,16 +245,20 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        impacts = self._bodies.given(
-            speed, radius, thickness, edge, edge_distance, hole_radius, mass
-        )
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
         return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
-        edge: Edge = "free", edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        rtol: float = 1e-10,
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-    ) -> Rebound:  # fmt: skip
+    ) -> Rebound:
         """Everything about the impact, by integrating the equation: the reference.
 
         Parameters
@@ -278,9 +289,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> abs(1 - hit.restitution**2 - lost) < 1e-9
         True
         """
-        impacts = self._bodies.given(
-            speed, radius, thickness, edge, edge_distance, hole_radius, mass
-        )
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
         by = Solver.within(self._bodies, rtol)
         return with_edges(by, by, impacts).rebounds(impacts)
 
@@ -337,9 +346,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return shaped(self._tabulated.yield_speeds(impacts), impacts.shape)
 
     def sensitivity(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike,
-        mass: ArrayLike | None = None,
-    ) -> Sensitivity:  # fmt: skip
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None
+    ) -> Sensitivity:
         """How much the COR moves with each input: elasticities d ln e/d ln x.
 
         Parameters
@@ -363,12 +371,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
 
     def constant(
-        self,
-        speed: ArrayLike,
-        radius: ArrayLike,
-        thickness: ArrayLike,
-        keep: Keep = "energy",
-        weights: ArrayLike = 1.0,
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, keep: Keep = "energy", weights: ArrayLike = 1.0
     ) -> Constant:
         """One COR in place of those of many impacts, for engines that take nothing else.
 
@@ -408,12 +411,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return constant(v, r, w, e, flags, keep)
 
     def speed_table(
-        self,
-        radius: float,
-        thickness: float,
-        error: float = 1e-3,
-        slowest: float = 0.1,
-        fastest: float = 10.0,
+        self, radius: float, thickness: float, error: float = 1e-3, slowest: float = 0.1, fastest: float = 10.0
     ) -> SpeedTable:
         """COR over speed in the fewest rows, for engines that interpolate in a table.
 

@@ -47,14 +47,9 @@ MASS = _quantity("mass", "kg 1, g 1e-3, mg 1e-6, ug 1e-9")
 STRESS = _quantity("stress", "Pa 1, kPa 1000, MPa 1e6, GPa 1e9, N/mm2 1e6")
 DENSITY = _quantity("density", "kg/m3 1, g/m3 1e-3, g/cm3 1000")
 SHARE = _quantity("share", "- 1, 1 1, % 0.01")
-ANGLE = Quantity(
-    "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)}
-)
+ANGLE = Quantity("angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)})
 FRICTION = SHARE._replace(name="coefficient of friction")
-SPIN = Quantity(
-    "spin",
-    {"rad/s": Decimal(1), "rpm": Decimal(math.pi) / 30, "deg/s": Decimal(math.pi) / 180},
-)
+SPIN = Quantity("spin", {"rad/s": Decimal(1), "rpm": Decimal(math.pi) / 30, "deg/s": Decimal(math.pi) / 180})
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
 
@@ -105,8 +100,7 @@ def _ends(item: str) -> list[str]:
         return parts
     if len(parts) != 3 or not _COUNT.fullmatch(parts[2]):
         raise ValueError(
-            f"got {item!r}; a range is start:stop:count, as 0.1:10:50, or 0.1:10:50log for "
-            "logarithmic steps"
+            f"got {item!r}; a range is start:stop:count, as 0.1:10:50, or 0.1:10:50log for logarithmic steps"
         )
     return parts[:2]
 
@@ -114,9 +108,7 @@ def _ends(item: str) -> list[str]:
 def _item(text: str, quantity: Quantity) -> _Item:
     match = _NUMBER.fullmatch(text)
     if not match:
-        raise ValueError(
-            f"got {text!r}, expected a {quantity.name} such as 0.5 or 0.5{list(quantity.units)[2]}"
-        )
+        raise ValueError(f"got {text!r}, expected a {quantity.name} such as 0.5 or 0.5{list(quantity.units)[2]}")
     unit = (match["unit"] or "").translate(_MICRO)
     if unit and unit not in quantity.units:
         *others, last = quantity.units

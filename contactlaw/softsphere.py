@@ -28,12 +28,7 @@ from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import (
-    FRICTION,
-    check_friction,
-    clear_friction,
-    tangential_force,
-)
+from contactlaw.stepping.friction import FRICTION, check_friction, clear_friction, tangential_force
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
@@ -45,17 +40,7 @@ from contactlaw.stepping.spring import (
     unit_spring,
 )
 
-__all__ = [
-    "PARTED",
-    "Contacts",
-    "Spring",
-    "State",
-    "advance",
-    "law_of",
-    "resized",
-    "time_step",
-    "unit_spring",
-]
+__all__ = ["PARTED", "Contacts", "Spring", "State", "advance", "law_of", "resized", "time_step", "unit_spring"]
 
 Array = NDArray[np.float64]
 
@@ -107,9 +92,19 @@ def _near_at(near: EdgeEcho | None, n: int) -> EdgeEcho | None:
 
 @kernel(cache=True)
 def _slide_all(
-    law: Array, kappa: float, springs: Spring, states: State, rows: Any, deepest: Array,
-    friction: float, overlap: Array, normal: Array, velocity: Array, step: float, force: Array,
-) -> None:  # fmt: skip
+    law: Array,
+    kappa: float,
+    springs: Spring,
+    states: State,
+    rows: Any,
+    deepest: Array,
+    friction: float,
+    overlap: Array,
+    normal: Array,
+    velocity: Array,
+    step: float,
+    force: Array,
+) -> None:
     """Friction of arrays of contacts; `deepest` is their largest compression in the last step."""
     for n in range(overlap.size):
         state, out = _state_at(states, n), (0.0, 0.0, 0.0)
@@ -120,9 +115,21 @@ def _slide_all(
             slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
             spring = _spring_at(springs, n)
             out = tangential_force(
-                rows[n], friction, kappa, law, spring, state, deepest[n], overlap[n], -up, at,
-                slip, step, 0.0, room_for(law),
-            )  # fmt: skip
+                rows[n],
+                friction,
+                kappa,
+                law,
+                spring,
+                state,
+                deepest[n],
+                overlap[n],
+                -up,
+                at,
+                slip,
+                step,
+                0.0,
+                room_for(law),
+            )
         else:
             clear_friction(rows[n])
         force[n, 0], force[n, 1], force[n, 2] = out
@@ -131,9 +138,8 @@ def _slide_all(
 
 @kernel(cache=True)
 def _advance_all(
-    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float,
-    near: EdgeEcho | None,
-) -> int:  # fmt: skip
+    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float, near: EdgeEcho | None
+) -> int:
     """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
 
     The deepest possible overlap is measured from where the plate is: its displacement is added.
@@ -208,10 +214,15 @@ class Contacts:
     """
 
     def __init__(
-        self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        self,
+        model: ImpactModel,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
@@ -295,9 +306,7 @@ class Contacts:
             longest = f"{self._longest:.3g} s, far longer than any contact"
             remedy = "contactlaw.softsphere.time_step advises one"
             raise ArgumentError("step", step, f"must be positive and at most {longest}; {remedy}")
-        wrong = _advance_all(
-            self._law, self._springs, self._states, self._diameters, overlap, step, self._near
-        )
+        wrong = _advance_all(self._law, self._springs, self._states, self._diameters, overlap, step, self._near)
         if wrong >= 0:
             self._refuse(overlap[wrong], wrong)
         self._overlap[:], self._step = overlap, step
@@ -330,13 +339,22 @@ class Contacts:
         check_friction(friction)
         shape = self._sliding.shape
         normals, velocities = (
-            np.ascontiguousarray(np.broadcast_to(one, shape), np.float64)
-            for one in (normal, velocity)
+            np.ascontiguousarray(np.broadcast_to(one, shape), np.float64) for one in (normal, velocity)
         )
         _slide_all(
-            self._law, self._tangential, self._springs, self._states, self._rows, self._deepest,
-            float(friction), self._overlap, normals, velocities, self._step, self._sliding,
-        )  # fmt: skip
+            self._law,
+            self._tangential,
+            self._springs,
+            self._states,
+            self._rows,
+            self._deepest,
+            float(friction),
+            self._overlap,
+            normals,
+            velocities,
+            self._step,
+            self._sliding,
+        )
         for n in np.flatnonzero(~np.isfinite(self._sliding.sum(axis=1))):
             reason = f"no finite friction at {velocities[n]} m/s, {self._pair}"
             raise ArgumentError("velocity", None, reason)
@@ -356,9 +374,8 @@ class Contacts:
 
 
 def time_step(
-    model: ImpactModel, speed: float, radius: float, thickness: float, error: float = 5e-4,
-    mass: float | None = None,
-) -> float:  # fmt: skip
+    model: ImpactModel, speed: float, radius: float, thickness: float, error: float = 5e-4, mass: float | None = None
+) -> float:
     """Step with which velocity Verlet meets a wanted error of the COR.
 
     Parameters

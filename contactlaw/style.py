@@ -79,19 +79,11 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     below = 0.22 + 0.28 * len(head)
     room = below + 0.02 + 0.2 * len(lines)
     layout = ConstrainedLayoutEngine(
-        rect=(
-            _MARGIN / width,
-            _MARGIN / height,
-            1.0 - 2.0 * _MARGIN / width,
-            1.0 - (room + _MARGIN) / height,
-        )
+        rect=(_MARGIN / width, _MARGIN / height, 1.0 - 2.0 * _MARGIN / width, 1.0 - (room + _MARGIN) / height)
     )
     made = Figure(figsize=(width, height), layout=layout)
     left = 0.15 / width
-    made.text(
-        left, 1.0 - 0.15 / height, "\n".join(head),
-        fontsize=16, fontweight="bold", color=INK, va="top",
-    )  # fmt: skip
+    made.text(left, 1.0 - 0.15 / height, "\n".join(head), fontsize=16, fontweight="bold", color=INK, va="top")
     made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
     return made
 
@@ -134,9 +126,16 @@ def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
     from matplotlib.collections import EllipseCollection
 
     made = EllipseCollection(
-        [], [], [], units="xy", offsets=np.empty((0, 2)), offset_transform=axes.transData,
-        cmap=colormaps["viridis"].with_extremes(bad=missing), zorder=3, **options,
-    )  # fmt: skip
+        [],
+        [],
+        [],
+        units="xy",
+        offsets=np.empty((0, 2)),
+        offset_transform=axes.transData,
+        cmap=colormaps["viridis"].with_extremes(bad=missing),
+        zorder=3,
+        **options,
+    )
     axes.add_collection(made)
     return made
 

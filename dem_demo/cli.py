@@ -61,9 +61,7 @@ def scenes() -> list[str]:
 
 def parser() -> argparse.ArgumentParser:
     """Make the parser of ``dem-demo``."""
-    made = Parser(
-        prog="dem-demo", description="Simulations that show what contactlaw gives an engine."
-    )
+    made = Parser(prog="dem-demo", description="Simulations that show what contactlaw gives an engine.")
     commands = made.add_subparsers(required=True, metavar="COMMAND")
     for name in scenes():
         importlib.import_module(f"dem_demo.{name}.command").add(commands)

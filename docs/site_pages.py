@@ -42,8 +42,7 @@ def on_config(config):
     for entry in config.nav:
         if "Reference" in entry:
             entry["Reference"] = [
-                {"Commands": page} if "commands" in page else {Path(page).stem: page}
-                for page in pages
+                {"Commands": page} if "commands" in page else {Path(page).stem: page} for page in pages
             ]
     return config
 

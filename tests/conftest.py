@@ -24,9 +24,7 @@ if hasattr(signal, "SIGHUP"):
 import pytest  # noqa: E402
 
 # A check that several tests share says what it compared, as those in the tests do.
-pytest.register_assert_rewrite(
-    *(path.stem for path in (Path(__file__).parent / "shared").glob("*.py"))
-)
+pytest.register_assert_rewrite(*(path.stem for path in (Path(__file__).parent / "shared").glob("*.py")))
 
 from browser import CHROMIUM, browser  # noqa: E402
 

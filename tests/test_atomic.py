@@ -53,8 +53,7 @@ def test_a_link_stays_and_what_it_leads_to_is_written(there, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("target", "reason"),
-    [("folder", "Is a directory"), ("no/such/file", "no such folder"), ("x", "Too many levels")],
+    ("target", "reason"), [("folder", "Is a directory"), ("no/such/file", "no such folder"), ("x", "Too many levels")]
 )
 def test_links_to_no_file_are_refused(target, reason, tmp_path):
     (tmp_path / "folder").mkdir()
@@ -111,10 +110,7 @@ def test_a_folder_is_replaced_as_a_whole_or_not_at_all(blocked, tmp_path, monkey
 
 def test_a_folder_in_the_way_of_a_file_is_named(tmp_path, capsys):
     (tmp_path / "out" / "wall.h").mkdir(parents=True)
-    with (
-        pytest.raises(IsADirectoryError, match="out/wall.h"),
-        _atomic.folder(tmp_path / "out") as made,
-    ):
+    with pytest.raises(IsADirectoryError, match="out/wall.h"), _atomic.folder(tmp_path / "out") as made:
         (made / "a.h").write_text("after")
         (made / "wall.h").write_text("after")
     assert names(tmp_path) == ["out"] and names(tmp_path / "out") == ["wall.h"]

@@ -20,8 +20,9 @@ def restitution(beta):
         return force(*s) if t > 0.01 else 1.0
 
     parted.terminal, parted.direction = True, -1
-    run = solve_ivp(lambda t, s: (s[1], -force(*s)), (0, 1e3), (0.0, 1.0), events=parted,
-                    method="DOP853", rtol=1e-11, atol=1e-14)  # fmt: skip
+    run = solve_ivp(
+        lambda t, s: (s[1], -force(*s)), (0, 1e3), (0.0, 1.0), events=parted, method="DOP853", rtol=1e-11, atol=1e-14
+    )
     return -run.y[1, -1]
 
 
@@ -32,8 +33,7 @@ def test_yades_contact_has_the_cor_that_was_asked_for(e):
 
 def thornton(e):
     """Damping of YADE 2023.02a from ``en``: Thornton, Cummins, Cleary 2013, Eqs. B6 and B7."""
-    h = (-6.918798, -16.41105, 146.8049, -796.4559, 2928.711, -7206.864, 11494.29, -11342.18,
-         6276.757, -1489.915)  # fmt: skip
+    h = (-6.918798, -16.41105, 146.8049, -796.4559, 2928.711, -7206.864, 11494.29, -11342.18, 6276.757, -1489.915)
     alpha = sum(c * e ** (n + 1) for n, c in enumerate(h))
     return math.sqrt(1 / (1 - (1 + e) ** 2 * math.exp(alpha)) - 1)
 

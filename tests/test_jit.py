@@ -52,9 +52,7 @@ def answers(**oblique):
         "sliding": model.oblique(2.0, 1.0, 1e-3, 3e-3, 0.2, **oblique).sliding_speed,
         "collide": model.collide([[1.0, 0, -2.0], [1.0, 0, 2]], 0, [0, 0, 1], 1e-3, 3e-3, 0.2)[0],
         "outside, from the kernel": int(math.isnan(model.kernel(1e4, 0.9e-3, 1e-3))),
-        "steps": [
-            contacts.advance(np.array([depth]), 1e-7)[0] for depth in (1e-6, 5e-6, 9e-6, 5e-6)
-        ],
+        "steps": [contacts.advance(np.array([depth]), 1e-7)[0] for depth in (1e-6, 5e-6, 9e-6, 5e-6)],
     }
     return {name: np.ravel(value).tolist() for name, value in found.items()}
 
@@ -70,9 +68,13 @@ def run(code, tmp_path, stderr=subprocess.PIPE, **variables):
         "NUMBA_CACHE_DIR": "",
     }
     done = subprocess.run(
-        [sys.executable, "-c", code], env=os.environ | home | variables, timeout=200,
-        stdout=subprocess.PIPE, stderr=stderr, text=True,
-    )  # fmt: skip
+        [sys.executable, "-c", code],
+        env=os.environ | home | variables,
+        timeout=200,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -141,9 +143,7 @@ def twice(tmp_path, monkeypatch):
     ],
     ids=["a folder that cannot be made", "no home", "a full disk", "switched off"],
 )
-def test_without_a_folder_there_is_an_answer_and_at_most_one_warning(
-    change, given, warnings, twice, tmp_path
-):
+def test_without_a_folder_there_is_an_answer_and_at_most_one_warning(change, given, warnings, twice, tmp_path):
     def said():
         os.environ.update(given)
         change()
@@ -221,8 +221,7 @@ def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_pat
     folder = {"CONTACTLAW_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": str(tmp_path)}
     calls = "t.first(0.1)", "t.second(0.1)", "t.first(0.1), t.second(0.1)"
     one, other, both = (
-        [*map(float, run(f"import twins as t; print({call})", tmp_path, **folder).split())]
-        for call in calls
+        [*map(float, run(f"import twins as t; print({call})", tmp_path, **folder).split())] for call in calls
     )
     assert one[0] == -other[0] and both == one + other
 
@@ -327,9 +326,12 @@ def test_a_second_process_compiles_nothing(given, tmp_path):
     nothing = [[0, []]] * len(given)
     for _ in range(2):
         done = subprocess.run(
-            [sys.executable, "-c", COUNTED], input=json.dumps(words),
-            cwd=ROOT / "docs/examples", capture_output=True, text=True,
-        )  # fmt: skip
+            [sys.executable, "-c", COUNTED],
+            input=json.dumps(words),
+            cwd=ROOT / "docs/examples",
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode == 0, done.stderr
         if (found := json.loads(done.stdout.splitlines()[-1])) == nothing:
             break

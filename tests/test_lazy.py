@@ -54,9 +54,14 @@ def test_only_what_looks_up_leaves_a_table(tables, ask, tmp_path, monkeypatch):
 
 def test_the_largest_inelasticity_is_that_of_the_table():
     elastic = Law.of(
-        name="elastic", source="s", yield_coefficient=None, unloading=[], scale=1.0,
-        loading=[Loading(0.0, np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0]))], range=(0.01, 0.2),
-    )  # fmt: skip
+        name="elastic",
+        source="s",
+        yield_coefficient=None,
+        unloading=[],
+        scale=1.0,
+        loading=[Loading(0.0, np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0]))],
+        range=(0.01, 0.2),
+    )
     for law in ("fem", "hertz", elastic):
         model = cl.ImpactModel(STEEL_ON_GLASS, law=law)
         assert model.largest_inelasticity == pytest.approx(lam_max(model.table.packed), rel=1e-12)
@@ -81,8 +86,10 @@ def test_a_warning_about_the_table_shows_the_users_line(pair):
     model = cl.ImpactModel(pair, law="myc", table=coarse)  # the table is made on first use
     with pytest.warns(UserWarning, match="less accurate") as caught:
         model.restitution(5.0, 1e-3, 1e-3)
-        exec("cl.ImpactModel(pair, law='myc', table=table).lookup(5.0, 1e-3, 1e-3)",  # no __name__
-             {"cl": cl, "pair": pair, "table": coarse})  # fmt: skip
+        exec(
+            "cl.ImpactModel(pair, law='myc', table=table).lookup(5.0, 1e-3, 1e-3)",  # no __name__
+            {"cl": cl, "pair": pair, "table": coarse},
+        )
     assert [one.filename for one in caught] == [__file__, "<string>"]
 
 

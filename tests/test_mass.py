@@ -23,9 +23,7 @@ AT = SPEED, RADIUS, THICKNESS
 
 def of_mass(law):
     """The same bead: of a material with a mass of its own, and of a heavier material."""
-    return cl.ImpactModel(cl.Pair(ALUMINA, "glass"), law), cl.ImpactModel(
-        cl.Pair(HEAVY, "glass"), law
-    )
+    return cl.ImpactModel(cl.Pair(ALUMINA, "glass"), law), cl.ImpactModel(cl.Pair(HEAVY, "glass"), law)
 
 
 def assert_alike(one, other, rel):
@@ -41,8 +39,7 @@ def test_it_is_as_a_sphere_of_another_density(law):
     assert_alike(own.lookup(*AT, mass=MASS), heavy.lookup(*AT), 1e-6)
     assert own.restitution(*AT, mass=MASS) == pytest.approx(heavy.restitution(*AT), rel=1e-6)
     near = {"edge": "clamped", "edge_distance": 1e-3}
-    assert_alike(own.solve(2.0, RADIUS, 1e-3, **near, mass=MASS),
-                 heavy.solve(2.0, RADIUS, 1e-3, **near), 1e-9)  # fmt: skip
+    assert_alike(own.solve(2.0, RADIUS, 1e-3, **near, mass=MASS), heavy.solve(2.0, RADIUS, 1e-3, **near), 1e-9)
     yields = own.yield_speed(RADIUS, THICKNESS, MASS)
     assert yields == pytest.approx(heavy.yield_speed(RADIUS, THICKNESS), rel=1e-6)
     angled = 3.0, [0.3, 2.0], RADIUS, 2e-3, 0.2, "solve"
@@ -100,9 +97,7 @@ def test_the_equation_in_si_units(share):
     pair, speed, thickness = cl.Pair(ALUMINA, "glass"), 3.0, 0.8e-3
     mass, plate = share * 4 / 3 * math.pi * ALUMINA.density * RADIUS**3, pair.plate
     spring = 4 / 3 * pair.effective_modulus * math.sqrt(RADIUS)
-    mobility = math.sqrt(3 * plate.density / plate.plane_modulus) / (
-        4 * plate.density * thickness**2
-    )
+    mobility = math.sqrt(3 * plate.density / plate.plane_modulus) / (4 * plate.density * thickness**2)
 
     def rates(_, state):
         force = spring * max(state[0], 0.0) ** 1.5
@@ -112,8 +107,7 @@ def test_the_equation_in_si_units(share):
         return state[0] + 1e-14
 
     apart.terminal, apart.direction = True, -1
-    path = solve_ivp(rates, (0.0, 1e-3), [0.0, speed], rtol=1e-11, atol=1e-15, events=apart,
-                     max_step=1e-6)  # fmt: skip
+    path = solve_ivp(rates, (0.0, 1e-3), [0.0, speed], rtol=1e-11, atol=1e-15, events=apart, max_step=1e-6)
     hit = cl.ImpactModel(pair, "hertz").solve(speed, RADIUS, thickness, mass=mass)
     assert hit.restitution == pytest.approx(-path.y[1, -1] / speed, rel=1e-5)
     assert hit.contact_time == pytest.approx(path.t[-1], rel=1e-5)

@@ -39,8 +39,7 @@ NOT_POSITIVE += [np.ma.masked_array([5.0, 6.0], mask=[0, 1])]
 @pytest.fixture(scope="module")
 def small_table():
     return table.build(
-        laws.law("myc"),
-        table.Settings(largest_inelasticity=1.0, largest_overload=5.0, inelasticity_nodes=41),
+        laws.law("myc"), table.Settings(largest_inelasticity=1.0, largest_overload=5.0, inelasticity_nodes=41)
     )
 
 
@@ -103,9 +102,15 @@ def test_strided_input_is_taken_as_it_reads(model):
 @pytest.mark.parametrize("method", ["restitution", "lookup", "solve"])
 @pytest.mark.parametrize(
     ("name", "bad"),
-    [("speed", 1e6), ("speed", math.inf), ("radius", 1e6), ("radius", math.inf),
-     ("radius", 1e-12), ("thickness", 1e-12)],
-)  # fmt: skip
+    [
+        ("speed", 1e6),
+        ("speed", math.inf),
+        ("radius", 1e6),
+        ("radius", math.inf),
+        ("radius", 1e-12),
+        ("thickness", 1e-12),
+    ],
+)
 def test_huge_and_tiny_numbers_are_refused(model, method, name, bad):
     good = {"speed": 5.0, "radius": R, "thickness": H}
     with pytest.raises(ValueError, match=rf"^{name}: got .*must lie .*m"):

@@ -91,7 +91,7 @@ def test_a_range_has_its_ends_and_even_steps(start, stop, count, log):
         ("1e99999999999999999999", LENGTH, "too large"),
         ("٣", SPEED, "expected a speed"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused_and_how(text, quantity, message):
     with pytest.raises(ValueError, match="^got ") as refused:
         values(text, quantity)
@@ -117,8 +117,7 @@ def test_what_is_written_can_be_read(length):
 
 
 @pytest.mark.parametrize(
-    ("length", "text"),
-    [(0.9e-3, "0.9 mm"), (50e-6, "50 um"), (1.5, "1.5 m"), (math.inf, "inf"), (12e-3, "12 mm")],
+    ("length", "text"), [(0.9e-3, "0.9 mm"), (50e-6, "50 um"), (1.5, "1.5 m"), (math.inf, "inf"), (12e-3, "12 mm")]
 )
 def test_lengths_are_written_in_the_unit_that_suits_them(length, text):
     assert in_unit(length, "m") == text

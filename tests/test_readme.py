@@ -27,9 +27,15 @@ PAGES = {name: path.read_text() for name, path in PATHS.items()}
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 # How many lines of a page state numbers, which are compared.
 STATED = {
-    "README": 5, "angles_and_edges": 10, "engines": 2, "fit": 3, "lammps": 1, "laws": 12,
-    "materials": 4, "tutorial": 3,
-}  # fmt: skip
+    "README": 5,
+    "angles_and_edges": 10,
+    "engines": 2,
+    "fit": 3,
+    "lammps": 1,
+    "laws": 12,
+    "materials": 4,
+    "tutorial": 3,
+}
 SAID = " ".join(PAGES["theory"].split())
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.py"))
 
@@ -166,10 +172,7 @@ def test_a_few_beads_run_down_the_hopper(capsys):
 
 @pytest.mark.parametrize(
     "script",
-    [
-        pytest.param(one, marks=pytest.mark.long) if one.stem == "hopper_pymunk" else one
-        for one in EXAMPLES
-    ],
+    [pytest.param(one, marks=pytest.mark.long) if one.stem == "hopper_pymunk" else one for one in EXAMPLES],
     ids=lambda path: path.stem,
 )
 def test_examples_run(script):

@@ -72,8 +72,7 @@ def test_the_relaxation_of_the_plate_moves_no_restitution(model, law):
         hit = model.solve(3.0, R, thickness)
         spring = spring_of(model, thickness)
         pair = [
-            drop(law, one, 3.0, hit.contact_time / 200, 0.5)
-            for one in (spring, spring._replace(relaxation=math.inf))
+            drop(law, one, 3.0, hit.contact_time / 200, 0.5) for one in (spring, spring._replace(relaxation=math.inf))
         ]
         assert 0.0 < abs(pair[1] - pair[0]) < 2e-5
 
@@ -92,9 +91,7 @@ def test_unloading_and_reloading_follow_one_curve(model, law):
     assert reload == pytest.approx(unload[::-1], rel=1e-12)
     unit = spring.stiffness * spring.scale**1.5
     curve = force.unloading(law, 3.0)
-    exact = [
-        unit * force.unloading_force(law, curve, math.sqrt((d - left) / spring.scale)) for d in down
-    ]
+    exact = [unit * force.unloading_force(law, curve, math.sqrt((d - left) / spring.scale)) for d in down]
     assert unload == pytest.approx(exact, rel=1e-9)
     assert forces[-1] == pytest.approx(unit * force.loading(law, math.sqrt(3.6)), rel=1e-9)
     assert last.largest_compression == pytest.approx(1.2 * top, rel=1e-12)
@@ -116,9 +113,7 @@ def test_no_force_in_the_dent_and_none_apart(model, law):
     assert advance(law, spring, inside, math.nan, 1e-8) == PARTED
 
 
-@pytest.mark.parametrize(
-    "thickness", [0.3e-3, *(pytest.param(h, marks=pytest.mark.long) for h in (1e-3, 3e-3))]
-)
+@pytest.mark.parametrize("thickness", [0.3e-3, *(pytest.param(h, marks=pytest.mark.long) for h in (1e-3, 3e-3))])
 def test_a_bead_at_rest_is_finite_and_quiet(model, law, thickness):
     spring = spring_of(model, thickness)
     weight = 9.81 * spring.mass
@@ -143,9 +138,7 @@ def test_arrays_are_the_kernel_for_each(model, law):
         ]
     assert force is contacts.force
     assert force == pytest.approx([state.force for state in states], rel=1e-12)
-    assert contacts.largest_compression == pytest.approx(
-        [state.largest_compression for state in states], rel=1e-12
-    )
+    assert contacts.largest_compression == pytest.approx([state.largest_compression for state in states], rel=1e-12)
 
 
 def test_a_bead_that_slides_is_that_of_the_integration(model):

@@ -64,9 +64,7 @@ def _write(folder: Path) -> collections.Counter[str]:
 
     drawn = []
     with style.applied():
-        for name, (part, caption, draw) in tqdm(
-            figures.drawings().items(), "validation: figures", disable=None
-        ):
+        for name, (part, caption, draw) in tqdm(figures.drawings().items(), "validation: figures", disable=None):
             figure, numbers = draw()
             numbers = {key: float(number) for key, number in numbers.items()}
             one = Picture(name, part, caption, numbers, style.png(figure))

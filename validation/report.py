@@ -30,13 +30,7 @@ from validation.typeset import typeset
 _EACH = 100  # impacts per pair in the census
 _FOLDER = Path(__file__).parent
 _DERIVATIONS = "errata", "turning_point", "fem_law", "mobility", "losses", "edges"
-_COLOURS = {
-    HOLDS: "#007A5A",
-    MISPRINT: "#B34E00",
-    LIMITED: "#8F6400",
-    FAILS: "#B34E00",
-    OPEN: "#6E6E6E",
-}
+_COLOURS = {HOLDS: "#007A5A", MISPRINT: "#B34E00", LIMITED: "#8F6400", FAILS: "#B34E00", OPEN: "#6E6E6E"}
 _SIZE = "(size)"  # stands for the size of the page until it is known
 
 
@@ -68,9 +62,7 @@ class Picture(NamedTuple):
     def alt(self) -> Markup:
         """What is drawn: the first paragraph of the caption; what it shows comes after it."""
         first = self.caption.split("\n\n")[0]
-        return Markup(
-            re.sub("<[^>]*>", "", _formula(" ".join(first.split()))).replace("'", "&#39;")
-        )
+        return Markup(re.sub("<[^>]*>", "", _formula(" ".join(first.split()))).replace("'", "&#39;"))
 
     @property
     def size(self) -> tuple[int, int]:
@@ -102,12 +94,8 @@ def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
         HTML.
     """
     pictures = tuple(pictures)
-    environment = Environment(
-        loader=FileSystemLoader(_FOLDER), autoescape=True, undefined=StrictUndefined
-    )
-    environment.filters |= {
-        "formula": _formula, "code": _code, "percent": _percent, "number": _number,
-    }  # fmt: skip
+    environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True, undefined=StrictUndefined)
+    environment.filters |= {"formula": _formula, "code": _code, "percent": _percent, "number": _number}
     text = environment.get_template("page.html").render(
         style=Markup((_FOLDER / "page.css").read_text(encoding="utf-8")),
         size=_SIZE,
@@ -176,11 +164,10 @@ def _oblique() -> Table:
         "oblique impacts, measured and by the model",
         ("quantity", "reading", "angle [°]#", "measured#", "model#", "model off#"),
         [
-            (name, f"{source}", f"{angle:.2f}", _number(value), _number(model),
-             _signed(model / value - 1.0))
+            (name, f"{source}", f"{angle:.2f}", _number(value), _number(model), _signed(model / value - 1.0))
             for name, source, angle, value, model in oblique_points()
         ],
-    )  # fmt: skip
+    )
 
 
 def _scores(title: str, found: Mapping[str, list[Score]]) -> Table:
@@ -214,36 +201,38 @@ def _misses() -> Table:
         "everyday impacts beyond a bound",
         ("everyday impact", "errors beyond a bound", "COR by finite elements#", "COR by fem#"),
         [
-            (one.what, ", ".join(f"{name} {_signed(error)}" for name, error in one.beyond.items()),
-             f"{one.fem:.3f}", f"{one.law:.3f}")
+            (
+                one.what,
+                ", ".join(f"{name} {_signed(error)}" for name, error in one.beyond.items()),
+                f"{one.fem:.3f}",
+                f"{one.law:.3f}",
+            )
             for one in trust.misses()
         ],
-    )  # fmt: skip
+    )
 
 
 def _census() -> dict[str, Any]:
     """Count what is answered and flagged."""
     found = {law: census.count(law, _EACH, tables=False) for law in trust.LAWS}
     answers = [
-        (f"`{law}`", *(_percent(share, 1) for share in
-         (one.refused, one.outside, one.inaccurate, one.damaging, one.inside)))
+        (
+            f"`{law}`",
+            *(_percent(share, 1) for share in (one.refused, one.outside, one.inaccurate, one.damaging, one.inside)),
+        )
         for law, one in found.items()
-    ]  # fmt: skip
+    ]
     flags = [
-        (f"`{flag.name}`", cl.explain(flag)[0],
-         *(_percent(one.flags.get(flag, 0.0), 1) for one in found.values()))
-        for flag in Validity if flag in Validity.ACCURACY & ~Validity.CLAMPED
-    ]  # fmt: skip
+        (f"`{flag.name}`", cl.explain(flag)[0], *(_percent(one.flags.get(flag, 0.0), 1) for one in found.values()))
+        for flag in Validity
+        if flag in Validity.ACCURACY & ~Validity.CLAMPED
+    ]
     heads = ("refused#", "outside its table#", "accuracy in doubt#", "may break or flow#")
     return {
         "impacts": found["fem"].impacts,
         "pairs": len(pairs()),
-        "answers": Table(
-            "what is answered, by law", ("law", *heads, "inside every limit#"), answers
-        ),
-        "flags": Table(
-            "flags of accuracy", ("flag", "what it says", *(f"{law}#" for law in found)), flags
-        ),
+        "answers": Table("what is answered, by law", ("law", *heads, "inside every limit#"), answers),
+        "flags": Table("flags of accuracy", ("flag", "what it says", *(f"{law}#" for law in found)), flags),
     }
 
 

@@ -20,10 +20,7 @@ def _letter(found: re.Match[str]) -> str:
 # In this order: an index or a power ends the word that may be a letter's name.
 _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\^(?:\(([^()]*)\)|([-\d.]*\d))", r"<sup>\1\2</sup>"),  # v^(4/5), w^-1.5
-    (
-        r"(?<![A-Za-z_])([A-Za-z]|sigma|lambda|delta)_([A-Za-z]+0?|\d)(?![A-Za-z_])",
-        r"\1<sub>\2</sub>",
-    ),
+    (r"(?<![A-Za-z_])([A-Za-z]|sigma|lambda|delta)_([A-Za-z]+0?|\d)(?![A-Za-z_])", r"\1<sub>\2</sub>"),
     (r"\b(rho|nu|V|E|G|x|c)([0-3])(?![\d.])", r"\1<sub>\2</sub>"),  # rho2, E1', V0
     (rf"(?<![A-Za-z_.])(d?)({_GREEK})(?=[0-9_^<& ,.;:)(/*+='-]|$)", _letter),  # and dtau
     (r"\b[a-z]{2,}(?:[._][a-z]{2,})*_[a-z]{2,}(?:[._][a-z]{2,})*\b", r"<code>\g<0></code>"),

@@ -44,9 +44,13 @@ class Beads:
     """
 
     def __init__(
-        self, sphere: Material | str, other: Material | str, law: str | Law, border: Border,
+        self,
+        sphere: Material | str,
+        other: Material | str,
+        law: str | Law,
+        border: Border,
         plates: TableLookup | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         pair = Pair(sphere, other)
         weak, strong = (one.strength or math.inf for one in (pair.plate, pair.sphere))
         self._swapped = weak < strong
@@ -65,15 +69,11 @@ class Beads:
         """Everything about impacts; radii [m] in the order in which the materials were given."""
         return self._bulk.rebounds(self._impacts(speed, radius, other_radius))
 
-    def restitutions(
-        self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
-    ) -> float | Array:
+    def restitutions(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> float | Array:
         """COR of impacts, as in `rebounds`."""
         return self.rebounds(speed, radius, other_radius).restitution
 
-    def integrated(
-        self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
-    ) -> float | Array:
+    def integrated(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> float | Array:
         """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
         impacts = self._impacts(speed, radius, other_radius)

@@ -31,9 +31,7 @@ class Compiled:
     _tabulated: TableLookup
     _beads: Callable[[Other], Beads]  # impacts of the pair's sphere on another
 
-    def curve(
-        self, radius: float, thickness: float, mass: float | None = None
-    ) -> Callable[[float], float]:
+    def curve(self, radius: float, thickness: float, mass: float | None = None) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.
 
         Parameters
@@ -56,9 +54,7 @@ class Compiled:
         scalars(radius=radius, thickness=thickness, **({} if mass is None else {"mass": mass}))
         return self._tabulated.curve(self._bodies.given(1.0, radius, thickness, mass=mass))
 
-    def sphere_sphere_curve(
-        self, radius: float, other_radius: float, other: Other = None
-    ) -> Callable[[float], float]:
+    def sphere_sphere_curve(self, radius: float, other_radius: float, other: Other = None) -> Callable[[float], float]:
         """COR of the pair's sphere and another one, as a fast function of approach speed.
 
         Parameters

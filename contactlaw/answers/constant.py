@@ -65,9 +65,7 @@ class Constant:
     flags: dict[Validity, int]
 
 
-def constant(
-    speed: Array, radius: Array, weights: Array, e: Array, flags: NDArray[np.int64], keep: Keep
-) -> Constant:
+def constant(speed: Array, radius: Array, weights: Array, e: Array, flags: NDArray[np.int64], keep: Keep) -> Constant:
     """Find the COR that replaces those of many impacts, see `contactlaw.ImpactModel.constant`.
 
     `e` and `flags` are the COR and the flags of each impact.

@@ -70,9 +70,7 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
     @kernel(entry=True)
-    def cor(
-        speed: float, radius: float, thickness: float, edge_distance: float, mass: float = math.inf
-    ) -> float:
+    def cor(speed: float, radius: float, thickness: float, edge_distance: float, mass: float = math.inf) -> float:
         impact = Impact(speed, radius, thickness, share_of_solid(pair.mass, radius, mass))
         return _cor_near(law(), response(), pair, path, impact, edge_distance)
 
@@ -82,14 +80,16 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
 # Its machine code is kept on disk, which is not possible for callers that know a law in memory.
 @kernel(cache=True)
 def _cor_near(
-    law: Array, response: Array, pair: PairConstants, path: float, impact: Impact,
-    edge_distance: float,
-) -> float:  # fmt: skip
+    law: Array, response: Array, pair: PairConstants, path: float, impact: Impact, edge_distance: float
+) -> float:
     speed, radius, thickness, mass = impact
     if not (
-        lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
-        and lookup.THINNEST * radius <= thickness and edge_distance >= 0.0 and mass > 0.0
-    ):  # fmt: skip
+        lookup.V_MIN <= speed <= lookup.V_MAX
+        and lookup.R_MIN <= radius <= lookup.R_MAX
+        and lookup.THINNEST * radius <= thickness
+        and edge_distance >= 0.0
+        and mass > 0.0
+    ):
         return math.nan
     known = numbers(pair, law, impact)
     rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0
@@ -103,9 +103,7 @@ def _cor_near(
     return restitution_near(own, response, known.inelasticity, y, min(thin, 1.0), rate)
 
 
-def _each(
-    both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]
-) -> list[tuple[Some, Any]]:
+def _each(both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]) -> list[tuple[Some, Any]]:
     """Answers of the impacts without an edge, and of those with one."""
     assert impacts.edge_distance is not None
     near, found = impacts.edge_distance < math.inf, []

@@ -145,9 +145,14 @@ class Inverse(Uncertain):
     _tabulated: TableLookup
 
     def thickness(
-        self, restitution: ArrayLike, speed: ArrayLike, radius: ArrayLike, *,
-        speed_error: float = 0.0, radius_error: float = 0.0,
-    ) -> Solutions | NDArray[np.object_]:  # fmt: skip
+        self,
+        restitution: ArrayLike,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        *,
+        speed_error: float = 0.0,
+        radius_error: float = 0.0,
+    ) -> Solutions | NDArray[np.object_]:
         """Every thickness of the plate that gives a COR; the COR may pass through a maximum.
 
         Parameters
@@ -182,14 +187,17 @@ class Inverse(Uncertain):
         e, v, r, shape = broadcast(restitution=restitution, speed=speed, radius=radius)
         check(speed=v, radius=r)
         errors = {"speed_error": speed_error, "radius_error": radius_error}
-        return self._inverse(
-            "thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors
-        )
+        return self._inverse("thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors)
 
     def speed(
-        self, restitution: ArrayLike, radius: ArrayLike, thickness: ArrayLike, *,
-        radius_error: float = 0.0, thickness_error: float = 0.0,
-    ) -> Solutions | NDArray[np.object_]:  # fmt: skip
+        self,
+        restitution: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        *,
+        radius_error: float = 0.0,
+        thickness_error: float = 0.0,
+    ) -> Solutions | NDArray[np.object_]:
         """Every impact speed, from 0.1 mm/s, that gives a COR; all else is as in `thickness`.
 
         Examples
@@ -202,14 +210,16 @@ class Inverse(Uncertain):
         e, r, h, shape = broadcast(restitution=restitution, radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
         errors = {"radius_error": radius_error, "thickness_error": thickness_error}
-        return self._inverse(
-            "speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors
-        )
+        return self._inverse("speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors)
 
     def _inverse(
-        self, unknown: str, wanted: Array, sizes: list[tuple[float | None, ...]],
-        shape: tuple[int, ...] | None, errors: dict[str, float],
-    ) -> Solutions | NDArray[np.object_]:  # fmt: skip
+        self,
+        unknown: str,
+        wanted: Array,
+        sizes: list[tuple[float | None, ...]],
+        shape: tuple[int, ...] | None,
+        errors: dict[str, float],
+    ) -> Solutions | NDArray[np.object_]:
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
         border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
@@ -219,9 +229,7 @@ class Inverse(Uncertain):
             found[n] = self._solutions(unknown, e, curve(size), errors)
         return found[0] if shape is None else found.reshape(shape)
 
-    def _solutions(
-        self, unknown: str, wanted: float, curve: _Curve, errors: dict[str, float]
-    ) -> Solutions:
+    def _solutions(self, unknown: str, wanted: float, curve: _Curve, errors: dict[str, float]) -> Solutions:
         x = curve.solutions(wanted)
         impacts, ends, band = curve.impacts(x), np.empty((2, x.size)), None
         if x.size:

@@ -97,10 +97,15 @@ class Oblique:
         if method not in ("table", "solve"):
             raise ArgumentError("method", method, "must be 'table' or 'solve'")
         v, s, r, h, mu, near, hole, *masses, shape = broadcast(
-            speed=speed, sliding_speed=sliding_speed, radius=radius, thickness=thickness,
-            friction=friction, edge_distance=edge_distance, hole_radius=hole_radius,
+            speed=speed,
+            sliding_speed=sliding_speed,
+            radius=radius,
+            thickness=thickness,
+            friction=friction,
+            edge_distance=edge_distance,
+            hole_radius=hole_radius,
             **({} if mass is None else {"mass": mass}),
-        )  # fmt: skip
+        )
         bodies = self._tabulated.bodies
         impacts = replace(bodies.given(v, r, h, edge, near, hole, *masses), shape=shape)
         check(sliding_speed=s, friction=mu)
@@ -149,21 +154,21 @@ class Oblique:
         >>> new.round(3), spin.round(-1)
         (array([2.205, 0.   , 1.973]), array([   0., 2210.,    0.]))
         """
-        (v, omega, n, w), shape = vectors(
-            velocity=velocity, spin=spin, normal=normal, wall_velocity=wall_velocity
-        )
+        (v, omega, n, w), shape = vectors(velocity=velocity, spin=spin, normal=normal, wall_velocity=wall_velocity)
         if not n.any(axis=1).all():
             raise ArgumentError("normal", normal, "must not be zero")
         oblique.unit_all(n)
         count = np.empty(shape[:-1])
         r, h, mu, _, *masses, within = broadcast(
-            radius=radius, thickness=thickness, friction=friction, velocity=count,
+            radius=radius,
+            thickness=thickness,
+            friction=friction,
+            velocity=count,
             **({} if mass is None else {"mass": mass}),
-        )  # fmt: skip
+        )
         if (within or ()) != shape[:-1]:
             v, omega, n, w = (
-                np.array(np.broadcast_to(rows.reshape(shape), (*within, 3))).reshape(-1, 3)
-                for rows in (v, omega, n, w)
+                np.array(np.broadcast_to(rows.reshape(shape), (*within, 3))).reshape(-1, 3) for rows in (v, omega, n, w)
             )
             shape = (*within, 3)
         check(friction=mu)
@@ -224,9 +229,7 @@ class Oblique:
         return _jitted(known.packed, known.slides, known.bodies.constants.mass)
 
 
-def answer(
-    backend: Backend, bodies: SphereOnPlate, impacts: Impacts, friction: Array, size: Array
-) -> ObliqueRebound:
+def answer(backend: Backend, bodies: SphereOnPlate, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
     """Everything about impacts with these sliding speeds [m/s]."""
     normal, changed = _answer(backend, impacts, friction, size)
     return oblique.of(bodies, normal, impacts, friction, size, changed)
@@ -248,13 +251,16 @@ def _jitted(table: Array, slides: Array, density: float) -> Collide:
 
     @kernel(entry=True)
     def collide(
-        velocity: Vector, spin: Vector, normal: Vector, radius: float, thickness: float,
-        friction: float, wall_velocity: Vector, mass: float = math.inf,
-    ) -> tuple[Vector, Vector]:  # fmt: skip
+        velocity: Vector,
+        spin: Vector,
+        normal: Vector,
+        radius: float,
+        thickness: float,
+        friction: float,
+        wall_velocity: Vector,
+        mass: float = math.inf,
+    ) -> tuple[Vector, Vector]:
         share = share_of_solid(density, radius, mass)
-        return of_one(
-            packed(), tangential(), velocity, spin, normal, radius, thickness, share, friction,
-            wall_velocity,
-        )  # fmt: skip
+        return of_one(packed(), tangential(), velocity, spin, normal, radius, thickness, share, friction, wall_velocity)
 
     return collide

@@ -114,9 +114,7 @@ def sensitivity(tabulated: TableLookup, impacts: Impacts) -> Sensitivity:
         "plate_modulus": -0.5 * by_speed - by_modulus - by_strength,
         "yield_strength": by_strength,
     }
-    if any(
-        body.rate or body.loss_factor or isinstance(body.hardening, float) for body in materials
-    ):
+    if any(body.rate or body.loss_factor or isinstance(body.hardening, float) for body in materials):
         # other inputs with a unit are held: rate0, the frequency at which moduli are known, or the
         # hardness from which two strengths follow
         named["radius"] = by("radius")

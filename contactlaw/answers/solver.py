@@ -9,14 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.backend import (
-    OutsideTableError,
-    UnsolvedError,
-    refuse_to_yield,
-    renumbered,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import OutsideTableError, UnsolvedError, refuse_to_yield, renumbered, too_fast, too_thin
 from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Impact, Numbers
@@ -54,17 +47,18 @@ class Integrated:
         """Everything about the impacts."""
         units, flags = self.units, np.zeros(self.impacts.speed.size, dtype=np.int64)
         return rebound(
-            self.bodies, self.impacts, units.time, (units.inelasticity, units.yield_ratio),
-            self.outcome, flags, self.edges,
-        )  # fmt: skip
+            self.bodies,
+            self.impacts,
+            units.time,
+            (units.inelasticity, units.yield_ratio),
+            self.outcome,
+            flags,
+            self.edges,
+        )
 
 
 def integrate(
-    bodies: SphereOnPlate,
-    impacts: Impacts,
-    rtol: float = RTOL,
-    extent: Settings | None = None,
-    few: bool = False,
+    bodies: SphereOnPlate, impacts: Impacts, rtol: float = RTOL, extent: Settings | None = None, few: bool = False
 ) -> Integrated:
     """Integrate impacts."""
     impact = bodies.impact(impacts)
@@ -130,8 +124,7 @@ class Solver:
         if math.isinf(share):
             return np.full(impacts.speed.size, math.inf)
         found = [
-            self._yield_speed(share, Impact(*(one[n : n + 1] for one in impact)))
-            for n in range(impacts.speed.size)
+            self._yield_speed(share, Impact(*(one[n : n + 1] for one in impact))) for n in range(impacts.speed.size)
         ]
         speed, lam = np.array(found).reshape(-1, 2).T
         if self.extent is not None:
@@ -181,9 +174,8 @@ class Solver:
 
 
 def solved_within(
-    law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False,
-    edges: Edges | None = None,
-) -> Outcome:  # fmt: skip
+    law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False, edges: Edges | None = None
+) -> Outcome:
     """Integrate impacts up to the first one that is outside the extent, which is refused."""
     lam, y, s = units.inelasticity, units.yield_ratio, units.strength
     if extent is None:
@@ -235,9 +227,7 @@ def histories(law: Array, found: Outcome, samples: int) -> History:
     return histories_and_path(law, found, samples, None)[0]
 
 
-def histories_and_path(
-    law: Array, found: Outcome, samples: int, edges: Edges | None
-) -> tuple[History, Array | None]:
+def histories_and_path(law: Array, found: Outcome, samples: int, edges: Edges | None) -> tuple[History, Array | None]:
     """Contacts over time on Hertz's scale, and near edges the displacement of the plate.
 
     The plate is where the sphere would be without compression. The path of the sphere is the

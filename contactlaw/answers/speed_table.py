@@ -42,9 +42,7 @@ class SpeedTable(NamedTuple):
     flags: dict[Validity, int]
 
 
-def speed_table(
-    lookup: Callable[[Array], Rebound], error: float, ends: tuple[float, float]
-) -> SpeedTable:
+def speed_table(lookup: Callable[[Array], Rebound], error: float, ends: tuple[float, float]) -> SpeedTable:
     """Choose the rows, as `contactlaw.ImpactModel.speed_table` says, from impacts at any speeds."""
     slowest, fastest = (number(n, v) for n, v in zip(("slowest", "fastest"), ends, strict=True))
     error = number("error", error)

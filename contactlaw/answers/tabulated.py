@@ -18,13 +18,7 @@ from numpy.typing import NDArray
 from contactlaw import laws
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import (
-    OutsideTableError,
-    refuse_to_yield,
-    renumbered,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, renumbered, too_fast, too_thin
 from contactlaw.answers.solver import RTOL, Solver, histories, refuse_rates, slid, solved
 from contactlaw.equation import outcome
 from contactlaw.equation.numbers import Numbers

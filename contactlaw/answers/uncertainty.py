@@ -333,9 +333,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
         return np.asarray(np.exp(np.minimum(logs + by, most)))
 
     def width(ends: Array) -> Array:
-        return 0.5 * (
-            shifted(np.maximum(ends.max(axis=0), 0.0)) - shifted(np.minimum(ends.min(axis=0), 0.0))
-        )
+        return 0.5 * (shifted(np.maximum(ends.max(axis=0), 0.0)) - shifted(np.minimum(ends.min(axis=0), 0.0)))
 
     low, high = map(shifted, curves.quantiles())
     causes = {one.cause: width(ends) for one, ends in zip(changes, curves.ends, strict=True)}

@@ -78,10 +78,13 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     With the words of a command line, other subcommands than its own have a line of help only.
     """
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
-    made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
-                      help="print the version and exit")  # fmt: skip
-    made.add_argument("--print-completion", action=_Completion, choices=("bash", "zsh", "tcsh"),
-                      help="print a script for the shell's completion and exit")  # fmt: skip
+    made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}", help="print the version and exit")
+    made.add_argument(
+        "--print-completion",
+        action=_Completion,
+        choices=("bash", "zsh", "tcsh"),
+        help="print a script for the shell's completion and exit",
+    )
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
     listed = _subcommands()
     asked = next((word for word in words or () if not word.startswith("-")), None)

@@ -17,8 +17,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "explore", about, _run)
     options.add_pair(command, action="append")
     options.add_name_of_law(command)
-    command.add_argument("--out", default="page.html", metavar="FILE",
-                         help="file to write (default: %(default)s)")  # fmt: skip
+    command.add_argument("--out", default="page.html", metavar="FILE", help="file to write (default: %(default)s)")
     command.epilog = "Give --sphere or --plate again for a page with a menu of pairs."
 
 

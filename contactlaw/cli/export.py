@@ -14,28 +14,27 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "source files for codes that do not run Python: header, liggghts"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
-    header = options.command(
-        kinds, "header", "the law and a table of COR as one file for C, C++ and GPUs",
-        _header,
-    )  # fmt: skip
+    header = options.command(kinds, "header", "the law and a table of COR as one file for C, C++ and GPUs", _header)
     options.add_pair(header)
     options.add_name_of_law(header)
-    header.add_argument("--out", default="contactlaw.h", metavar="FILE",
-                        help="file to write (default: %(default)s)")  # fmt: skip
-    header.add_argument("--table", default="cor", choices=["cor", "none"],
-                        help="with a table of COR, or without: law and integration alone "
-                        "(default: %(default)s)")  # fmt: skip
-    header.add_argument("--prefix", default="contactlaw", metavar="NAME",
-                        help="what its names begin with, as in steel_on_glass: several pairs in "
-                        "one source file need one each (default: %(default)s)")  # fmt: skip
-    liggghts = options.command(
-        kinds, "liggghts", "contact models for LIGGGHTS, with a build script",
-        _liggghts,
-    )  # fmt: skip
+    header.add_argument("--out", default="contactlaw.h", metavar="FILE", help="file to write (default: %(default)s)")
+    header.add_argument(
+        "--table",
+        default="cor",
+        choices=["cor", "none"],
+        help="with a table of COR, or without: law and integration alone (default: %(default)s)",
+    )
+    header.add_argument(
+        "--prefix",
+        default="contactlaw",
+        metavar="NAME",
+        help="what its names begin with, as in steel_on_glass: several pairs in "
+        "one source file need one each (default: %(default)s)",
+    )
+    liggghts = options.command(kinds, "liggghts", "contact models for LIGGGHTS, with a build script", _liggghts)
     options.add_pair(liggghts)
     options.add_name_of_law(liggghts)
-    liggghts.add_argument("--out", required=True, metavar="DIR",
-                          help="folder to write into, made if need be")  # fmt: skip
+    liggghts.add_argument("--out", required=True, metavar="DIR", help="folder to write into, made if need be")
 
 
 def _header(arguments: argparse.Namespace) -> None:

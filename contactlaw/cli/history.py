@@ -23,8 +23,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "history", about, _run)
     options.add_impact(command, quantities.value)
     options.add_mass(command)
-    command.add_argument("--samples", type=int, default=256, metavar="N",
-                         help="number of times (default: %(default)s)")  # fmt: skip
+    command.add_argument("--samples", type=int, default=256, metavar="N", help="number of times (default: %(default)s)")
     command.add_argument("--plot", metavar="FILE", help="draw into FILE (PNG, SVG, PDF)")
     command.epilog = options.UNITS
 
@@ -72,22 +71,14 @@ def _draw(contact: ForceHistory, title: str, path: str) -> None:
         figure = style.figure(10.0, 5.2, title, caption)
         left, right = figure.subplots(1, 2, sharey=True)
         top = int(np.argmax(contact.force))
-        parts = (
-            (slice(top + 1), style.BLUE, "loading"),
-            (slice(top, None), style.VERMILION, "unloading"),
-        )
+        parts = ((slice(top + 1), style.BLUE, "loading"), (slice(top, None), style.VERMILION, "unloading"))
         for part, colour, name in parts:
             left.plot(contact.time[part] * 1e6, contact.force[part], color=colour, linewidth=2.2)
-            right.plot(
-                contact.compression[part] * 1e6, contact.force[part], color=colour, linewidth=2.2,
-                label=name,
-            )  # fmt: skip
+            right.plot(contact.compression[part] * 1e6, contact.force[part], color=colour, linewidth=2.2, label=name)
         left.set(xlabel="time since touch [µs]", ylabel="contact force [N]", ylim=(0.0, None))
         left.set_xlim(0.0, 1.02 * contact.time[-1] * 1e6)
         plate = left.twinx()
-        plate.plot(
-            contact.time * 1e6, contact.plate_displacement * 1e6, color=style.MUTED, linestyle="--"
-        )
+        plate.plot(contact.time * 1e6, contact.plate_displacement * 1e6, color=style.MUTED, linestyle="--")
         plate.set_ylabel("plate moves [µm] (dashed)", color=style.MUTED)
         plate.set_ylim(0.0, None)
         plate.grid(visible=False)

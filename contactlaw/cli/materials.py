@@ -56,10 +56,15 @@ def _cells(entry: Material) -> list[str]:
     """Numbers of a material, each as wide as its column; a dash for those that it lacks."""
     hardening = entry.hardening if isinstance(entry.hardening, tuple) else (None, entry.hardening)
     numbers = (
-        entry.youngs_modulus, entry.poissons_ratio, entry.density, entry.yield_strength,
-        entry.hardness, *hardening, entry.rate and entry.rate[0],
+        entry.youngs_modulus,
+        entry.poissons_ratio,
+        entry.density,
+        entry.yield_strength,
+        entry.hardness,
+        *hardening,
+        entry.rate and entry.rate[0],
         entry.loss_factor and entry.loss_factor[0],
-    )  # fmt: skip
+    )
     return [
         f"{'-':>{width}s}" if number is None else f"{number / unit:{width}.{places}f}"
         for number, (width, places, unit) in zip(numbers, _COLUMNS.values(), strict=True)

@@ -20,19 +20,25 @@ def add(commands: Any) -> None:
     command = options.command(commands, "report", "a page with figures about a run", _run)
     add = command.add_argument
     add(
-        "record", nargs="+",
+        "record",
+        nargs="+",
         help="record of a run: saved by an engine's `save` (.h5), or its rows by np.save (.npy); "
         "several files of one run are put together",
-    )  # fmt: skip
+    )
     add(
-        "--mesh", action="append", default=[], metavar="FILE",
+        "--mesh",
+        action="append",
+        default=[],
+        metavar="FILE",
         help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; once for each wall, in "
         "the order of their numbers (default: the walls that the record has)",
-    )  # fmt: skip
+    )
     add(
-        "--scale", type=options.reader_of(quantities.value, LENGTH), metavar="LENGTH",
+        "--scale",
+        type=options.reader_of(quantities.value, LENGTH),
+        metavar="LENGTH",
         help="length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)",
-    )  # fmt: skip
+    )
     add("--out", default="report", metavar="FOLDER", help="default: %(default)s")
 
 

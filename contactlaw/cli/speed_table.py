@@ -25,10 +25,20 @@ def add(commands: Any) -> None:
     options.add_sizes(command, quantities.value)
     speed = reader_of(quantities.value, SPEED)
     add = command.add_argument
-    add("--slowest", default=0.1, metavar="V", type=speed,
-        help="first speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
-    add("--fastest", default=10.0, metavar="V", type=speed,
-        help="last speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
+    add(
+        "--slowest",
+        default=0.1,
+        metavar="V",
+        type=speed,
+        help="first speed [m/s], or with a unit (default: %(default)s)",
+    )
+    add(
+        "--fastest",
+        default=10.0,
+        metavar="V",
+        type=speed,
+        help="last speed [m/s], or with a unit (default: %(default)s)",
+    )
     add(
         "--error",
         default=1e-3,
@@ -58,9 +68,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def text(found: SpeedTable) -> Iterator[str]:
     """Lines for a terminal: rows of COR over speed, their error, and the meaning of the flags."""
-    rows = [
-        (f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)
-    ]
+    rows = [(f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)]
     yield from aligned(list(zip(("speed", "COR", ""), ("[m/s]", "[-]", ""), *rows, strict=True)))
     yield ""
     yield f"{len(rows)} rows, straight lines between them within {found.error:.2g} in COR"

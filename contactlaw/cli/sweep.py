@@ -28,8 +28,9 @@ def add(commands: Any) -> None:
     about = "all fields and flags over a grid, as a file"
     command = options.command(commands, "sweep", about, _run)
     options.add_impact(command, quantities.values)
-    command.add_argument("--out", required=True, metavar="FILE",
-                         help="file to write: .csv, or .h5 with the grid's axes")  # fmt: skip
+    command.add_argument(
+        "--out", required=True, metavar="FILE", help="file to write: .csv, or .h5 with the grid's axes"
+    )
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
@@ -42,17 +43,10 @@ def _run(arguments: argparse.Namespace) -> None:
         found = tabulate(model, *axes, solve=arguments.solve)
         save(found, model, axes, arguments.out)
     flags = explained(count_flags(found.flags), len(found))
-    print(
-        f"{arguments.out}: {len(found)} impacts, {impacts.in_words(found.asked)}", *flags, sep="\n"
-    )
+    print(f"{arguments.out}: {len(found)} impacts, {impacts.in_words(found.asked)}", *flags, sep="\n")
 
 
-def save(
-    table: ImpactTable,
-    model: ImpactModel,
-    axes: Sequence[Sequence[float]],
-    path: str | os.PathLike[str],
-) -> None:
+def save(table: ImpactTable, model: ImpactModel, axes: Sequence[Sequence[float]], path: str | os.PathLike[str]) -> None:
     """Write a grid of impacts; the file appears complete or not at all.
 
     In ``.h5``, radius, thickness and speed are the axes (HDF5 dimension scales), each field is an
@@ -71,9 +65,7 @@ def save(
     _atomic.write(path, image.getvalue())
 
 
-def _fill(
-    file: h5py.File, table: ImpactTable, model: ImpactModel, axes: dict[str, Sequence[float]]
-) -> None:
+def _fill(file: h5py.File, table: ImpactTable, model: ImpactModel, axes: dict[str, Sequence[float]]) -> None:
     file.attrs.update(
         format=_FORMAT,
         schema=_SCHEMA,

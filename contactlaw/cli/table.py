@@ -20,25 +20,21 @@ from contactlaw.table import cache, file
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    actions = options.group(
-        commands, "table", "lookup tables: build, info, check", "ACTION", "what to do"
-    )
+    actions = options.group(commands, "table", "lookup tables: build, info, check", "ACTION", "what to do")
     info = options.command(actions, "info", "extent, settings and certificate of a table", _info)
     about = "certify a table at fresh random points, fail above the bounds"
     check = options.command(actions, "check", about, _check)
     build = options.command(actions, "build", "solve the equation at every node of a table", _build)
     for action in (info, check):
-        action.add_argument("file", nargs="?", metavar="FILE",
-                            help="a table (default: the one in use for LAW)")  # fmt: skip
+        action.add_argument("file", nargs="?", metavar="FILE", help="a table (default: the one in use for LAW)")
     for action in (info, check, build):
         # not laws.DEFAULT, whose table may depend on the pair; this table comes with the package
-        action.add_argument("--law", default="myc", metavar="LAW",
-                            help="force law of the table (default: %(default)s)")  # fmt: skip
+        action.add_argument("--law", default="myc", metavar="LAW", help="force law of the table (default: %(default)s)")
         options.add_pair(action, ", for laws that take numbers from a pair")
-    check.add_argument("--points", type=int, default=10_000, metavar="N",
-                       help="number of points, at least 100 (default: %(default)s)")  # fmt: skip
-    check.add_argument("--seed", type=int, metavar="S",
-                       help="seed of the points (default: a fresh one)")  # fmt: skip
+    check.add_argument(
+        "--points", type=int, default=10_000, metavar="N", help="number of points, at least 100 (default: %(default)s)"
+    )
+    check.add_argument("--seed", type=int, metavar="S", help="seed of the points (default: a fresh one)")
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
 
 

@@ -20,15 +20,23 @@ from contactlaw.emit.types import DOUBLE, INT, UNKNOWN, Array, Known, Struct, Ty
 
 # Operators: how they are written, how tightly they bind, what they make of known whole numbers.
 OPERATORS: dict[type, tuple[str, int, Callable[..., Any]]] = {
-    ast.Add: ("+", 8, operator.add), ast.Sub: ("-", 8, operator.sub),
-    ast.Mult: ("*", 9, operator.mul), ast.Div: ("/", 9, lambda *_: UNKNOWN),
-    ast.Mod: ("%", 9, operator.mod), ast.RShift: (">>", 7, operator.rshift),
-    ast.BitOr: ("|", 3, operator.or_), ast.BitAnd: ("&", 4, operator.and_),
-    ast.Lt: ("<", 6, operator.lt), ast.LtE: ("<=", 6, operator.le),
-    ast.Gt: (">", 6, operator.gt), ast.GtE: (">=", 6, operator.ge),
-    ast.Eq: ("==", 5, operator.eq), ast.NotEq: ("!=", 5, operator.ne),
-    ast.USub: ("-", 10, operator.neg), ast.Not: ("!", 10, operator.not_),
-}  # fmt: skip
+    ast.Add: ("+", 8, operator.add),
+    ast.Sub: ("-", 8, operator.sub),
+    ast.Mult: ("*", 9, operator.mul),
+    ast.Div: ("/", 9, lambda *_: UNKNOWN),
+    ast.Mod: ("%", 9, operator.mod),
+    ast.RShift: (">>", 7, operator.rshift),
+    ast.BitOr: ("|", 3, operator.or_),
+    ast.BitAnd: ("&", 4, operator.and_),
+    ast.Lt: ("<", 6, operator.lt),
+    ast.LtE: ("<=", 6, operator.le),
+    ast.Gt: (">", 6, operator.gt),
+    ast.GtE: (">=", 6, operator.ge),
+    ast.Eq: ("==", 5, operator.eq),
+    ast.NotEq: ("!=", 5, operator.ne),
+    ast.USub: ("-", 10, operator.neg),
+    ast.Not: ("!", 10, operator.not_),
+}
 
 
 class Function:
@@ -68,8 +76,10 @@ class Function:
         """Arguments of a call by the names of the parameters, with those that are left out."""
         bound = inspect.signature(python).bind(*given, **named)
         bound.apply_defaults()
-        return {name: one if isinstance(one, Value) else self._program.constant(one)
-                for name, one in bound.arguments.items()}  # fmt: skip
+        return {
+            name: one if isinstance(one, Value) else self._program.constant(one)
+            for name, one in bound.arguments.items()
+        }
 
     def _block(self, nodes: list[ast.stmt]) -> list[str]:
         lines: list[str] = []
@@ -228,10 +238,7 @@ class Function:
             case Array(data=data) if isinstance(at, ast.Slice):
                 return self._language.operation("tail", base, index, kind=Array(data=data))
             case Array(data=data, shape=(_, size)):
-                index, kind = (
-                    Value(INT, f"{index.within(9)} * {size}", 9),
-                    Array("array", data, (size,)),
-                )
+                index, kind = (Value(INT, f"{index.within(9)} * {size}", 9), Array("array", data, (size,)))
                 if not column:
                     return self._language.operation("tail", base, index, kind=kind)
                 index = Value(INT, f"{index.text} + {column[0].within(9)}", 8)
@@ -255,10 +262,8 @@ class Function:
         divides = isinstance(node.op, ast.Div)
         kind = DOUBLE if divides else self.unified(node, left.type, right.type)
         if kind == DOUBLE:  # a known number in a formula of doubles is one of them
-            left, right = (self.double(one) if divides or one.known is not UNKNOWN else one
-                           for one in (left, right))  # fmt: skip
-        a, b = (one.within(12 if binds < 5 and one.binds < 11 else binds + (one is right))
-                for one in (left, right))  # fmt: skip
+            left, right = (self.double(one) if divides or one.known is not UNKNOWN else one for one in (left, right))
+        a, b = (one.within(12 if binds < 5 and one.binds < 11 else binds + (one is right)) for one in (left, right))
         return Value(kind, f"{a} {sign} {b}", binds, known)
 
     def _operator(self, node: Any, op: Any, *operands: Value) -> tuple[str, int, Any]:
@@ -322,8 +327,10 @@ class Function:
         given |= {key[:-1]: self._name(ast.Name(key)) for key in made}
         if hasattr(called, "_fields"):
             return self._program.make(called, given)
-        kinds = [Known(value=one.known) if key in self._program.fixed and one.known is not UNKNOWN
-                 else one.type for key, one in given.items()]  # fmt: skip
+        kinds = [
+            Known(value=one.known) if key in self._program.fixed and one.known is not UNKNOWN else one.type
+            for key, one in given.items()
+        ]
         name, result = add(self._program, called, *kinds)
         texts = [one.text for one, kind in zip(given.values(), kinds, strict=True) if traced(kind)]
         text = f"{self._language.prefix}{name}({', '.join(texts)})"

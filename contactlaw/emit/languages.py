@@ -13,19 +13,22 @@ from contactlaw.emit.types import DOUBLE, Array, Struct, Type, Value, traced
 
 WIDTH = 100
 # What a variable cannot be called in one of the languages.
-RESERVED = frozenset("""arguments auto await bool case catch char class const constant debugger
+RESERVED = frozenset(
+    """arguments auto await bool case catch char class const constant debugger
 default delete do double else enum eval export extends extern far float function global goto half
 implements in instanceof int interface kernel let local long near new operator package private
 protected public register short signed static struct super switch template this throw typeof union
-unsigned var void with yield""".split())  # fmt: skip
+unsigned var void with yield""".split()
+)
 _COMMENT = re.compile(r"^    (\w+)\b.*?:.*?#\s*(.*)$", re.MULTILINE)
 
 
 def wrapped(line: str, end: str = "") -> str:
     """Break a line that is too long at its spaces."""
     indent = line[: len(line) - len(line.lstrip())] + 8 * " "
-    lines = textwrap.wrap(line, WIDTH - len(end), subsequent_indent=indent, break_long_words=False,
-                          break_on_hyphens=False)  # fmt: skip
+    lines = textwrap.wrap(
+        line, WIDTH - len(end), subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
     return f"{end}\n".join(lines)
 
 
@@ -47,10 +50,12 @@ class C:
     """
 
     operations: Mapping[str, tuple[str, int, tuple[int, ...]]] = {
-        "float": ("(double){}", 10, (10,)), "int": ("(int){}", 10, (10,)),
-        "abs": ("fabs({})", 12, (0,)), "quotient": ("{} / {}", 9, (9, 10)),
+        "float": ("(double){}", 10, (10,)),
+        "int": ("(int){}", 10, (10,)),
+        "abs": ("fabs({})", 12, (0,)),
+        "quotient": ("{} / {}", 9, (9, 10)),
         "tail": ("{} + {}", 8, (8, 9)),
-    }  # fmt: skip
+    }
     head, array, local, unused = "static inline {}{}({})\n{{", "{}[{}]", "", "(void){};"
     fill, define = "{}fill({}, {}, {});", "#define {} {}"
     data = "static const double {}[] = {{", "};"
@@ -150,10 +155,13 @@ class JavaScript(C):
     """
 
     operations = {
-        "float": ("{}", 10, (10,)), "int": ("Math.trunc({})", 12, (0,)),
-        "abs": ("Math.abs({})", 12, (0,)), "quotient": ("Math.floor({} / {})", 12, (9, 10)),
-        "tail": ("{}.subarray({})", 11, (11, 0)), "copysign": ("$copysign({}, {})", 12, (0, 0)),
-    }  # fmt: skip
+        "float": ("{}", 10, (10,)),
+        "int": ("Math.trunc({})", 12, (0,)),
+        "abs": ("Math.abs({})", 12, (0,)),
+        "quotient": ("Math.floor({} / {})", 12, (9, 10)),
+        "tail": ("{}.subarray({})", 11, (11, 0)),
+        "copysign": ("$copysign({}, {})", 12, (0, 0)),
+    }
     head, array = "function {1}({2}) {{", "{} = new Float64Array({})"
     local, unused, nothing, typed = "let ", "", "", False
     fill, define = "{1}.fill({3}, 0, {2});", "const {} = {};"

@@ -91,11 +91,7 @@ THIN = PlateCorrections(*[0.0] * 11)
 
 
 def plate_corrections(
-    poissons_ratio: float,
-    eta: float = 0.0,
-    eta_h: float = 0.0,
-    eta4: float = 0.0,
-    plastic_growth: float = 0.0,
+    poissons_ratio: float, eta: float = 0.0, eta_h: float = 0.0, eta4: float = 0.0, plastic_growth: float = 0.0
 ) -> PlateCorrections:
     """Corrections for plates of this Poisson's ratio.
 
@@ -113,9 +109,7 @@ def plate_corrections(
     d = nu - 0.3
     k2 = 6.0994 - 4.8895 * d + 6.5469 * d**2 + 7.4075 * d**3
     others = (_NEAR @ (1.0 / h_c - _CENTRE) ** np.arange(5)).tolist()
-    return PlateCorrections(
-        eta, eta_h, eta4, plastic_growth, 1.0 / h_c, k2, 3.0 + k1 * h_c, *others
-    )
+    return PlateCorrections(eta, eta_h, eta4, plastic_growth, 1.0 / h_c, k2, 3.0 + k1 * h_c, *others)
 
 
 @kernel(inline=True)
@@ -138,9 +132,7 @@ def eta_of(corrections: PlateCorrections, ratio: float, x: float, thin: float, h
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
     w = min(x, DEEPEST, BROADEST / ratio)
-    return ratio * (
-        (corrections.eta + corrections.eta_h * g) * w + corrections.eta4 * (square * square)
-    )
+    return ratio * ((corrections.eta + corrections.eta_h * g) * w + corrections.eta4 * (square * square))
 
 
 @kernel(inline=True)
@@ -148,17 +140,14 @@ def near_field(corrections: PlateCorrections, h: float) -> float:
     """Phi minus its half-space part k2 h^2; 0 if h is infinite or NaN."""
     x = h * corrections.steepest
     powers = 1.0 + x * (
-        corrections.p1
-        + x * (corrections.p2 + x * (corrections.p3 + x * (corrections.p4 + x * corrections.p5)))
+        corrections.p1 + x * (corrections.p2 + x * (corrections.p3 + x * (corrections.p4 + x * corrections.p5)))
     )
     left = 1.0 - x
     return left * left * left * powers if x < 1.0 else 0.0
 
 
 @kernel(inline=True)
-def with_corrections(
-    corrections: PlateCorrections, thin: float, h: float, bulk: float, plastic: float
-) -> float:
+def with_corrections(corrections: PlateCorrections, thin: float, h: float, bulk: float, plastic: float) -> float:
     """Inelasticity lambda with all corrections.
 
     `thin` is lambda of the thin plate, `h` is taken without losses, `bulk` is thin h^2, which stays

@@ -137,23 +137,27 @@ def _change(r: Array, at: int, f: float, m: Memory, pace: float) -> Memory:
 
 
 @kernel(inline=True)
-def remember(
-    response: Array | None, f: float, memory: Memories | None, pace: float
-) -> Memories | None:
+def remember(response: Array | None, f: float, memory: Memories | None, pace: float) -> Memories | None:
     """Change of the memory per ds, from dt/ds."""
     if response is None or memory is None:
         return None
-    return Memories(
-        _change(response, 0, f, memory.first, pace),
-        _change(response, SIZE, f, memory.second, pace),
-    )
+    return Memories(_change(response, 0, f, memory.first, pace), _change(response, SIZE, f, memory.second, pace))
 
 
 @kernel
 def _moved(
-    m: Memory, w1: float, k1: Memory, w2: float, k2: Memory, w3: float, k3: Memory, w4: float,
-    k4: Memory, w5: float, k5: Memory,
-) -> Memory:  # fmt: skip
+    m: Memory,
+    w1: float,
+    k1: Memory,
+    w2: float,
+    k2: Memory,
+    w3: float,
+    k3: Memory,
+    w4: float,
+    k4: Memory,
+    w5: float,
+    k5: Memory,
+) -> Memory:
     return Memory(
         m.x1 + (w1 * k1.x1 + w2 * k2.x1 + w3 * k3.x1 + w4 * k4.x1 + w5 * k5.x1),
         m.y1 + (w1 * k1.y1 + w2 * k2.y1 + w3 * k3.y1 + w4 * k4.y1 + w5 * k5.y1),
@@ -166,9 +170,18 @@ def _moved(
 
 @kernel(inline=True)
 def moved(
-    m: Memories | None, w1: float, k1: Memories | None, w2: float, k2: Memories | None, w3: float,
-    k3: Memories | None, w4: float, k4: Memories | None, w5: float, k5: Memories | None,
-) -> Memories | None:  # fmt: skip
+    m: Memories | None,
+    w1: float,
+    k1: Memories | None,
+    w2: float,
+    k2: Memories | None,
+    w3: float,
+    k3: Memories | None,
+    w4: float,
+    k4: Memories | None,
+    w5: float,
+    k5: Memories | None,
+) -> Memories | None:
     """Memory at a stage or at the end of a step, from the stages before."""
     if m is None or k1 is None or k2 is None or k3 is None or k4 is None or k5 is None:
         return None
@@ -216,9 +229,14 @@ def _path(r: Array, at: int, memory: Memory, t: float) -> float:
 
 @kernel
 def look_back(
-    edges: Edges | None, n: int, response: Array | None, memory: Memories | None, u: float,
-    mobility: float, duration: float,
-) -> None:  # fmt: skip
+    edges: Edges | None,
+    n: int,
+    response: Array | None,
+    memory: Memories | None,
+    u: float,
+    mobility: float,
+    duration: float,
+) -> None:
     """Note whether the plate comes back to a sphere that has left it with the speed -u.
 
     It is looked for within 300 durations of the contact.

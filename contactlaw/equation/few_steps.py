@@ -42,9 +42,7 @@ def _force(law: Array, loading: bool, curve: UnloadingCurve, q: float) -> float:
 
 
 @kernel
-def restitution_near(
-    law: Array, response: Array, lam: float, y: float, coupling: float, rate: float
-) -> float:
+def restitution_near(law: Array, response: Array, lam: float, y: float, coupling: float, rate: float) -> float:
     """Restitution of one impact near an edge, see `Edges`; NaN if steps do not get to its end."""
     unit = math.sqrt(math.sqrt(y))  # T_H in the law's scale
     q_scale, speed = 1.0 / (unit * unit), 1.0 / (y * unit)

@@ -331,11 +331,7 @@ def residual_and_losses(law: Array, dm: float) -> tuple[float, float, float]:
     row = _unloading_row(law, dm)
     if row == 0:
         return 0.0, 0.0, 0.0
-    return (
-        _function(law, row, RESIDUAL, dm),
-        _function(law, row, LOSS, dm),
-        _function(law, row, OTHER, dm),
-    )
+    return (_function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm))
 
 
 @kernel(inline=True)
@@ -475,11 +471,7 @@ def check(law: Array) -> None:
             raise ValueError("the pieces of its law do not follow each other")
     curve, family = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)
     entries = [(row, DEGREE) for row in curve]
-    entries += [
-        (row, OFFSET + 1 + n * FUNCTION + FUNCTION_DEGREE)
-        for row in family
-        for n in range(FUNCTIONS)
-    ]
+    entries += [(row, OFFSET + 1 + n * FUNCTION + FUNCTION_DEGREE) for row in family for n in range(FUNCTIONS)]
     for row, column in entries:
         degree, start = _whole(row, column, size), _whole(row, column + 1, size)
         if not start + degree // 4 * 4 + 4 <= size:

@@ -61,9 +61,7 @@ def _rebound_speed_squared(leg: Leg, state: ScaledState) -> float:
 
 
 @kernel
-def _gap(
-    event: int, leg: Leg, state: ScaledState, level: float, until: float, scale: Scale
-) -> float:
+def _gap(event: int, leg: Leg, state: ScaledState, level: float, until: float, scale: Scale) -> float:
     """Distance to an event in units of its scale; its sign changes at the event."""
     if event == TURN:
         return state.dq / scale.u
@@ -73,9 +71,7 @@ def _gap(
 
 
 @kernel
-def _guess(
-    event: int, state: ScaledState, trial: ScaledState, h: float, level: float, until: float
-) -> float:
+def _guess(event: int, state: ScaledState, trial: ScaledState, h: float, level: float, until: float) -> float:
     """Step to an event between two points, from the cubic through q or t and its rates there."""
     value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
     if event == TIME:  # dt/ds = 2 q
@@ -114,29 +110,15 @@ def _step(
     a4, b4, f4, k4 = motion.rates(contact, leg, kind, q4, u4, m4)
     q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-    m5 = edge.moved(
-        m, 19372 / 6561 * h, k1, -25360 / 2187 * h, k2, 64448 / 6561 * h, k3, -212 / 729 * h, k4,
-        0.0, k1,
-    )  # fmt: skip
+    m5 = edge.moved(m, 19372 / 6561 * h, k1, -25360 / 2187 * h, k2, 64448 / 6561 * h, k3, -212 / 729 * h, k4, 0.0, k1)
     a5, b5, f5, k5 = motion.rates(contact, leg, kind, q5, u5, m5)
-    q6 = q + h * (
-        9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
-    )
-    u6 = u + h * (
-        9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
-    )
+    q6 = q + h * (9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5)
+    u6 = u + h * (9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5)
     m6 = edge.moved(
-        m, 9017 / 3168 * h, k1, -355 / 33 * h, k2, 46732 / 5247 * h, k3, 49 / 176 * h, k4,
-        -5103 / 18656 * h, k5,
-    )  # fmt: skip
-    a6, b6, f6, k6 = motion.rates(contact, leg, kind, q6, u6, m6)
-    w1, w3, w4, w5, w6 = (
-        h * 35 / 384,
-        h * 500 / 1113,
-        h * 125 / 192,
-        h * -2187 / 6784,
-        h * 11 / 84,
+        m, 9017 / 3168 * h, k1, -355 / 33 * h, k2, 46732 / 5247 * h, k3, 49 / 176 * h, k4, -5103 / 18656 * h, k5
     )
+    a6, b6, f6, k6 = motion.rates(contact, leg, kind, q6, u6, m6)
+    w1, w3, w4, w5, w6 = (h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84)
     q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
     m7 = edge.moved(m, w1, k1, w3, k3, w4, k4, w5, k5, w6, k6)
@@ -150,21 +132,24 @@ def _step(
         + w5 * losses.power(q5, f5, edge.drive(response, f5, m5))
         + w6 * losses.power(q6, f6, edge.drive(response, f6, m6))
     )
-    error_q = (
-        71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
-    ) - 1 / 40 * a7
-    error_u = (
-        71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
-    ) - 1 / 40 * b7
+    error_q = (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6) - 1 / 40 * a7
+    error_u = (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6) - 1 / 40 * b7
     error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
     return ScaledState(q7, u7, t, work, a7, b7, f7, m7, k7), error
 
 
 @kernel(inline=True)
 def _follow(
-    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale,
-    level: float, high: float, until: float,
-) -> tuple[ScaledState, int, float, int]:  # fmt: skip
+    contact: ScaledContact,
+    leg: Leg,
+    kind: int,
+    state: ScaledState,
+    h: float,
+    scale: Scale,
+    level: float,
+    high: float,
+    until: float,
+) -> tuple[ScaledState, int, float, int]:
     """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
     Choosing the kind within the step would make a step 50 % slower.
@@ -227,16 +212,20 @@ def _follow(
 def _finer(scale: Scale, spent: float) -> Scale:
     """Scale after event _ENERGY_LOW, with the next, lower limit and tighter tolerances."""
     energy_low = max(FINER_EVERY * FINER_EVERY * scale.energy_low, spent)
-    return Scale(
-        scale.q, scale.u, scale.t, scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY, energy_low
-    )
+    return Scale(scale.q, scale.u, scale.t, scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY, energy_low)
 
 
 @kernel
 def follow(
-    contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, level: float,
-    high: float, until: float,
-) -> tuple[ScaledState, int, float, int]:  # fmt: skip
+    contact: ScaledContact,
+    leg: Leg,
+    state: ScaledState,
+    h: float,
+    scale: Scale,
+    level: float,
+    high: float,
+    until: float,
+) -> tuple[ScaledState, int, float, int]:
     """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
 
     Unloading also ends at the level `high` above, from where the contact loads again.
@@ -254,21 +243,13 @@ def follow(
                 scale = _finer(scale, spent)
             if energy_low < spent:
                 contact = ScaledContact(contact.law, plate.held(contact.plate))
-                state = motion.start(
-                    contact, leg, state.q, -abs(state.u), state.t, state.work, state.memory
-                )
+                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work, state.memory)
         if leg.kind == CUBIC:
-            state, event, h, more = _follow(
-                contact, leg, CUBIC, state, h, scale, level, high, until
-            )
+            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, high, until)
         elif leg.kind == POWER:
-            state, event, h, more = _follow(
-                contact, leg, POWER, state, h, scale, level, high, until
-            )
+            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, high, until)
         else:
-            state, event, h, more = _follow(
-                contact, leg, PIECES, state, h, scale, level, high, until
-            )
+            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, high, until)
         steps += more
         if event != _ENERGY_LOW or more == MAX_STEPS:
             return state, event, h, steps

@@ -83,12 +83,7 @@ def _along_loading(law: Array, part: int, first: int, last: int, level: float) -
     """Leg on pieces of the loading curve."""
     row = force.row_of(law, first)
     degree, at = int(law[row + force.DEGREE]), int(law[row + force.AT])
-    if (
-        last == first
-        and degree <= 3
-        and law[row + force.SCALE] == 1.0
-        and law[row + force.OFFSET] == 0.0
-    ):
+    if last == first and degree <= 3 and law[row + force.SCALE] == 1.0 and law[row + force.OFFSET] == 0.0:
         c1 = law[at + 1] if degree > 0 else 0.0
         c2 = law[at + 2] if degree > 1 else 0.0
         c3 = law[at + 3] if degree > 2 else 0.0
@@ -100,9 +95,7 @@ def _along_loading(law: Array, part: int, first: int, last: int, level: float) -
 def _on_unloading_curve(part: int, curve: UnloadingCurve, level: float) -> Leg:
     """Leg on the unloading curve."""
     kind = CUBIC if curve.exponent == 3.0 else POWER
-    return Leg(
-        part, level, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent
-    )
+    return Leg(part, level, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
 
 
 @kernel

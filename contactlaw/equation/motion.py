@@ -67,9 +67,8 @@ def rates(
 
 @kernel
 def start(
-    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: float,
-    memory: Memories | None,
-) -> ScaledState:  # fmt: skip
+    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: float, memory: Memories | None
+) -> ScaledState:
     """State on a leg, with the rates there."""
     dq, du, f, dmemory = rates(contact, leg, leg.kind, q, u, memory)
     return ScaledState(q, u, t, work, dq, du, f, memory, dmemory)

@@ -136,9 +136,7 @@ def inelasticity_of(plate: PlateConstants, root: float, ratio: float, stiffer: f
 
 
 @kernel(inline=True)
-def relaxed(
-    plate: PlateConstants, root: float, log_time: float
-) -> tuple[PlateConstants, float, float]:
+def relaxed(plate: PlateConstants, root: float, log_time: float) -> tuple[PlateConstants, float, float]:
     """Plate and V^(1/5) with the moduli of an impact, from ln T_H without their growth; ln g.
 
     What is given for V^(1/5) is V^(1/5) g^(2/5): T_H is that of a faster impact.
@@ -147,9 +145,14 @@ def relaxed(
     shorter = known.log_time - log_time
     growth, slower = known.modulus_power * shorter, math.exp(-0.5 * known.plate_power * shorter)
     plate = PlateConstants(
-        plate.inelasticity * slower, plate.transit * slower, plate.x_at_one * math.exp(-growth),
-        plate.saturated, plate.corrections, known, plate.rate,
-    )  # fmt: skip
+        plate.inelasticity * slower,
+        plate.transit * slower,
+        plate.x_at_one * math.exp(-growth),
+        plate.saturated,
+        plate.corrections,
+        known,
+        plate.rate,
+    )
     return plate, root * math.exp(0.4 * growth), growth
 
 
@@ -164,9 +167,8 @@ def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> f
 def with_saturation(plate: PlateConstants, saturated: float) -> PlateConstants:
     """Plate under a pair whose x is constant from another V^(1/5) on."""
     return PlateConstants(
-        plate.inelasticity, plate.transit, plate.x_at_one, saturated, plate.corrections,
-        plate.growth, plate.rate,
-    )  # fmt: skip
+        plate.inelasticity, plate.transit, plate.x_at_one, saturated, plate.corrections, plate.growth, plate.rate
+    )
 
 
 @kernel(inline=True)
@@ -178,10 +180,14 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
     slower = mass**0.4
     root = math.sqrt(slower)
     plate = PlateConstants(
-        pair.plate.inelasticity * mass / slower, pair.plate.transit / slower,
-        pair.plate.x_at_one * root, pair.plate.saturated / math.sqrt(root),
-        pair.plate.corrections, pair.plate.growth, pair.plate.rate,
-    )  # fmt: skip
+        pair.plate.inelasticity * mass / slower,
+        pair.plate.transit / slower,
+        pair.plate.x_at_one * root,
+        pair.plate.saturated / math.sqrt(root),
+        pair.plate.corrections,
+        pair.plate.growth,
+        pair.plate.rate,
+    )
     return PairConstants(plate, pair.time * slower, pair.mass * mass, pair.yield_compression)
 
 

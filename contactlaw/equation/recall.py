@@ -27,17 +27,17 @@ class Recalled(NamedTuple):
 
 
 @kernel(inline=True)
-def _block(
-    r: Array, at: int, x: float, y: float, f: float, half: float
-) -> tuple[float, float, float, float]:
+def _block(r: Array, at: int, x: float, y: float, f: float, half: float) -> tuple[float, float, float, float]:
     """Two numbers of the memory, and their gains, after a step of 2 half/tau; f is F before it."""
     a, s, b, d = half * r[at], half * r[at + 1], half * r[at + 2], half * r[at + 3]
     u, v = x - a * x + b * y + a * f, y - b * x - s * y + d * f
     per = 1.0 / ((1.0 + a) * (1.0 + s) + b * b)
     return (
-        per * ((1.0 + s) * u + b * v), per * ((1.0 + a) * v - b * u),
-        per * ((1.0 + s) * a + b * d), per * ((1.0 + a) * d - b * a),
-    )  # fmt: skip
+        per * ((1.0 + s) * u + b * v),
+        per * ((1.0 + a) * v - b * u),
+        per * ((1.0 + s) * a + b * d),
+        per * ((1.0 + a) * d - b * a),
+    )
 
 
 @kernel
@@ -58,6 +58,10 @@ def remembered(found: Recalled, force: float) -> Memory:
     """Memory at the end of a step, from the force there."""
     z, q = found.memory, found.gain
     return Memory(
-        z.x1 + q.x1 * force, z.y1 + q.y1 * force, z.x2 + q.x2 * force, z.y2 + q.y2 * force,
-        z.x3 + q.x3 * force, z.y3 + q.y3 * force,
-    )  # fmt: skip
+        z.x1 + q.x1 * force,
+        z.y1 + q.y1 * force,
+        z.x2 + q.x2 * force,
+        z.y2 + q.y2 * force,
+        z.x3 + q.x3 * force,
+        z.y3 + q.y3 * force,
+    )

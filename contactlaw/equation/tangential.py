@@ -68,9 +68,7 @@ def limited(wish: float, most: float) -> float:
 
 
 @kernel
-def stiffness_at(
-    law: Array, y: float, unit: float, largest: float, d: float, f: float
-) -> Stiffness:
+def stiffness_at(law: Array, y: float, unit: float, largest: float, d: float, f: float) -> Stiffness:
     """Elastic part of a contact that was loaded up to `largest`; y = inf follows Hertz's law.
 
     `unit` is K of Hertz's law. A finite sphere's centre approaches less than the half-spaces of
@@ -121,9 +119,16 @@ def part_of(spring: int, springs: int, width: float, k: float) -> float:
 
 @kernel
 def pull(
-    stretch: Array, width: float, kappa: float, before: float, now: Stiffness, f: float,
-    left: float, path: Array, total: Array,
-) -> None:  # fmt: skip
+    stretch: Array,
+    width: float,
+    kappa: float,
+    before: float,
+    now: Stiffness,
+    f: float,
+    left: float,
+    path: Array,
+    total: Array,
+) -> None:
     """Move springs (springs, impacts) along the surface by each impact's path; total their force.
 
     A spring is `width` wide in k, `before` is k at the last call, and `left` is what flow has left
@@ -186,9 +191,7 @@ def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stret
 
 
 @kernel(cache=True)
-def slide_all(
-    law: Array, y: Array, s: Array, kappa: float, paths: History, speed: Array, springs: int
-) -> None:
+def slide_all(law: Array, y: Array, s: Array, kappa: float, paths: History, speed: Array, springs: int) -> None:
     """`slide` for speeds (histories, speeds); s is the strength of the impacts."""
     room = np.empty(force.room_for(law))
     stretch = np.empty((springs, speed.shape[1]))

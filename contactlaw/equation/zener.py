@@ -82,9 +82,8 @@ _NO_NOTES = Notes(*np.empty((5, 0, 0)))
 
 @kernel(cache=True)
 def _integrate(
-    goal: int, law: Array, lam: Array, y: Array, s: Array, rtol: float, notes: Notes, out: Array,
-    edges: Edges | None,
-) -> None:  # fmt: skip
+    goal: int, law: Array, lam: Array, y: Array, s: Array, rtol: float, notes: Notes, out: Array, edges: Edges | None
+) -> None:
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
     The solution of each goes into a column of out, in the order of `Solution`.
@@ -104,9 +103,8 @@ def _integrate(
 
 @kernel
 def follow_impact(
-    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int,
-    edges: Edges | None,
-) -> Solution:  # fmt: skip
+    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int, edges: Edges | None
+) -> Solution:
     """Integrate one impact, and note points of its path in row n."""
     if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
         # slower impacts lose the same share, but the law knows no loss of the shallowest contacts
@@ -130,9 +128,7 @@ def follow_impact(
             high = math.sqrt(top.q * top.q - leg.residual)
         event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
-            state, event, h, steps = integrator.follow(
-                contact, leg, state, h, scale, level, high, until
-            )
+            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, high, until)
             total, longest = total + steps, max(longest, steps)
         # the leg ends unless the event was only a time or a compression to note
         ends = event != TIME and (event != LEVEL or level == leg.level)
@@ -155,15 +151,7 @@ def follow_impact(
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
     if goal == TO_THE_END:
-        edge.look_back(
-            edges,
-            n,
-            contact.plate.response,
-            state.memory,
-            state.u,
-            contact.plate.mobility,
-            state.t,
-        )
+        edge.look_back(edges, n, contact.plate.response, state.memory, state.u, contact.plate.mobility, state.t)
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
@@ -228,9 +216,14 @@ def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) 
 
 
 def history(
-    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array, edges: Edges | None = None,
+    law: Array,
+    lam: ArrayLike,
+    y: ArrayLike,
+    rtol: float,
+    time: Array,
+    edges: Edges | None = None,
     strength: ArrayLike = 0.0,
-) -> tuple[Array, Array, Array]:  # fmt: skip
+) -> tuple[Array, Array, Array]:
     """Force, compression and speed of the sphere at rising times [T_H] since first touch.
 
     There is one lam and one y, which `solve` solves, for each row of times. After separation the
@@ -238,18 +231,14 @@ def history(
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
-    status, n = failure(
-        _run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=strength).status
-    )
+    status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=strength).status)
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
     return f, w, u
 
 
-def histories(
-    law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None
-) -> None:
+def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None) -> None:
     """Contacts at even times from touch to separation."""
     out.time[:] = outcome.contact_time[:, None] * np.linspace(0.0, 1.0, out.time.shape[1])
     lam, y, s = outcome.inelasticity, _scale(outcome.yield_ratio), outcome.strength
@@ -316,10 +305,7 @@ def _just_yielding() -> Array:
         law = np.append(HERTZ, [s, 0.0, 0.0, 0.0])
         law[force.row_of(law, 0) + force.DEGREE] = 4.0
         logs.append(np.log(elastic_compression(law, _HALF * x / (1.0 - x), 1e-13)[1]))
-    inverse = [
-        np.linalg.inv(np.polynomial.chebyshev.chebvander(t, n))
-        for t, n in zip(nodes, _DEGREES, strict=True)
-    ]
+    inverse = [np.linalg.inv(np.polynomial.chebyshev.chebvander(t, n)) for t, n in zip(nodes, _DEGREES, strict=True)]
     return np.asarray(inverse[1] @ np.array(logs) @ inverse[0].T)
 
 
@@ -360,9 +346,7 @@ def _put(one: Solution, w_m: Array, out: Outcome) -> None:
     out.compression_ratio[:] = one.peak_compression / w_m
 
 
-def solve_all(
-    law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None
-) -> tuple[int, int]:
+def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None) -> tuple[int, int]:
     """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
     A few impacts need no compiled integrator, if their last digits do not matter.
@@ -408,9 +392,8 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
 
 
 def overload_at(
-    law: Array, lam: Any, w_m: Any, dm: Any, rtol: float, few: bool = False,
-    strength: ArrayLike = 0.0,
-) -> Any:  # fmt: skip
+    law: Array, lam: Any, w_m: Any, dm: Any, rtol: float, few: bool = False, strength: ArrayLike = 0.0
+) -> Any:
     """Overload at which the largest compression is dm; NaN if the equation does not solve.
 
     By the secant method in logarithms, since ln dm is nearly ln chi.
@@ -461,9 +444,7 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
             n = beyond[k]
-            one = (
-                law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
-            )
+            one = law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
             left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
             if own.size > 0:
                 out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))

@@ -147,9 +147,7 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
     add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
     add(program, functions.flags_for, pair, impact, *_VECTOR)
-    add(
-        program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE
-    )  # fmt: skip
+    add(program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE)
     add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
 
@@ -219,6 +217,5 @@ def _body(material: Material) -> str:
 def _comment(text: str) -> list[str]:
     """Lines within a comment of C, which no name of a law or a material can end."""
     return textwrap.wrap(
-        c_comment(text), _WIDTH, initial_indent=" * ", subsequent_indent=" *     ",
-        break_on_hyphens=False,
-    )  # fmt: skip
+        c_comment(text), _WIDTH, initial_indent=" * ", subsequent_indent=" *     ", break_on_hyphens=False
+    )

@@ -28,15 +28,7 @@ from contactlaw.equation.force import (
     room_for,
     strongest,
 )
-from contactlaw.equation.numbers import (
-    HEAVIEST,
-    LIGHTEST,
-    Impact,
-    Numbers,
-    PairConstants,
-    PlateConstants,
-    numbers,
-)
+from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
@@ -48,14 +40,7 @@ from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength
 from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
-from contactlaw.stepping.spring import (
-    Spring,
-    State,
-    impact,
-    resized,
-    stepped,
-    unit_spring,
-)
+from contactlaw.stepping.spring import Spring, State, impact, resized, stepped, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
 
@@ -140,11 +125,7 @@ def plain_exp(x: float) -> float:
 
 
 # What is quick in compiled Python by other ways than those of a language's library.
-INSTEAD: dict[Any, Any] = {
-    lookup.log_and_root: plain_log_and_root,
-    lookup.series_at: series_of,
-    lookup.exp: plain_exp,
-}
+INSTEAD: dict[Any, Any] = {lookup.log_and_root: plain_log_and_root, lookup.series_at: series_of, lookup.exp: plain_exp}
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"
 NOTHING = Answer(*[math.nan] * len(Answer._fields))
@@ -205,9 +186,15 @@ def on_plate(pair: Bodies, radius: float, thickness: float) -> Spring:
     if not fits(radius, thickness):
         radius = h = math.nan
     return Spring(
-        unit.mass, unit.solid, unit.stiffness, unit.mobility / (h * h), unit.scale, unit.relaxation,
-        unit.ratio / h, unit.plate,
-    )  # fmt: skip
+        unit.mass,
+        unit.solid,
+        unit.stiffness,
+        unit.mobility / (h * h),
+        unit.scale,
+        unit.relaxation,
+        unit.ratio / h,
+        unit.plate,
+    )
 
 
 @kernel
@@ -217,9 +204,8 @@ def spring_of(pair: Bodies, radius: float, thickness: float) -> BeadSpring:
         radius = math.nan
     one = resized(on_plate(pair, radius, thickness), radius)
     return BeadSpring(
-        one.mass, one.stiffness, one.mobility, one.scale, one.relaxation, one.ratio, radius, 0.0, 0,
-        one.plate,
-    )  # fmt: skip
+        one.mass, one.stiffness, one.mobility, one.scale, one.relaxation, one.ratio, radius, 0.0, 0, one.plate
+    )
 
 
 @kernel
@@ -231,9 +217,17 @@ def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadS
     elif edge > 0 and bead.ratio > 0.0:  # the edge of a half-space is too far away
         rate = wave_rate(pair.wave_path, bead.radius / bead.ratio, distance)
     return BeadSpring(
-        bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,
-        bead.radius, rate, edge, bead.plate,
-    )  # fmt: skip
+        bead.mass,
+        bead.stiffness,
+        bead.mobility,
+        bead.scale,
+        bead.relaxation,
+        bead.ratio,
+        bead.radius,
+        rate,
+        edge,
+        bead.plate,
+    )
 
 
 @kernel
@@ -241,9 +235,15 @@ def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
     """Spring of a bead on a plate, as steps take it."""
     r = bead.radius
     return Spring(
-        bead.mass, pair.unit.mass * (r * r * r), bead.stiffness, bead.mobility, bead.scale,
-        bead.relaxation, bead.ratio, bead.plate,
-    )  # fmt: skip
+        bead.mass,
+        pair.unit.mass * (r * r * r),
+        bead.stiffness,
+        bead.mobility,
+        bead.scale,
+        bead.relaxation,
+        bead.ratio,
+        bead.plate,
+    )
 
 
 @kernel
@@ -287,9 +287,7 @@ def of_mass(pair: Bodies, speed: float, radius: float, thickness: float, mass: f
 def is_valid(impact: Impact) -> bool:
     """Whether an impact is one that the model is for."""
     return (
-        V_MIN <= impact.speed <= V_MAX
-        and fits(impact.radius, impact.thickness)
-        and LIGHTEST <= impact.mass <= HEAVIEST
+        V_MIN <= impact.speed <= V_MAX and fits(impact.radius, impact.thickness) and LIGHTEST <= impact.mass <= HEAVIEST
     )
 
 
@@ -305,9 +303,7 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
     none = np.empty((0, 0))
     own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
     notes = zener.Notes(none, none, none, none, none)
-    return zener.follow_impact(
-        goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
-    )  # fmt: skip
+    return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0, None)
 
 
 @kernel
@@ -316,11 +312,18 @@ def in_si(one: zener.Solution, units: Numbers, impact: Impact) -> Answer:
     if one.status != 0.0:
         return NOTHING
     return Answer(
-        one.restitution, one.contact_time * units.time, one.loading_time * units.time,
-        one.peak_force * units.force, one.peak_compression * units.compression,
-        one.residual_compression * units.compression, one.plastic_fraction, one.wave_fraction,
-        one.other_fraction, units.inelasticity, impact.mass,
-    )  # fmt: skip
+        one.restitution,
+        one.contact_time * units.time,
+        one.loading_time * units.time,
+        one.peak_force * units.force,
+        one.peak_compression * units.compression,
+        one.residual_compression * units.compression,
+        one.plastic_fraction,
+        one.wave_fraction,
+        one.other_fraction,
+        units.inelasticity,
+        impact.mass,
+    )
 
 
 @kernel
@@ -343,9 +346,7 @@ def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answ
 
 
 @kernel
-def rebound_with_mass(
-    pair: Bodies, speed: float, radius: float, thickness: float, mass: float
-) -> Answer:
+def rebound_with_mass(pair: Bodies, speed: float, radius: float, thickness: float, mass: float) -> Answer:
     """Return the same for a bead of this mass [kg], from LIGHTEST to HEAVIEST of a solid sphere's.
 
     Flags take it as it is; near an edge, and in steps, set the mass of a spring.
@@ -365,9 +366,7 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
 
 
 @kernel
-def restitution_near(
-    pair: Bodies, speed: float, radius: float, thickness: float, edge: int, distance: float
-) -> float:
+def restitution_near(pair: Bodies, speed: float, radius: float, thickness: float, edge: int, distance: float) -> float:
     """COR at this distance [m] from an edge, by some 100 steps.
 
     It errs by less than 1e-3 from a third of a thickness on. Without an edge it is that of
@@ -397,9 +396,14 @@ def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
         return -1
     units = numbers_of(pair, impact)
     return mass_flags(impact.mass) | flags_of(
-        limits_at(pair.limits, units.strength), impact.radius, impact.thickness, units.compression,
-        hit.contact_time, hit.peak_compression, hit.peak_force,
-    )  # fmt: skip
+        limits_at(pair.limits, units.strength),
+        impact.radius,
+        impact.thickness,
+        units.compression,
+        hit.contact_time,
+        hit.peak_compression,
+        hit.peak_force,
+    )
 
 
 @kernel
@@ -410,9 +414,16 @@ def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness:
 
 @kernel
 def rub(
-    pair: Bodies, bead: BeadSpring, state: State, row: Any, overlap: float, dt: float, n: Point,
-    velocity: Point, friction: float,
-) -> Point:  # fmt: skip
+    pair: Bodies,
+    bead: BeadSpring,
+    state: State,
+    row: Any,
+    overlap: float,
+    dt: float,
+    n: Point,
+    velocity: Point,
+    friction: float,
+) -> Point:
     """Friction in the step that has just been taken; the row knows the compression before it."""
     up, before = dot(velocity, n), row.largest_compression
     slip = velocity[0] - up * n[0], velocity[1] - up * n[1], velocity[2] - up * n[2]
@@ -422,9 +433,8 @@ def rub(
         return 0.0, 0.0, 0.0
     spring = contact_spring(pair, bead)
     return tangential_force(
-        row, friction, pair.tangential_ratio, pair.law, spring, state, before, overlap, -up, n,
-        slip, dt, 0.0, pair.room,
-    )  # fmt: skip
+        row, friction, pair.tangential_ratio, pair.law, spring, state, before, overlap, -up, n, slip, dt, 0.0, pair.room
+    )
 
 
 @kernel
@@ -434,25 +444,14 @@ def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> His
     own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
-    zener.follow_impact(
-        zener.AT_TIMES,
-        own,
-        units.inelasticity,
-        units.yield_ratio,
-        RTOL,
-        notes,
-        0,
-        None,
-    )
+    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0, None)
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
     return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])
 
 
 @kernel
-def rubbed(
-    pair: Bodies, impact: Impact, size: float, friction: float, samples: int, springs: int
-) -> float:
+def rubbed(pair: Bodies, impact: Impact, size: float, friction: float, samples: int, springs: int) -> float:
     """Change of the contact point's speed along the plate in an impact [m/s]."""
     speed = impact.speed
     if not (speed * friction > 0.0 and size > 0.0):
@@ -472,9 +471,8 @@ def rubbed(
 
 @kernel
 def collided(
-    pair: Bodies, v: Point, omega: Point, n: Point, w: Point, radius: float, thickness: float,
-    friction: float,
-) -> Collision:  # fmt: skip
+    pair: Bodies, v: Point, omega: Point, n: Point, w: Point, radius: float, thickness: float, friction: float
+) -> Collision:
     """Velocity and spin after an impact on a plate that moves with w."""
     came, nan = sliding(v, omega, unit(n), w, radius), math.nan
     if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:

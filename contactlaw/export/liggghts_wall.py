@@ -22,9 +22,12 @@ from contactlaw.stepping.spring import FEWEST_STEPS
 from contactlaw.table import lookup
 
 _FILES = (
-    "normal_model_contactlaw.h.in", "tangential_model_contactlaw.h.in", "wall_contactlaw.cpp",
-    "build.sh", "README.txt.in",
-)  # fmt: skip
+    "normal_model_contactlaw.h.in",
+    "tangential_model_contactlaw.h.in",
+    "wall_contactlaw.cpp",
+    "build.sh",
+    "README.txt.in",
+)
 
 
 def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
@@ -72,9 +75,7 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     between = ImpactModel(Pair(sphere, sphere), law.family if law.from_pair else law)
     with _atomic.folder(folder) as made:
         c_header.header(made / "contactlaw.h", model, table="none")
-        c_header.header(
-            made / "contactlaw_beads.h", between, table="none", prefix="contactlaw_beads"
-        )
+        c_header.header(made / "contactlaw_beads.h", between, table="none", prefix="contactlaw_beads")
         for name, content in _texts(model, between.pair).items():
             (made / name).write_bytes(content.encode())
 

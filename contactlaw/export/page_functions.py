@@ -103,12 +103,25 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
     change = rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)
     after, found = size - change, exceeded(pair, hit, impact)
     if flows(
-        page.strength, page.modulus, hit.peak_force, hit.peak_compression,
-        hit.residual_compression, hit.contact_time, friction, size, after,
-    ):  # fmt: skip
+        page.strength,
+        page.modulus,
+        hit.peak_force,
+        hit.peak_compression,
+        hit.residual_compression,
+        hit.contact_time,
+        friction,
+        size,
+        after,
+    ):
         found |= page.flag
     return Hit(
-        hit, found, speed, size, after, size - change / POINT,
-        (1.0 - 1.0 / POINT) * change / impact.radius, math.cos(tilt) ** 2,
+        hit,
+        found,
+        speed,
+        size,
+        after,
+        size - change / POINT,
+        (1.0 - 1.0 / POINT) * change / impact.radius,
+        math.cos(tilt) ** 2,
         change * (size + after) / (POINT * given.speed * given.speed),
-    )  # fmt: skip
+    )

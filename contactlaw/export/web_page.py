@@ -125,9 +125,13 @@ def _typed(body: Material) -> str:
     if body.hardening or body.rate or body.loss_factor:
         return ""
     fields = {
-        "E": body.youngs_modulus, "nu": body.poissons_ratio, "rho": body.density,
-        "yield": body.yield_strength, "hardness": body.hardness, "kind": body.kind,
-    }  # fmt: skip
+        "E": body.youngs_modulus,
+        "nu": body.poissons_ratio,
+        "rho": body.density,
+        "yield": body.yield_strength,
+        "hardness": body.hardness,
+        "kind": body.kind,
+    }
     return " ".join(f"{key}={value}" for key, value in fields.items() if value is not None)
 
 

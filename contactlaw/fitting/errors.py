@@ -87,9 +87,7 @@ class ModelCovariance(NamedTuple):
         return found
 
 
-def covariances(
-    predictor: Predictor, slopes: Array, error: Array, model: ModelCovariance | None
-) -> Errors:
+def covariances(predictor: Predictor, slopes: Array, error: Array, model: ModelCovariance | None) -> Errors:
     """Propagate errors of the values, the priors and the model.
 
     Parameters
@@ -111,10 +109,7 @@ def covariances(
 
 
 def freedoms(
-    predictor: Predictor,
-    slopes: Array,
-    error: Array,
-    found: Sequence[tuple[NDArray[np.bool_], float]],
+    predictor: Predictor, slopes: Array, error: Array, found: Sequence[tuple[NDArray[np.bool_], float]]
 ) -> Array:
     """Degrees of freedom of each parameter's variance, by Welch and Satterthwaite.
 

@@ -16,13 +16,7 @@ from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
-from contactlaw.fitting.unknowns import (
-    OTHER_STRENGTH,
-    Parameter,
-    parameters,
-    setting,
-    with_loss_factors,
-)
+from contactlaw.fitting.unknowns import OTHER_STRENGTH, Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
@@ -105,11 +99,7 @@ class Fit:
     _state: _State = field(repr=False)
 
     def curve(
-        self,
-        speed: ArrayLike,
-        radius: ArrayLike,
-        thickness: ArrayLike,
-        sliding_speed: ArrayLike | None = None,
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, sliding_speed: ArrayLike | None = None
     ) -> tuple[Rebound, dict[str, Array]]:
         """Rebounds at other speeds with the values found, and their standard errors.
 
@@ -141,9 +131,7 @@ class Fit:
             raise ArgumentError("sliding_speed", None, reason)
         *flat, _ = broadcast(**inputs)
         data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
-        varied = [
-            replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)
-        ]
+        varied = [replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)]
         along = Predictor(self.pair, state.predictor.law, data, varied, Values.of(data))
         here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
@@ -234,9 +222,7 @@ def _law(pair: Pair, law: str | Law, parameters: list[Parameter]) -> Law:
     """Resolve the law; for that, a body whose strength is unknown has a guess of it."""
     strengths = [one for one in parameters if one.is_strength]
     if strengths:
-        guesses = np.array(
-            [1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths]
-        )
+        guesses = np.array([1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths])
         one_row = Measurements(speed=1.0, radius=1.0, thickness=1.0, restitution=0.5)
         pair = setting(pair, one_row, strengths, guesses).pair
     return law_of(pair, law)
@@ -271,9 +257,7 @@ def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquar
     return _LeastSquares(basins, error, freedom)
 
 
-def _found_errors(
-    predictor: Predictor, descent: search.Descent, at: Array, error: Array
-) -> tuple[Array, float]:
+def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, error: Array) -> tuple[Array, float]:
     """Errors of the values, from their scatter where they were not given; degrees of freedom.
 
     Each free parameter costs one degree of freedom, of the kinds of values that determine it; one
@@ -336,16 +320,12 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     widths = np.zeros(at.size)
     if freedom > 0.0:
         left = 1.0 - errors.leverages(predictor, slopes, error)
-        pools = [
-            (part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)
-        ]
+        pools = [(part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)]
         each = errors.freedoms(predictor, slopes, error, pools)
         widths = np.array([errors.student(one) for one in each.tolist()])
     found = found.widened(widths)
     total = found.total[unknowns, unknowns]
-    identify.check(
-        names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns]
-    )
+    identify.check(names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns])
     used = found.statistical if freedom > 0.0 else found.total
     found = found.widened(_nonlinearity_factors(predictor, at, fitted, used, doubt))
     total = found.total[unknowns, unknowns]
@@ -403,8 +383,7 @@ def _alternatives(
     return [
         one.at
         for one in others
-        if squares(one) < least + _EXCLUDED
-        and (np.abs(np.log(one.at / best.at)) > 2.0 * spread).any()
+        if squares(one) < least + _EXCLUDED and (np.abs(np.log(one.at / best.at)) > 2.0 * spread).any()
     ]
 
 
@@ -413,9 +392,7 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     return float(off @ off)
 
 
-def _nonlinearity_factors(
-    predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array
-) -> Array:
+def _nonlinearity_factors(predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array) -> Array:
     """Factors that widen standard errors where the model is not linear in a parameter.
 
     Two standard errors off, with the other parameters following, the sum of squares rises by 4 if
@@ -452,9 +429,7 @@ def _nonlinearity_factors(
     return factors
 
 
-def _check_strengths(
-    predictor: Predictor, at: Array, fitted: Array, error: Array, model: Array | None
-) -> None:
+def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array, model: Array | None) -> None:
     """Refuse a strength or a friction that might as well be any larger one.
 
     Raises
@@ -472,9 +447,7 @@ def _check_strengths(
             least = _squares(predictor, fitted, doubt)
             if _squares(predictor, there, doubt) < least + _EXCLUDED:
                 why = _least_value(predictor, strong, n, error)
-                raise identify.UnidentifiedError(
-                    f"the data do not determine {one.name}: {why}", (one.name,)
-                )
+                raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
 
 
 def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> str:

@@ -27,10 +27,7 @@ class UnidentifiedError(ArgumentError):
     """
 
     def __init__(
-        self,
-        message: str,
-        unknown: tuple[str, ...],
-        known: tuple[tuple[dict[str, float], float, float], ...] = (),
+        self, message: str, unknown: tuple[str, ...], known: tuple[tuple[dict[str, float], float, float], ...] = ()
     ) -> None:
         super().__init__("unknown", None, message)
         self.args = message, unknown, known  # pickle needs them
@@ -57,16 +54,12 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
         return
     if len(names) == 1:
         error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
-        raise UnidentifiedError(
-            f"the data do not determine {names[0]}: its standard error is {error:.0f} %",
-            names,
-        )
+        raise UnidentifiedError(f"the data do not determine {names[0]}: its standard error is {error:.0f} %", names)
     known = []
     for square, direction in zip(squares, directions.T, strict=True):
         if square <= _VAGUE**2:
             known.append(_product(names, values, direction, float(np.sqrt(square))))
-    what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}"
-                     for powers, value, error in known)  # fmt: skip
+    what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}" for powers, value, error in known)
     products = f"they determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
         f"the data do not tell {' and '.join(names)} apart: {products}"
@@ -82,10 +75,8 @@ def _product(
     """Product of powers whose largest exponent is 1, its value and relative error."""
     largest = direction[int(np.argmax(np.abs(direction)))]
     powers = direction / largest
-    kept = {name: float(power) for name, power in zip(names, powers, strict=True)
-            if abs(power) > _SMALL}  # fmt: skip
-    value = float(np.exp(sum(kept.get(name, 0.0) * np.log(value)
-                             for name, value in zip(names, values, strict=True))))  # fmt: skip
+    kept = {name: float(power) for name, power in zip(names, powers, strict=True) if abs(power) > _SMALL}
+    value = float(np.exp(sum(kept.get(name, 0.0) * np.log(value) for name, value in zip(names, values, strict=True))))
     return kept, value, error / abs(float(largest))
 
 
@@ -97,5 +88,4 @@ def _words(powers: dict[str, float]) -> str:
     >>> _words({"thickness": 1.0, "plate_density": 0.252})
     'thickness x plate_density^0.25'
     """
-    return " x ".join(name if power == 1.0 else f"{name}^{power:.2g}"
-                      for name, power in powers.items())  # fmt: skip
+    return " x ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in powers.items())

@@ -38,9 +38,7 @@ NORMAL = {
 # tangential = 1 - (2/7) (1 + rotational); 1 + rotational is what friction took of the sliding.
 OBLIQUE = {
     "tangential_restitution": Measurable("tangential restitution", "-", 1e-3, 1.2, "in per cent?"),
-    "rotational_restitution": Measurable(
-        "rotational restitution", "-", -0.9999, 1.2, "in per cent?", 1.0
-    ),
+    "rotational_restitution": Measurable("rotational restitution", "-", -0.9999, 1.2, "in per cent?", 1.0),
     "spin": Measurable("spin", "rad/s", 1e-3, 1e9, "its size, without a sign; in rpm?"),
 }
 KINDS = NORMAL | OBLIQUE
@@ -160,9 +158,7 @@ class Measurements:
         return any(getattr(self, name) is not None for name in OBLIQUE)
 
     @classmethod
-    def of(
-        cls, data: Measurements | Mapping[str, ArrayLike] | Record, unknown: Collection[str] = ()
-    ) -> Measurements:
+    def of(cls, data: Measurements | Mapping[str, ArrayLike] | Record, unknown: Collection[str] = ()) -> Measurements:
         """Return measurements as they are, or make them from a mapping of names, as a DataFrame.
 
         Of the record of a run these are the COR of its impacts on walls, with the sizes that are
@@ -179,15 +175,11 @@ class Measurements:
             return data
         if isinstance(data, Record):
             line = np.flatnonzero(data.impact & (data.rows["plate"] >= 0))
-            names = {"restitution", "radius", "thickness"} & {*(data.rows.dtype.names or ())} - {
-                *unknown
-            }
+            names = {"restitution", "radius", "thickness"} & {*(data.rows.dtype.names or ())} - {*unknown}
             named = {name: data.rows[name][line] for name in names}
             return cls(data.rows["approach_speed"][line], **named, line=line)
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
-            raise TypeError(
-                f"data: expected Measurements, a Record or a mapping of names, got {data!r}"
-            )
+            raise TypeError(f"data: expected Measurements, a Record or a mapping of names, got {data!r}")
         known = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
         wrong = [name for name in columns if name not in known]

@@ -65,15 +65,10 @@ def notes(
     fitted = columns_of(hit, predictor.setting(at))[values.kind, values.row]
     off = values.value / fitted - 1.0
     if freedom <= 0.0:
-        yield (
-            "as many unknowns as values, and no errors of these: the errors stated are those of "
-            "the model alone"
-        )
+        yield ("as many unknowns as values, and no errors of these: the errors stated are those of the model alone")
     else:
         yield from _found_errors(predictor, standard)
-    yield from _misfits(
-        predictor, off, np.hypot(standard, 0.0 if model is None else model), freedom
-    )
+    yield from _misfits(predictor, off, np.hypot(standard, 0.0 if model is None else model), freedom)
     if model is None:
         yield (
             f"how far law {predictor.law.family!r} is from finite elements is not known: the "
@@ -221,9 +216,7 @@ def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:
             )
 
 
-def _trends(
-    predictor: Predictor, off: Array, standard: Array, model: Array | None
-) -> Iterator[str]:
+def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | None) -> Iterator[str]:
     """Name kinds of values whose residuals trend with speed."""
     values = predictor.values
     for n, name in enumerate(KINDS):

@@ -53,9 +53,7 @@ UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 
 UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
 UNKNOWNS["friction"] = Unknown("coefficient of friction", "", "", "friction", 1e-3, 5.0)
 # The strength of one body may have been asked for where it is the other one that yields.
-OTHER_STRENGTH = {
-    "yield_strength": "plate_yield_strength", "plate_yield_strength": "yield_strength"
-}  # fmt: skip
+OTHER_STRENGTH = {"yield_strength": "plate_yield_strength", "plate_yield_strength": "yield_strength"}
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)
 _USUAL_LOSS = 0.05  # tan delta with which a search begins if none is given
@@ -99,11 +97,7 @@ class Setting(NamedTuple):
 
 
 def parameters(
-    pair: Pair,
-    data: Measurements,
-    unknown: str | Iterable[str],
-    priors: Mapping[str, float],
-    known: Pair | None = None,
+    pair: Pair, data: Measurements, unknown: str | Iterable[str], priors: Mapping[str, float], known: Pair | None = None
 ) -> list[Parameter]:
     """List the parameters: the unknowns first, then given values with priors.
 
@@ -123,9 +117,7 @@ def parameters(
     if not 1 <= len(names) <= _MOST or len(set(names)) < len(names):
         raise ArgumentError("unknown", names, f"must be one to {_MOST} different names")
     if "friction" in [*names, *priors] and not data.is_oblique:
-        kinds = (
-            f"{', '.join(NORMAL)} do not depend on friction: measure one of {', '.join(OBLIQUE)}"
-        )
+        kinds = f"{', '.join(NORMAL)} do not depend on friction: measure one of {', '.join(OBLIQUE)}"
         raise ArgumentError("unknown", None, f"{kinds} at an angle")
     for size in _SIZES if data.is_oblique else _SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)

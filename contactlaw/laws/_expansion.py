@@ -31,9 +31,7 @@ _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
 _TO_CHEBYSHEV = chebyshev.chebvander(_NODES, _TERMS - 1) * 2.0 / _TERMS
 _TO_CHEBYSHEV[:, 0] *= 0.5
-_TO_POWERS = np.array(
-    [np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)]
-)
+_TO_POWERS = np.array([np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +68,7 @@ class Cuts:
         Whether formulas are checked, as those of users have to be: half the time of making a law.
     """
 
-    def __init__(
-        self, vanished: float = _VANISHED, widest: float = _WIDEST, checked: bool = True
-    ) -> None:
+    def __init__(self, vanished: float = _VANISHED, widest: float = _WIDEST, checked: bool = True) -> None:
         self.vanished, self.widest, self.checked = vanished, widest, checked
         self.shares: list[Array] = []
         self._next = 0
@@ -99,9 +95,7 @@ class Cuts:
         self._next += 1
 
 
-def _expand(
-    name: str, parts: Sequence[_Function | float], low: float, high: float, cuts: Cuts
-) -> list[_Piece]:
+def _expand(name: str, parts: Sequence[_Function | float], low: float, high: float, cuts: Cuts) -> list[_Piece]:
     """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
     todo, done = list(itertools.pairwise(cuts.edges(low, high).tolist())), []
     while todo:
@@ -114,10 +108,7 @@ def _expand(
         for n in np.flatnonzero(smooth):
             powers = [rows[n, : size[n]] for (rows, _), size in zip(found, lengths, strict=True)]
             done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], powers))
-        todo = [
-            ends for n in np.flatnonzero(~smooth)
-            for ends in ((left[n], middle[n]), (middle[n], right[n]))
-        ]  # fmt: skip
+        todo = [ends for n in np.flatnonzero(~smooth) for ends in ((left[n], middle[n]), (middle[n], right[n]))]
         if len(todo) + len(done) > _MOST_PIECES:
             near = f"{todo[0][0]:.6g} d_Y"
             reason = f"it is not smooth near {near}; give each kink a branch that begins there"
@@ -134,9 +125,7 @@ def _lengths(rows: Array) -> list[int]:
     return [int(size) for size in sizes]
 
 
-def _powers(
-    name: str, part: _Function | float, at: Array, vanished: float
-) -> tuple[Array, NDArray[np.bool_]]:
+def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> tuple[Array, NDArray[np.bool_]]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
     if isinstance(part, float):
         return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
@@ -174,9 +163,7 @@ def _values(name: str, what: str, function: Formula, at: Array) -> Array:
 class LoadingCurve:
     """The loading curve in pieces, with force and work at any compressions."""
 
-    def __init__(
-        self, name: str, branches: Sequence[Loading], yields: bool, end: float, cuts: Cuts
-    ) -> None:
+    def __init__(self, name: str, branches: Sequence[Loading], yields: bool, end: float, cuts: Cuts) -> None:
         if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
             forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
             raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
@@ -317,9 +304,7 @@ def check_yield(
         raise ArgumentError("law", None, reason)
 
 
-def _check_joints(
-    name: str, curve: LoadingCurve, branches: Sequence[Unloading], error: float
-) -> None:
+def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading], error: float) -> None:
     """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
     before: tuple[float, float] | None = None if curve.stiffer else (0.0, 0.0)
     for branch, end in _ends(branches, curve.end):
@@ -376,9 +361,7 @@ def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula,
     return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
 
 
-def _unloading_rows(
-    name: str, curve: LoadingCurve, branch: Unloading, end: float, cuts: Cuts
-) -> list[_Row]:
+def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: float, cuts: Cuts) -> list[_Row]:
     exponent = branch.exponent
     residual, loss = _residual_and_loss(curve, branch)
     some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200 if cuts.checked else 0)
@@ -400,11 +383,7 @@ def _unloading_rows(
     parts: list[_Function | float] = [
         _Function("residual compression", branch.residual, smaller if branch.order else np.positive)
     ]
-    parts.append(
-        _Function("exponent", lambda dm: 2.0 * exponent(dm))
-        if callable(exponent)
-        else 2.0 * exponent
-    )
+    parts.append(_Function("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent)
     if branch.loss is None:
         parts.append(_Function("loss", loss, lost))
     else:
@@ -455,17 +434,11 @@ class Expanded(NamedTuple):
     capped: bool
 
 
-def expanded(
-    name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, cuts: Cuts
-) -> Expanded:
+def expanded(name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, cuts: Cuts) -> Expanded:
     """Expand the formulas of a law."""
     cuts.again()
     curve = LoadingCurve(name, loading, bool(unloading), end, cuts)
-    rows = [
-        row
-        for branch in _ends(unloading, curve.end)
-        for row in _unloading_rows(name, curve, *branch, cuts)
-    ]
+    rows = [row for branch in _ends(unloading, curve.end) for row in _unloading_rows(name, curve, *branch, cuts)]
     if cuts.checked:
         _check_joints(name, curve, unloading, 1e3 * cuts.vanished)
     if rows:
@@ -480,13 +453,9 @@ def packed(laws: Sequence[Expanded]) -> list[Array]:
     """
     # A function has one length on all pieces: the processor predicts loops of constant length.
     rows = [one.rows for one in laws]
-    terms = [
-        max((row.piece.parts[n].size for law in rows for row in law), default=0)
-        for n in range(_FUNCTIONS)
-    ]
+    terms = [max((row.piece.parts[n].size for law in rows for row in law), default=0) for n in range(_FUNCTIONS)]
     loading = [
-        max(piece.parts[0].size for piece in same)
-        for same in zip(*(one.curve.pieces for one in laws), strict=True)
+        max(piece.parts[0].size for piece in same) for same in zip(*(one.curve.pieces for one in laws), strict=True)
     ]
     return [_packed(one, loading, terms) for one in laws]
 

@@ -249,9 +249,7 @@ class Law:
         return _force.loss(self.data, dm)
 
 
-def laid_out_alike(
-    laws: Sequence[Mapping[str, Any]], vanished: float, widest: float
-) -> list[Array]:
+def laid_out_alike(laws: Sequence[Mapping[str, Any]], vanished: float, widest: float) -> list[Array]:
     """Arrays of laws, from arguments of `Law.of`, which have one layout.
 
     Their branches are the same; `vanished` and `widest` are as in `Cuts`.

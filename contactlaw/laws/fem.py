@@ -104,9 +104,7 @@ def friction_loss(given: Given, powers: list[float]) -> float:
     A polynomial in Dundurs' second parameter (Johnson 1985, Eq. 5.3), by which surfaces that are
     pressed together slip on each other; equal bodies do not slip.
     """
-    one, other = (
-        (1.0 - 2.0 * nu) / (1.0 - nu) for nu in (given.poissons_ratio, given.plate_poissons_ratio)
-    )
+    one, other = ((1.0 - 2.0 * nu) / (1.0 - nu) for nu in (given.poissons_ratio, given.plate_poissons_ratio))
     mismatch = 0.5 * ((1.0 - given.modulus_share) * one - given.modulus_share * other)
     return max(_LEAST_FRICTION, float(np.polynomial.polynomial.polyval(mismatch, powers)))
 
@@ -155,10 +153,7 @@ class Given(NamedTuple):
     @property
     def hardens(self) -> bool:
         """Whether the strength of a body that yields grows with the depth of the contact."""
-        return (
-            self.sphere_ratio * self.sphere_hardening + self.plate_ratio * self.plate_hardening
-            > 0.0
-        )
+        return self.sphere_ratio * self.sphere_hardening + self.plate_ratio * self.plate_hardening > 0.0
 
     @property
     def relaxation(self) -> float:

@@ -42,9 +42,6 @@ LAW = Law.of(
         Loading(0.0, HERTZ),
         Loading(P, Polynomial([-0.5 * P**1.5, 0.0, 1.5 * math.sqrt(P)])),  # Eq. 16, phase 2
     ],
-    unloading=[
-        Unloading(1.0, residual, loss=_loss, order=2.0, loss_order=2.0),
-        Unloading(P, residual, order=2.0),
-    ],
+    unloading=[Unloading(1.0, residual, loss=_loss, order=2.0, loss_order=2.0), Unloading(P, residual, order=2.0)],
     yield_strains=(1 / 40, 1 / 20),
 )

@@ -65,9 +65,7 @@ def _cap_low(dm: Array) -> Array:
 def _cap_high(dm: Array) -> Array:
     """Compression, between 1 and dm, from which the printed curve lies above the loading curve."""
     dr, stiffness = residual(dm) * (dm - 1.0) ** 2, np.exp(_log_stiffness(dm))
-    return np.asarray(
-        bisect(lambda d: stiffness * (d - dr) ** 1.5 > _elastic_plastic(d), np.ones_like(dm), dm)
-    )
+    return np.asarray(bisect(lambda d: stiffness * (d - dr) ** 1.5 > _elastic_plastic(d), np.ones_like(dm), dm))
 
 
 def _loss_below(dm: Array) -> Array:
@@ -105,19 +103,10 @@ LAW = Law.of(
     name="stronge",
     source="Stronge, Impact Mechanics (2000), chapter 6; d_p by continuity, see the module",
     yield_coefficient=_C_YIELD,
-    loading=[
-        Loading(0.0, HERTZ),
-        Loading(1.0, _elastic_plastic),
-        Loading(_P, lambda d: _PRESSURES * (2.0 * d - 1.0)),
-    ],
+    loading=[Loading(0.0, HERTZ), Loading(1.0, _elastic_plastic), Loading(_P, lambda d: _PRESSURES * (2.0 * d - 1.0))],
     unloading=[
-        Unloading(
-            1.0, residual, loss=_loss_next_to_yield, order=2.0, loss_order=3.5,
-            cap=(_cap_low, None),
-        ),
-        Unloading(
-            LEAVES_AT_ONCE, residual, loss=_loss_between, order=2.0, cap=(_cap_low, _cap_high),
-        ),
+        Unloading(1.0, residual, loss=_loss_next_to_yield, order=2.0, loss_order=3.5, cap=(_cap_low, None)),
+        Unloading(LEAVES_AT_ONCE, residual, loss=_loss_between, order=2.0, cap=(_cap_low, _cap_high)),
         Unloading(UNCAPPED, residual, order=2.0),
     ],
-)  # fmt: skip
+)

@@ -79,9 +79,7 @@ def _unit(value: object) -> object:
     return None if isinstance(unit, Real) else unit  # a number: a pandas Series has a row "unit"
 
 
-def _numbers(
-    name: str, value: ArrayLike, expected: str = "a number or an array of numbers"
-) -> Array:
+def _numbers(name: str, value: ArrayLike, expected: str = "a number or an array of numbers") -> Array:
     refuse_units(name, value, _SI.get(name, ""))
     try:
         array = np.asarray(value)

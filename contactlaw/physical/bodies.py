@@ -10,13 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.equation.numbers import (
-    HEAVIEST,
-    LIGHTEST,
-    Impact,
-    Numbers,
-    PairConstants,
-)
+from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants
 from contactlaw.laws import Law
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair

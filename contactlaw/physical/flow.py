@@ -36,9 +36,7 @@ class Flow(NamedTuple):
 
     def stress(self, strain: float, rate: float = 0.0) -> float:
         """Flow stress [Pa] at an equivalent plastic strain and its rate [1/s]."""
-        return (self.strength + self.hardening * math.pow(strain, self.exponent)) * self.factor(
-            rate
-        )
+        return (self.strength + self.hardening * math.pow(strain, self.exponent)) * self.factor(rate)
 
 
 def from_hardness(

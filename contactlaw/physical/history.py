@@ -72,8 +72,6 @@ def with_units(
         displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
     else:
         displacement = path * units.compression[:, None]
-    found = ForceHistory(
-        *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))
-    )
+    found = ForceHistory(*(values.reshape(whole) for values in (time, force, compression, impulse, displacement)))
     found.flags = flags
     return found

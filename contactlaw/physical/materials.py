@@ -55,10 +55,12 @@ _LABELS = {
 # Short names of numbers, and the quantities of those that may be texts with a unit.
 SHORT = {"E": "youngs_modulus", "nu": "poissons_ratio", "rho": "density", "yield": "yield_strength"}
 _QUANTITIES = {
-    "youngs_modulus": quantities.STRESS, "poissons_ratio": quantities.SHARE,
-    "density": quantities.DENSITY, "yield_strength": quantities.STRESS,
+    "youngs_modulus": quantities.STRESS,
+    "poissons_ratio": quantities.SHARE,
+    "density": quantities.DENSITY,
+    "yield_strength": quantities.STRESS,
     "hardness": quantities.STRESS,
-}  # fmt: skip
+}
 _ALIKE = ("kind", "youngs_modulus", "poissons_ratio", "density")
 
 
@@ -262,9 +264,7 @@ class Material:
             hardening, exponent = self.hardening
         elif isinstance(self.hardness, float) and (self.strength_from_hardness or self.hardening):
             exponent = self.hardening or exponent
-            strength, hardening = from_hardness(
-                self.hardness, self.youngs_modulus, strength, self.hardening
-            )
+            strength, hardening = from_hardness(self.hardness, self.youngs_modulus, strength, self.hardening)
         if strength is None:
             return None
         return Flow(strength, hardening, exponent, *(self.rate or ()))
@@ -318,9 +318,7 @@ class Material:
             return self
         loss, known = self.loss_factor
         growth = (frequency / known) ** self.relaxation
-        return replace(
-            self, youngs_modulus=growth * self.youngs_modulus, loss_factor=(loss, frequency)
-        )
+        return replace(self, youngs_modulus=growth * self.youngs_modulus, loss_factor=(loss, frequency))
 
     @property
     def is_polymer(self) -> bool:
@@ -515,17 +513,12 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
                 raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
             owner[key] = name
         tables[name] = _spelled_out(table)
-    known = {
-        _key(one): table for name, table in (others | tables).items()
-        for one in (name, *table.get("aliases", ()))
-    }  # fmt: skip
+    known = {_key(one): table for name, table in (others | tables).items() for one in (name, *table.get("aliases", ()))}
     found = {name: _from_table(name, tables[name], known, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
 
 
-def _from_table(
-    name: str, table: dict[str, Any], tables: dict[str, Any], references: dict[str, str]
-) -> Material:
+def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], references: dict[str, str]) -> Material:
     known = (*_LABELS, "kind", "grade", "aliases", "like", "source", "uncertainty")
     for key in table.keys() - known:
         near = difflib.get_close_matches(key, known, n=1)
@@ -627,9 +620,7 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
             raise refused(given, f"is the exponent alone: {remedy}")
         if body.yield_strength is not None and body.hardness < CONSTRAINT * body.yield_strength:
             least = f"three times the yield strength {body.yield_strength:g} Pa"
-            raise refused(
-                None, f"a hardness of {body.hardness:g} Pa is below {least}, as if it softened"
-            )
+            raise refused(None, f"a hardness of {body.hardness:g} Pa is below {least}, as if it softened")
         return exponent
     if len(given) != 2:
         raise refused(given, "must be (B, n), B in Pa, or n alone")

@@ -123,15 +123,8 @@ def measured_law(
         name=name,
         source=source or f"measured, radius {r.item():g} m, {len(rows)} points beyond yield",
         yield_coefficient=C_YIELD,
-        loading=[
-            Loading(0.0, HERTZ),
-            Loading(1.0, load),
-            Loading(last, Polynomial([end - slope * last, 0.0, slope])),
-        ],
-        unloading=[
-            Unloading(1.0, share, order=2.0),
-            Unloading(last, share, order=2.0),
-        ],
+        loading=[Loading(0.0, HERTZ), Loading(1.0, load), Loading(last, Polynomial([end - slope * last, 0.0, slope]))],
+        unloading=[Unloading(1.0, share, order=2.0), Unloading(last, share, order=2.0)],
     )
 
 

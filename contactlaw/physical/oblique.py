@@ -113,11 +113,7 @@ def rebound_of(
     centre, s = part / POINT, came.along
     spin = (1.0 - 1.0 / POINT) * part / radius
     return (
-        (
-            v[0] + up * n[0] - centre * s[0],
-            v[1] + up * n[1] - centre * s[1],
-            v[2] + up * n[2] - centre * s[2],
-        ),
+        (v[0] + up * n[0] - centre * s[0], v[1] + up * n[1] - centre * s[1], v[2] + up * n[2] - centre * s[2]),
         (
             omega[0] + spin * (n[1] * s[2] - n[2] * s[1]),
             omega[1] + spin * (n[2] * s[0] - n[0] * s[2]),
@@ -127,9 +123,7 @@ def rebound_of(
 
 
 @kernel
-def tangential(
-    table: Array, slides: Array, impact: Impact, friction: float, size: float
-) -> tuple[float, float]:
+def tangential(table: Array, slides: Array, impact: Impact, friction: float, size: float) -> tuple[float, float]:
     """COR and change of the sliding speed [m/s]; NaN for bad input or outside the table."""
     speed, radius, thickness, share = impact
     limit = friction * speed
@@ -147,9 +141,17 @@ def tangential(
 
 @kernel
 def collide(
-    table: Array, slides: Array, v: Vector, omega: Vector, n: Vector,
-    radius: float, thickness: float, share: float, friction: float, w: Vector,
-) -> tuple[Vector, Vector]:  # fmt: skip
+    table: Array,
+    slides: Array,
+    v: Vector,
+    omega: Vector,
+    n: Vector,
+    radius: float,
+    thickness: float,
+    share: float,
+    friction: float,
+    w: Vector,
+) -> tuple[Vector, Vector]:
     """Velocity and spin after an impact, as they were if the bead recedes; NaN as `tangential`."""
     n = unit(n)
     came = sliding(v, omega, n, w, radius)
@@ -176,22 +178,18 @@ def unit_all(normal: Array) -> None:
 
 @kernel(cache=True)
 def approach_all(
-    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array,
-    size: Array,
-) -> None:  # fmt: skip
+    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array, size: Array
+) -> None:
     """Speeds of beads towards plates and along them; vectors are rows."""
     for i in range(radius.size):
-        came = sliding(
-            _vector(velocity, i), _vector(spin, i), _vector(normal, i), _vector(wall, i), radius[i]
-        )
+        came = sliding(_vector(velocity, i), _vector(spin, i), _vector(normal, i), _vector(wall, i), radius[i])
         speed[i], size[i] = came.speed, came.size
 
 
 @kernel(cache=True)
 def tangential_all(
-    table: Array, slides: Array, impact: Impact, friction: Array, size: Array, e: Array,
-    changed: Array,
-) -> None:  # fmt: skip
+    table: Array, slides: Array, impact: Impact, friction: Array, size: Array, e: Array, changed: Array
+) -> None:
     """`tangential` of many impacts."""
     speed, radius, thickness, mass = impact
     for i in range(e.size):
@@ -201,9 +199,8 @@ def tangential_all(
 
 @kernel(cache=True)
 def rebound_all(
-    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array,
-    changed: Array,
-) -> None:  # fmt: skip
+    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array, changed: Array
+) -> None:
     """Replace velocities and spins by those afterwards, where a bead does not recede."""
     for i in range(radius.size):
         v, omega, n = _vector(velocity, i), _vector(spin, i), _vector(normal, i)
@@ -215,9 +212,8 @@ def rebound_all(
 
 
 def flows(
-    strength: Any, modulus: float, force: Any, deepest: Any, left: Any, time: Any, friction: Any,
-    size: Any, after: Any,
-) -> Any:  # fmt: skip
+    strength: Any, modulus: float, force: Any, deepest: Any, left: Any, time: Any, friction: Any, size: Any, after: Any
+) -> Any:
     """Whether friction makes a body flow along the surface; numbers, or arrays of them.
 
     Finite elements in three dimensions: the loss of COR is some 0.5 of the product of the two
@@ -233,9 +229,8 @@ def flows(
 
 
 def of(
-    bodies: SphereOnPlate, normal: Rebound, impacts: Impacts, friction: Array, size: Array,
-    changed: Array,
-) -> ObliqueRebound:  # fmt: skip
+    bodies: SphereOnPlate, normal: Rebound, impacts: Impacts, friction: Array, size: Array, changed: Array
+) -> ObliqueRebound:
     """Complete an answer: normal part, sliding speed before it and the change of that [m/s]."""
     pair, mass = bodies.pair, bodies.mass(impacts)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -252,10 +247,16 @@ def of(
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
     strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
     flow = flows(
-        strength, pair.effective_modulus, np.ravel(normal.peak_force),
-        np.ravel(normal.peak_compression), np.ravel(normal.residual_compression),
-        np.ravel(normal.contact_time), friction, size, after,
-    )  # fmt: skip
+        strength,
+        pair.effective_modulus,
+        np.ravel(normal.peak_force),
+        np.ravel(normal.peak_compression),
+        np.ravel(normal.residual_compression),
+        np.ravel(normal.contact_time),
+        friction,
+        size,
+        after,
+    )
     beyond: NDArray[np.int64] = np.where(flow, int(Validity.SLIDING_FLOW), 0)
     flags = np.ravel(normal.flags) | beyond
     found["flags"] = shaped_flags(flags, impacts.shape)

@@ -100,9 +100,7 @@ class Pair:
         >>> round(cl.Pair(bead, "glass").loss_factor, 4), round(cl.Pair(bead, bead).loss_factor, 4)
         (0.0957, 0.1)
         """
-        compliance = sum(
-            cmath.exp(-1j * one.loss_angle) / one.plane_modulus for one in (self.sphere, self.plate)
-        )
+        compliance = sum(cmath.exp(-1j * one.loss_angle) / one.plane_modulus for one in (self.sphere, self.plate))
         return -compliance.imag / compliance.real
 
     @property
@@ -149,6 +147,4 @@ def _resolve(argument: str, value: Material | str) -> Material:
         return value
     if isinstance(value, str):
         return material(value)
-    raise TypeError(
-        f"{argument}: expected a Material or a name from contactlaw.materials(), got {value!r}"
-    )
+    raise TypeError(f"{argument}: expected a Material or a name from contactlaw.materials(), got {value!r}")

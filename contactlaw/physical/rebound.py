@@ -72,9 +72,7 @@ class Units(NamedTuple):
     overload: Array
 
 
-def shaped_flags(
-    flags: NDArray[np.int64], shape: tuple[int, ...] | None
-) -> Validity | NDArray[np.int64]:
+def shaped_flags(flags: NDArray[np.int64], shape: tuple[int, ...] | None) -> Validity | NDArray[np.int64]:
     """Undo `broadcast` for flags, which of a single impact have a type of their own."""
     return Validity(int(flags[0])) if shape is None else flags.reshape(shape)
 
@@ -110,9 +108,7 @@ def _with_units(
         out.overload[n] = outcome.elastic_compression[n] / unclamped_y[n]
         extremes.peak_force[n] *= mass[n] * v / t
         extremes.residual_compression[n] *= unit
-        flags[n] |= flags_of(
-            own, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n],
-        )  # fmt: skip
+        flags[n] |= flags_of(own, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n])
         total = contact_time + w * unit + out.wave_fraction[n] + out.overload[n]
         total += extremes.peak_force[n] + extremes.residual_compression[n]
         total += outcome.restitution[n] + extremes.plastic_fraction[n] + extremes.other_fraction[n]
@@ -140,15 +136,23 @@ def rebound(
         deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
         for n in range(flags.size):
             flags[n] |= edge_flags(
-                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n],
-                edges.again[n],
-            )  # fmt: skip
+                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n], edges.again[n]
+            )
     inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))
     wrong = _with_units(
-        bodies.limits_by_strength, impacts.speed, impacts.radius, impacts.thickness, time,
-        bodies.mass(impacts), yield_ratio, outcome, found, out, flags,
-    )  # fmt: skip
+        bodies.limits_by_strength,
+        impacts.speed,
+        impacts.radius,
+        impacts.thickness,
+        time,
+        bodies.mass(impacts),
+        yield_ratio,
+        outcome,
+        found,
+        out,
+        flags,
+    )
     if impacts.mass is not None:
         flags |= bodies.mass_flags(impacts)
     shape = impacts.shape

@@ -35,10 +35,7 @@ def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
 
 
 def response_of(
-    kind: str,
-    poissons_ratio: float,
-    share: Any = 0.0,
-    size: Literal["equation", "steps"] = "equation",
+    kind: str, poissons_ratio: float, share: Any = 0.0, size: Literal["equation", "steps"] = "equation"
 ) -> Array:
     """Responses near edges in units of tau, in parts of `SIZE`: for the equation two, else one.
 

@@ -129,9 +129,7 @@ def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
     if law.waves is not None:
         share = pair.effective_modulus / pair.plate.plane_modulus
         b, b_h, b4, b_p = law.waves
-        corrections = plate_corrections(
-            pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share
-        )
+        corrections = plate_corrections(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
     # beyond yield the force grows no faster than the compression
     most = SATURATION * SATURATION * _yield_compression(pair, law) / time
     return PlateConstants(
@@ -226,9 +224,14 @@ def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
 
 
 def edges_of(
-    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, kind: str,
-    distance: Array, hole_radius: Array,
-) -> Edges:  # fmt: skip
+    plate: Material,
+    constants: PairConstants,
+    units: Numbers,
+    impact: Impact,
+    kind: str,
+    distance: Array,
+    hole_radius: Array,
+) -> Edges:
     """Edges at these distances [m] from impacts, as the equation has them.
 
     The radius of a hole is that of the rim, inf for a straight edge [m]. Right at the rim of a hole
@@ -244,9 +247,7 @@ def edges_of(
         # of bodies with losses both mobilities have those of the impact
         np.ones(rate.size)
         if relaxes(constants.plate)
-        else np.minimum(
-            plate_mobility(plate, thickness) * mass / (units.time * units.inelasticity), 1.0
-        ),
+        else np.minimum(plate_mobility(plate, thickness) * mass / (units.time * units.inelasticity), 1.0),
         rate,
         np.zeros(rate.size),
     )

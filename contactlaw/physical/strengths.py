@@ -129,9 +129,7 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
     return np.concatenate([head, rows, *(powers.ravel() for *_, powers in pieces)])
 
 
-def _powers(
-    laws: Sequence[Mapping[str, Any]], places: Array, scale: float, fineness: Fineness
-) -> Array:
+def _powers(laws: Sequence[Mapping[str, Any]], places: Array, scale: float, fineness: Fineness) -> Array:
     """Coefficients of powers of t, a row each, for the numbers of laws at places of t."""
     heads = [[one["scale"], one["onset"] or one["scale"]] for one in laws]
     data = laid_out_alike(laws, fineness.vanished, fineness.widest)
@@ -164,9 +162,7 @@ def _given(pair: Pair, log_factor: float) -> fem.Given:
     slow, flow = _slow(pair), rate.leading(pair)
     at = rate.rate_at(flow, math.exp(log_factor)) if flow else 0.0
     factors = [body.flow.factor(at) if body.flow else 1.0 for body in (pair.sphere, pair.plate)]
-    return slow._replace(
-        sphere_ratio=slow.sphere_ratio / factors[0], plate_ratio=slow.plate_ratio / factors[1]
-    )
+    return slow._replace(sphere_ratio=slow.sphere_ratio / factors[0], plate_ratio=slow.plate_ratio / factors[1])
 
 
 @functools.lru_cache(maxsize=4)

@@ -158,10 +158,7 @@ _WORDS = {
         "if it is no polymer; the COR is too high if no body flows, else too high or too low, by "
         "how much is not known",
     ),
-    Validity.DAMAGE: (
-        "a brittle body may break or flow",
-        "the values are for one that stays whole",
-    ),
+    Validity.DAMAGE: ("a brittle body may break or flow", "the values are for one that stays whole"),
     Validity.UNTRIED_STRENGTH: (
         "a body yields that is weaker or stronger for its stiffness than the finite elements that "
         "the law is made of, or both yield and one is more than 12 times as stiff",
@@ -267,17 +264,20 @@ def limits(pair: Pair, law: Law) -> Limits:
         known &= len(flowing) < 2 or max(moduli) <= _STIFFEST * min(moduli)
         untried = (not known) * Validity.UNTRIED_STRENGTH
         return Limits(
-            slender=_SLENDER_FEM, slowness=0.0, always=int(rate), flags_when_yielded=0,
-            least_yield_ratio=0.0, fastest=0.0,
+            slender=_SLENDER_FEM,
+            slowness=0.0,
+            always=int(rate),
+            flags_when_yielded=0,
+            least_yield_ratio=0.0,
+            fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H/R at V0/sqrt(E*/rho1)
             deepest=law.range[1] * (law.scale or 0.0),
-            on_yield=int(on_yield | untried), **common,
-        )  # fmt: skip
+            on_yield=int(on_yield | untried),
+            **common,
+        )
     nu = pair.plate.poissons_ratio
     # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
-    slowness = math.sqrt(
-        pair.plate.density / pair.plate.youngs_modulus * (1 + nu) * (1 - 2 * nu) / (1 - nu)
-    )
+    slowness = math.sqrt(pair.plate.density / pair.plate.youngs_modulus * (1 + nu) * (1 - 2 * nu) / (1 - nu))
     soft = law.yields and plate < sphere
     least, largest = law.yield_strains
     other = not (law.yields and least <= sphere / pair.sphere.youngs_modulus <= largest)
@@ -337,9 +337,19 @@ def limits_at(rows: Array, strength: float) -> Limits:
     if n < last:
         share = min(max((strength - a[0]) / (b[0] - a[0]), 0.0), 1.0)
     return Limits(
-        a[1], a[2], int(a[3]), int(a[4]), a[5], a[6], a[7], _between(a[8], b[8], share),
-        _between(a[9], b[9], share), _between(a[10], b[10], share), a[11], int(a[12]),
-    )  # fmt: skip
+        a[1],
+        a[2],
+        int(a[3]),
+        int(a[4]),
+        a[5],
+        a[6],
+        a[7],
+        _between(a[8], b[8], share),
+        _between(a[9], b[9], share),
+        _between(a[10], b[10], share),
+        a[11],
+        int(a[12]),
+    )
 
 
 def _bearable(body: Material) -> float:
@@ -369,13 +379,7 @@ def _y_at(ratio: float) -> float:
 
 @kernel(entry=True)
 def flags_of(
-    limits: Limits,
-    radius: float,
-    thickness: float,
-    scale: float,
-    contact_time: float,
-    compression: float,
-    force: float,
+    limits: Limits, radius: float, thickness: float, scale: float, contact_time: float, compression: float, force: float
 ) -> int:
     """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
@@ -413,9 +417,7 @@ def all_mass_flags(mass: Array, out: NDArray[np.int64]) -> None:
 
 
 @kernel
-def edge_flags(
-    radius: float, thickness: float, compression: float, edge_distance: float, again: float
-) -> int:
+def edge_flags(radius: float, thickness: float, compression: float, edge_distance: float, again: float) -> int:
     """Flag what is due to the edge of a plate, from the largest compression [m]."""
     flags = 0
     # by Hertz's law the radius of the contact is sqrt(R d)

@@ -55,18 +55,10 @@ COLUMNS = (
     Column("restitution", "f8", "1", "coefficient of restitution"),
     Column("sliding_speed", "f8", "m/s", "speed of the contact point along the wall before"),
     Column("kind", "i8", "1", f"what happened: {_named(Kind)}"),
-    Column(
-        "sliding_speed_after", "f8", "m/s", "the same afterwards; below 0 if it has turned round"
-    ),
+    Column("sliding_speed_after", "f8", "m/s", "the same afterwards; below 0 if it has turned round"),
     *(Column(f"spin_{axis}", "f8", "rad/s", "spin of the bead afterwards") for axis in "xyz"),
-    *(
-        Column(name, "f8", FIELDS[name].unit, FIELDS[name].words)
-        for name in ("contact_time", "peak_force")
-    ),
-    *(
-        Column(f"{channel}_energy", "f8", "J", f"energy {what}")
-        for channel, what in DESCRIPTIONS._asdict().items()
-    ),
+    *(Column(name, "f8", FIELDS[name].unit, FIELDS[name].words) for name in ("contact_time", "peak_force")),
+    *(Column(f"{channel}_energy", "f8", "J", f"energy {what}") for channel, what in DESCRIPTIONS._asdict().items()),
     Column("friction_energy", "f8", "J", "energy taken by friction, of translation and spin"),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
     Column("radius", "f8", "m", "radius of the bead"),
@@ -74,9 +66,7 @@ COLUMNS = (
     Column("material", "i8", "1", "number of the bead's material, from 0: atom type less 1"),
     Column("thickness", "f8", "m", "thickness of the plate, inf: half-space, 0: bead on bead"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
-    Column(
-        "flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"
-    ),
+    Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
 _NAMES = tuple(column.name for column in COLUMNS)

@@ -196,10 +196,7 @@ class Record:
         if "kind" in table:
             table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
         if "flags" in table:
-            table["flags"] = [
-                ", ".join(str(flag.name).lower() for flag in Validity(one))
-                for one in table["flags"]
-            ]
+            table["flags"] = [", ".join(str(flag.name).lower() for flag in Validity(one)) for one in table["flags"]]
         for n, name in enumerate(("sphere", "target")):
             names = [one.materials[n].name for one in self.bodies]
             table[name] = np.array([*names, ""])[self.which]
@@ -209,12 +206,18 @@ class Record:
         """Return the file's content; `more(file)` adds groups of its own to the open file."""
         image = io.BytesIO()
         with h5py.File(image, "w") as file:
-            file.attrs.update({
-                "format": FORMAT, "schema": SCHEMA, "units": _UNITS,
-                "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-                "version_contactlaw": VERSION, "version_numpy": np.__version__,
-                "version_python": platform.python_version(), **self.made,
-            })  # fmt: skip
+            file.attrs.update(
+                {
+                    "format": FORMAT,
+                    "schema": SCHEMA,
+                    "units": _UNITS,
+                    "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+                    "version_contactlaw": VERSION,
+                    "version_numpy": np.__version__,
+                    "version_python": platform.python_version(),
+                    **self.made,
+                }
+            )
             table = file.create_group("impacts")
             for name, _, unit, text in COLUMNS:
                 if name in (self.rows.dtype.names or ()):
@@ -305,9 +308,7 @@ def read_from(file: h5py.File) -> Record:
     """
     form, schema = (str(file.attrs.get(name)) for name in ("format", "schema"))
     if (form, schema) != (FORMAT, str(SCHEMA)):
-        raise ValueError(
-            f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again"
-        )
+        raise ValueError(f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again")
     group = hdf5.group(file, "impacts")
     size = hdf5.numbers(group, "time").size
     columns = {n: hdf5.numbers(group, n, size) for n in IMPACT.names or () if n in group}
@@ -354,8 +355,7 @@ def saved(content: bytes) -> NDArray[np.void]:
         raise ValueError("no file of np.save")
     try:
         rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
-            tokenize.TokenError) as error:  # fmt: skip
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError, tokenize.TokenError) as error:
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
     if rows.dtype.names is None or rows.ndim != 1:
         raise ValueError(

@@ -56,9 +56,7 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
     if dataset.size > LARGEST:
         raise ValueError(f"{where} has {dataset.size} rows, expected {LARGEST} at most")
     if size is not None and dataset.size != size:
-        raise ValueError(
-            f"{where} has {dataset.size} rows, expected {size} as in the other columns"
-        )
+        raise ValueError(f"{where} has {dataset.size} rows, expected {size} as in the other columns")
     try:
         found = np.asarray(dataset[()])  # limits of numbers would overflow in two bytes
         return found.astype(np.float64) if found.dtype.kind == "f" else found
@@ -88,9 +86,7 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
     if isinstance(value, np.generic) and value.dtype.kind in "iuf":
         value = value.item()
     if not isinstance(value, (int, float) if kind is float else kind):
-        raise ValueError(
-            f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}"
-        )
+        raise ValueError(f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}")
     return kind(value)
 
 
@@ -115,9 +111,7 @@ def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
 def _words(value: object) -> str:
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and type {value.dtype}"
-    return (
-        repr(value) if isinstance(value, (str, int, float)) else f"of type {type(value).__name__}"
-    )
+    return repr(value) if isinstance(value, (str, int, float)) else f"of type {type(value).__name__}"
 
 
 def _place(parent: h5py.Group) -> str:

@@ -25,14 +25,17 @@ PARTS = KEPT, *_ = (
 _DARK = style.BLUE, style.MUTED, style.GREEN
 _WIDE = 6.0  # [%], the width of a number with room around it
 _ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
-_READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
-             style.SKY: "#1F6E9C", style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
+_READABLE = {
+    style.BLUE: style.BLUE,
+    style.ORANGE: "#9A6700",
+    style.GREEN: "#00694D",
+    style.SKY: "#1F6E9C",
+    style.PALE: style.INK,
+    style.MUTED: style.INK,
+}
 
 
-def bar(
-    axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]],
-    room: bool = True,
-) -> None:  # fmt: skip
+def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]], room: bool = True) -> None:
     """Stack the shares with their numbers; those of small ones are beside, if there is room."""
     bottom = beside = 0.0
     for (name, colour), share in parts:
@@ -48,9 +51,14 @@ def bar(
         elif room:
             beside = max(middle, beside + _ROOM)
             axes.text(
-                x + 0.5 * width, beside, f" {text}", va="center", color=_READABLE[colour],
-                fontsize=11, fontweight="bold",
-            )  # fmt: skip
+                x + 0.5 * width,
+                beside,
+                f" {text}",
+                va="center",
+                color=_READABLE[colour],
+                fontsize=11,
+                fontweight="bold",
+            )
         bottom += height
 
 
@@ -64,8 +72,7 @@ def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> 
         axes.barh(y, length, 0.7, begins, color=colour, label=name, edgecolor="white")
         if length >= _WIDE:
             ink = "white" if colour in _DARK else style.INK
-            axes.text(begins + 0.5 * length, y, f"{length:.0f}", ha="center", va="center",
-                      color=ink, fontsize=11)  # fmt: skip
+            axes.text(begins + 0.5 * length, y, f"{length:.0f}", ha="center", va="center", color=ink, fontsize=11)
         begins += length
 
 
@@ -84,9 +91,7 @@ def density_scale(values: Sequence[NDArray[np.float64]]) -> LogNorm:
     return LogNorm(most / _SPAN, most, clip=True)
 
 
-def sheet(
-    axes: Axes, corners: NDArray[np.floating], value: NDArray[np.float64], scale: LogNorm
-) -> PolyCollection:
+def sheet(axes: Axes, corners: NDArray[np.floating], value: NDArray[np.float64], scale: LogNorm) -> PolyCollection:
     """Draw triangles (n, 3, 2) in the colours of their energies per area [J/m2]."""
     drawn = PolyCollection(
         list(corners), array=value, cmap=DENSITY, norm=scale, edgecolors="none", antialiased=False

@@ -21,9 +21,7 @@ from contactlaw.walls.mesh import Mesh
 _MAPS = "energy.vtk", "energy.ply"
 
 
-def report(
-    record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()
-) -> Path:
+def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()) -> Path:
     """Write a page about a run, with figures and, if the walls are known, an energy map.
 
     Parameters

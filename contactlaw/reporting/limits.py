@@ -24,9 +24,7 @@ class Limit(NamedTuple):
 
 def exceeded(flags: NDArray[np.int64]) -> list[Limit]:
     """List the limits that impacts exceed."""
-    found = [
-        Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
-    ]
+    found = [Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity]
     return [limit for limit in found if limit.impacts]
 
 

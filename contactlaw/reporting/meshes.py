@@ -47,8 +47,7 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
         corners.append(mesh.vertices[mesh.triangles])
         wall.append(np.full(len(mesh.triangles), plate))
     surface = Surface(np.concatenate(corners), np.concatenate(wall), triangle, point)
-    extent, reach = (float(np.ptp(one.reshape(-1, 3), axis=0).max())
-                     for one in (surface.corners, point[triangle >= 0]))  # fmt: skip
+    extent, reach = (float(np.ptp(one.reshape(-1, 3), axis=0).max()) for one in (surface.corners, point[triangle >= 0]))
     if extent > _TOO_LARGE * reach > 0.0:
         wide = f"the mesh is {extent:.3g} m wide, the contacts on it are within {reach:.3g} m"
         remedy = "give the length of its unit, 1e-3 for a drawing in millimetres"

@@ -26,15 +26,32 @@ Rows = NDArray[np.void]
 CAUSES = "wave", "plastic", "other", "friction"
 _CAUSED = tuple(f"{cause}_energy" for cause in CAUSES)
 _NEEDED = (
-    "approach_speed", "restitution", "sliding_speed", "kind", "plate", "triangle", "x", "y", "z",
-    "flags", "radius", "mass", "thickness", *_CAUSED,
-)  # fmt: skip
+    "approach_speed",
+    "restitution",
+    "sliding_speed",
+    "kind",
+    "plate",
+    "triangle",
+    "x",
+    "y",
+    "z",
+    "flags",
+    "radius",
+    "mass",
+    "thickness",
+    *_CAUSED,
+)
 # Least and largest numbers that can be; in contacts that are no impacts of the energies alone.
 _LIMITS = {
-    "approach_speed": (V_MIN, V_MAX), "restitution": (-1.0, 2.0), "sliding_speed": (-V_MAX, V_MAX),
-    "radius": (R_MIN, R_MAX), "mass": (1e-40, 1e40), "thickness": (R_MIN, math.inf),
-    **dict.fromkeys("xyz", (-FARTHEST, FARTHEST)), **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
-}  # fmt: skip
+    "approach_speed": (V_MIN, V_MAX),
+    "restitution": (-1.0, 2.0),
+    "sliding_speed": (-V_MAX, V_MAX),
+    "radius": (R_MIN, R_MAX),
+    "mass": (1e-40, 1e40),
+    "thickness": (R_MIN, math.inf),
+    **dict.fromkeys("xyz", (-FARTHEST, FARTHEST)),
+    **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
+}
 _MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
 OTHERS = "other walls"
 
@@ -184,8 +201,5 @@ def _wall(name: str, rows: Rows) -> WallRow:
     size = np.cbrt(hits["mass"])  # in place of the radius: beads may differ in density, too
     best = None
     if hits.size:
-        best = constant(
-            hits["approach_speed"], size, np.ones(hits.size), hits["restitution"], hits["flags"],
-            "energy",
-        )  # fmt: skip
+        best = constant(hits["approach_speed"], size, np.ones(hits.size), hits["restitution"], hits["flags"], "energy")
     return WallRow(name, rows, hits, best)

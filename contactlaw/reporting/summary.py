@@ -33,14 +33,8 @@ def text(run: Run) -> str:
     lines = [counts(run), *([run.left_out] if run.left_out else [])]
     for table, note in ((impacts(run), CONSTANT), (energies(run), ENERGY)):
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-        lines += [
-            "",
-            *(
-                "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])])
-                for row in table
-            ),
-        ]
-        lines += ["", note]  # fmt: skip
+        lines += ["", *("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in table)]
+        lines += ["", note]
     return "\n".join([*lines, "", *limits_lines(exceeded(run.impacts["flags"]))])
 
 
@@ -56,10 +50,15 @@ def _impacts(wall: WallRow) -> tuple[str, ...]:
         return (wall.name, "0", *["-"] * 6)
     low, middle, high = np.quantile(rows["restitution"], [0.05, 0.5, 0.95])
     return (
-        wall.name, f"{rows.size}", f"{np.median(rows['approach_speed']):.3g} m/s", f"{middle:.3f}",
-        f"{low:.3f}-{high:.3f}", f"{best.restitution:.4f}", relative(best.rebound_error),
+        wall.name,
+        f"{rows.size}",
+        f"{np.median(rows['approach_speed']):.3g} m/s",
+        f"{middle:.3f}",
+        f"{low:.3f}-{high:.3f}",
+        f"{best.restitution:.4f}",
+        relative(best.rebound_error),
         relative(best.mean_energy_error, "+z.1%"),
-    )  # fmt: skip
+    )
 
 
 def energies(run: Run) -> Table:

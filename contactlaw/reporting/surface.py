@@ -66,9 +66,7 @@ def areas(corners: NDArray[np.floating]) -> Floats:
     return area
 
 
-def refined(
-    corners: Floats, triangle: Integers, point: Floats, longest: float
-) -> tuple[Floats, Integers, Integers]:
+def refined(corners: Floats, triangle: Integers, point: Floats, longest: float) -> tuple[Floats, Integers, Integers]:
     """Halve triangles until no side is longer than `longest`; find that of each point again.
 
     Returns the corners, the triangle of each point, and the number of the triangle of which each
@@ -153,8 +151,7 @@ def ply(found: EnergyMap, colours: Floats) -> bytes:
     head += ["property double J_per_m2", "end_header"]
     values = _rows(np.column_stack((found.energy, found.density)))
     shades = np.repeat((255.0 * colours).round().astype(int), 3, axis=0).tolist()
-    points = (f"{p} {r} {g} {b}" for p, (r, g, b) in
-              zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))  # fmt: skip
+    points = (f"{p} {r} {g} {b}" for p, (r, g, b) in zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))
     faces = (f"{face} {value}" for face, value in zip(_faces(n), values, strict=True))
     return "\n".join([*head, *points, *faces, ""]).encode()
 

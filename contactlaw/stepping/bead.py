@@ -36,15 +36,7 @@ from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
 from contactlaw.walls.rest import at_rest
-from contactlaw.walls.surface import (
-    OVERLAP,
-    ROOM,
-    group_surfaces,
-    on_listed_facet,
-    overlaps,
-    pass_gradient,
-    touch_of,
-)
+from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
 
 Rows = NDArray[np.void]
 
@@ -109,9 +101,7 @@ class WallContacts:
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
-        self.scene = WallScene(
-            rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction
-        )
+        self.scene = WallScene(rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction)
 
     def collisions(self) -> Rows:
         """Impacts that have ended, one row each.
@@ -201,9 +191,7 @@ def _contact_with(scene: WallScene, bead: Bead, n: int, touching: bool) -> Conta
     if row.shared > 0.0:
         share = row.shared / row.x
         share *= math.sqrt(share)
-        less = pass_gradient(
-            scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other]
-        )
+        less = pass_gradient(scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other])
         along = along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
     return contact_of(scene, bead, row.facet, touch_of(row), along, touching, -1)
 

@@ -26,14 +26,7 @@ from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
-from contactlaw.stepping.spring import (
-    FEWEST_STEPS,
-    RELAXATION,
-    Spring,
-    State,
-    at_largest,
-    impact,
-)
+from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Spring, State, at_largest, impact
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -172,13 +165,7 @@ class Contact(NamedTuple):
 
 @kernel
 def contact_of(
-    scene: WallScene,
-    bead: Bead,
-    facet: int,
-    touch: Touch,
-    along: Point,
-    touching: bool,
-    merged_into: int,
+    scene: WallScene, bead: Bead, facet: int, touch: Touch, along: Point, touching: bool, merged_into: int
 ) -> Contact:
     """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
@@ -186,16 +173,11 @@ def contact_of(
     before, v = velocity(frame, frame.half_rate, point), bead.v
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
-    return Contact(
-        facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching,
-        merged_into,
-    )  # fmt: skip
+    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into)
 
 
 @kernel
-def report_trouble(
-    scene: WallScene, trouble: Trouble, wall: int, value: float, limit: float
-) -> None:
+def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, limit: float) -> None:
     """Record a trouble if it is the first, and the largest trouble number so far."""
     status, code = scene.status[0], trouble.value
     if status.trouble == 0:
@@ -204,9 +186,7 @@ def report_trouble(
 
 
 @kernel
-def _check_step(
-    law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float
-) -> None:
+def _check_step(law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
     limit = CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
     if clock.dt > limit:
@@ -216,21 +196,12 @@ def _check_step(
 @kernel
 def _over_edge(scene: WallScene, bead: Bead, contact: Contact) -> bool:
     """Whether the wall ends at a contact's point."""
-    return not contact.touch.face and wall_ends(
-        scene.frames, scene.facets, contact.facet, contact.point, bead.r
-    )
+    return not contact.touch.face and wall_ends(scene.frames, scene.facets, contact.facet, contact.point, bead.r)
 
 
 @kernel
 def _begin(
-    law: Array,
-    scene: WallScene,
-    clock: Clock,
-    bead: Bead,
-    contact: Contact,
-    k: int,
-    spring: Spring,
-    u: float,
+    law: Array, scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int, spring: Spring, u: float
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
     row, wall, touch, x = bead.contacts[k], contact.wall, contact.touch, contact.touch.x
@@ -288,10 +259,7 @@ def _normal_jumped(held: Point, n: Point, v: Point, dt: float, distance: float) 
 
 
 @kernel
-def _kind_of(
-    scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: float, leaves: float,
-    long: float,
-) -> int:  # fmt: skip
+def _kind_of(scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: float, leaves: float, long: float) -> int:
     """Say what a contact was that has ended; several may hold, and the first one counts.
 
     `lost` is the energy that the record says is lost, `leaves` the speed away from the wall, and
@@ -395,21 +363,29 @@ def _end(
     record.radius, record.mass, record.thickness = bead.r, bead.mass, plate_row.thickness
     expected = impact(law, spring, abs(row.approach_speed))
     record.kind = _kind_of(
-        scene, bead, contact, row, lost - reported + row.wave_energy + missing, leaves,
+        scene,
+        bead,
+        contact,
+        row,
+        lost - reported + row.wave_energy + missing,
+        leaves,
         _LASTING * CONTACT_TIME * expected.time,
-    )  # fmt: skip
+    )
     record.flags = flags_of(
-        limits_of(plate_row), bead.r, plate_row.thickness, expected.compression,
-        record.contact_time, last.largest_compression, record.peak_force,
-    )  # fmt: skip
+        limits_of(plate_row),
+        bead.r,
+        plate_row.thickness,
+        expected.compression,
+        record.contact_time,
+        last.largest_compression,
+        record.peak_force,
+    )
     if edge.near.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
         record.kind = Kind.STRUCK.value
     # Whether the plate comes back later is not known here; the strike will have a row of its own.
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.near.rate > 0.0 and leaves < 0.0 else 0.0
-    record.flags |= edge_flags(
-        bead.r, plate_row.thickness, last.largest_compression, edge.distance, recedes
-    )
+    record.flags |= edge_flags(bead.r, plate_row.thickness, last.largest_compression, edge.distance, recedes)
     return extra
 
 
@@ -425,15 +401,23 @@ def clear_contact(bead: Bead, k: int) -> None:
 def state_of(row: Any) -> State:
     """State of the normal force in the row of a contact."""
     return State(
-        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening,
-        row.strength, row.x1, row.y1, row.x2, row.y2, row.x3, row.y3,
-    )  # fmt: skip
+        row.plate_displacement,
+        row.largest_compression,
+        row.force,
+        row.mobility,
+        row.stiffening,
+        row.strength,
+        row.x1,
+        row.y1,
+        row.x2,
+        row.y2,
+        row.x3,
+        row.y3,
+    )
 
 
 @kernel
-def _near_edge(
-    scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring
-) -> NearestEdge:
+def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring) -> NearestEdge:
     """Edge that is nearest to a contact, and how it acts there."""
     facet = scene.facets[contact.facet]
     if facet.edge_count == 0 or plate_row.thickness == math.inf:
@@ -498,9 +482,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     push = state.force + extra
     pushes = push * along[0], push * along[1], push * along[2]
     power = dot(pushes, contact.w)
-    row.work += energy.work(
-        spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before
-    )
+    row.work += energy.work(spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before)
     if state.force == 0.0 and last.force > 0.0:
         pushes = _end(law, scene, clock, bead, contact, k, spring, last, u, edge)
         extra = dot(pushes, n)
@@ -520,9 +502,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
 
 
 @kernel
-def _complete(
-    record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point
-) -> None:
+def _complete(record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point) -> None:
     """Complete a row of the record with what follows from the forces of the contact's last step."""
     push, v, omega, per = bead.contacts[k].push, contact.v, bead.omega, clock.dt / bead.mass
     turn = per / (0.4 * bead.r * bead.r)  # of a solid sphere
@@ -554,9 +534,7 @@ def _finish_work(clock: Clock, bead: Bead, k: int) -> None:
     if size > 0.0:
         n = push[0] / size, push[1] / size, push[2] / size
         slip = surface_velocity(bead.v, bead.omega, bead.r, n)
-        slid.work += energy.work(
-            bead.mass / POINT, drag, (0.0, 0.0, 0.0), slip, 0.0, 0.0, clock.dt, clock.before
-        )
+        slid.work += energy.work(bead.mass / POINT, drag, (0.0, 0.0, 0.0), slip, 0.0, 0.0, clock.dt, clock.before)
 
 
 @kernel
@@ -581,10 +559,21 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
             spring, state = spring_of(plate_row, bead.r), state_of(row)
             drag = tangential_force(
-                bead.friction[k], scene.friction, plate_row.tangential, law, spring, state, before,
-                touch.x, row.approach_speed, n, slip, clock.dt if clock.advancing else 0.0,
-                row.extra_force, room_for(law),
-            )  # fmt: skip
+                bead.friction[k],
+                scene.friction,
+                plate_row.tangential,
+                law,
+                spring,
+                state,
+                before,
+                touch.x,
+                row.approach_speed,
+                n,
+                slip,
+                clock.dt if clock.advancing else 0.0,
+                row.extra_force,
+                room_for(law),
+            )
             torque = (
                 -bead.r * (n[1] * drag[2] - n[2] * drag[1]),
                 -bead.r * (n[2] * drag[0] - n[0] * drag[2]),

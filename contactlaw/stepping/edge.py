@@ -42,9 +42,7 @@ def edge_echo(
     if distance is None or hole_radius is None:
         return None
     share = share_of(distance, hole_radius, thickness)
-    return EdgeEcho(
-        response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance)
-    )
+    return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance))
 
 
 def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:

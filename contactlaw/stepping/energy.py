@@ -23,15 +23,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.stepping.edge import EdgeEcho, weighted
-from contactlaw.stepping.spring import (
-    FEWEST_STEPS,
-    Spring,
-    State,
-    advance,
-    memory_of,
-    returning,
-    with_memory,
-)
+from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance, memory_of, returning, with_memory
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -53,9 +45,8 @@ _FIRST_OVERLAP = 1.01
 
 @kernel
 def step(
-    law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float,
-    near: EdgeEcho | None = None,
-) -> tuple[State, float]:  # fmt: skip
+    law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float, near: EdgeEcho | None = None
+) -> tuple[State, float]:
     """State at the end of a step, and a force to add to the state's in this step alone.
 
     Verlet's position differs from the sphere's by h^2 f/(12 m), see `contactlaw.softsphere`, and so
@@ -65,14 +56,7 @@ def step(
     f0, u2 = state.force, state.plate_displacement
     shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
     last = with_memory(
-        State(
-            u2 - shift * f0,
-            state.largest_compression,
-            f0,
-            state.mobility,
-            state.stiffening,
-            state.strength,
-        ),
+        State(u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening, state.strength),
         memory_of(state),
     )
     new = advance(law, spring, last, x, h, near)
@@ -80,8 +64,7 @@ def step(
     if f1 > 0.0 and shift != 0.0:
         u2 = new.plate_displacement + shift * (f1 - f0)
         new = with_memory(
-            State(u2, new.largest_compression, f1, new.mobility, new.stiffening, new.strength),
-            memory_of(new),
+            State(u2, new.largest_compression, f1, new.mobility, new.stiffening, new.strength), memory_of(new)
         )
         return new, spring.mass * shift * (f1 - f0) / (h * h)
     first = f1 > 0.0 and state.largest_compression == 0.0
@@ -100,9 +83,7 @@ def _first_step_correction(spring: Spring, x: float, path: float) -> Any:
 
 
 @kernel
-def wave_energy(
-    spring: Spring, last: State, state: State, h: float, near: EdgeEcho | None = None
-) -> Any:
+def wave_energy(spring: Spring, last: State, state: State, h: float, near: EdgeEcho | None = None) -> Any:
     """Energy that the plate takes in a step, less what it gives back [J]."""
     mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
     speed_0 = mobility * last.force - last.plate_displacement / spring.relaxation
@@ -121,10 +102,7 @@ def dot(a: Point, b: Point) -> float:
 
 
 @kernel
-def work(
-    mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: float, h: float,
-    before: float,
-) -> Any:  # fmt: skip
+def work(mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: float, h: float, before: float) -> Any:
     """Work of the forces at the two ends of a step on the bead, less that of the wall [J].
 
     The forces are vectors, because the normal turns while the nearest point is on an edge and jumps
@@ -136,9 +114,7 @@ def work(
 
 
 @kernel
-def settling_force(
-    missing: float, m: float, u: float, approach: float, h: float, steps: float
-) -> float:
+def settling_force(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
     """Force in the last step that gives a rebounding bead its missing energy [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
@@ -151,9 +127,7 @@ def settling_force(
 
 
 @kernel
-def settling_share(
-    missing: float, m: float, v: Point, power: float, h: float, steps: float
-) -> float:
+def settling_share(missing: float, m: float, v: Point, power: float, h: float, steps: float) -> float:
     """Relative change of the velocity that gives a bead of an UNEVEN contact its missing energy.
 
     A force that jumps within a step errs by up to half of its impulse in that step, along the jump,

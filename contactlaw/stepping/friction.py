@@ -107,9 +107,7 @@ def _directions(row: Any, n: Point, slip: Point) -> tuple[Point, Point]:
         a, size = _tangent((1.0, 0.0, 0.0) if abs(n[0]) < 0.6 else (0.0, 1.0, 0.0), n)
     a = a[0] / size, a[1] / size, a[2] / size
     row.along[0], row.along[1], row.along[2] = a
-    return a, (
-        n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0],
-    )  # fmt: skip
+    return a, (n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0])
 
 
 @kernel
@@ -127,9 +125,8 @@ def _join(row: Any) -> None:
 
 @kernel
 def _pull(
-    row: Any, friction: float, kappa: float, now: Stiffness, f: float, x: float, y: float,
-    left: float,
-) -> tuple[float, float]:  # fmt: skip
+    row: Any, friction: float, kappa: float, now: Stiffness, f: float, x: float, y: float, left: float
+) -> tuple[float, float]:
     """Move the springs, of whose stretch a share is left, along both directions; their force."""
     fx = fy = within = 0.0
     k, before, width = now.normal, row.stiffness, row.width
@@ -157,10 +154,21 @@ def _pull(
 
 @kernel
 def tangential_force(
-    row: Any, friction: float, kappa: float, law: Array, spring: Spring, state: State,
-    before: float, overlap: float, speed: float, n: Point, slip: Point, dt: float, extra: float,
+    row: Any,
+    friction: float,
+    kappa: float,
+    law: Array,
+    spring: Spring,
+    state: State,
+    before: float,
+    overlap: float,
+    speed: float,
+    n: Point,
+    slip: Point,
+    dt: float,
+    extra: float,
     room: int,
-) -> Point:  # fmt: skip
+) -> Point:
     """Tangential force on a bead [N], from the velocity of its surface relative to the wall.
 
     `before` is the largest compression before this step, `speed` the approach speed and `extra` the

@@ -43,10 +43,7 @@ PLATE_ROW = np.dtype(
     ]
     # the flags of an impact need the thickness and the fields of Limits
     + [("thickness", "f8")]
-    + [
-        (name, "i8" if "int" in str(kind) else "f8")
-        for name, kind in Limits.__annotations__.items()
-    ]
+    + [(name, "i8" if "int" in str(kind) else "f8") for name, kind in Limits.__annotations__.items()]
     # how a plate's edges act, see `responses_of`, and by what its bending waves scale [m/s]
     + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8")]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
@@ -91,10 +88,7 @@ def _first_alike(rows: Any, laws: list[list[Any]]) -> NDArray[np.intp]:
     Laws are compared by what they are, because equal models hold their data at different addresses.
     """
     numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "responses")]
-    said = [
-        (row[numbers].tolist(), row["responses"].tolist(), keys)
-        for row, keys in zip(rows, laws, strict=True)
-    ]
+    said = [(row[numbers].tolist(), row["responses"].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
     return np.array([said.index(one) for one in said])
 
 
@@ -119,21 +113,28 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
 def spring_of(row: Any, r: float) -> Spring:
     """Spring of a bead of this radius [m] on the plate of a row."""
     corrections = PlateCorrections(
-        row.eta, row.eta_h, row.eta4, row.plastic_growth, row.steepest, row.bulk_factor,
-        row.p1, row.p2, row.p3, row.p4, row.p5,
-    )  # fmt: skip
+        row.eta,
+        row.eta_h,
+        row.eta4,
+        row.plastic_growth,
+        row.steepest,
+        row.bulk_factor,
+        row.p1,
+        row.p2,
+        row.p3,
+        row.p4,
+        row.p5,
+    )
     plate = PlateConstants(
-        row.inelasticity, row.transit, row.x_at_one, row.saturated, corrections,
-        ModulusGrowth(
-            row.log_time, row.modulus_power, row.plate_power, row.yield_power, row.wave,
-            row.wave_slope,
-        ),
+        row.inelasticity,
+        row.transit,
+        row.x_at_one,
+        row.saturated,
+        corrections,
+        ModulusGrowth(row.log_time, row.modulus_power, row.plate_power, row.yield_power, row.wave, row.wave_slope),
         RateOfStrain(row.slope, row.per_speed),
-    )  # fmt: skip
-    unit = Spring(
-        row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
-        plate,
-    )  # fmt: skip
+    )
+    unit = Spring(row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio, plate)
     return resized(unit, r)
 
 
@@ -147,6 +148,16 @@ def solid_mass(row: Any, r: float) -> float:
 def limits_of(row: Any) -> Limits:
     """Limits of the model behind a plate row."""
     return Limits(
-        row.slender, row.slowness, row.always, row.flags_when_yielded, row.least_yield_ratio,
-        row.fastest, row.swiftest, row.share, row.deepest, row.bending, row.damage, row.on_yield,
-    )  # fmt: skip
+        row.slender,
+        row.slowness,
+        row.always,
+        row.flags_when_yielded,
+        row.least_yield_ratio,
+        row.fastest,
+        row.swiftest,
+        row.share,
+        row.deepest,
+        row.bending,
+        row.damage,
+        row.on_yield,
+    )

@@ -125,9 +125,19 @@ PARTED = State(*[0.0] * 12)
 def with_memory(state: State, m: Memory) -> State:
     """State with this memory of the plate."""
     return State(
-        state.plate_displacement, state.largest_compression, state.force, state.mobility,
-        state.stiffening, state.strength, m.x1, m.y1, m.x2, m.y2, m.x3, m.y3,
-    )  # fmt: skip
+        state.plate_displacement,
+        state.largest_compression,
+        state.force,
+        state.mobility,
+        state.stiffening,
+        state.strength,
+        m.x1,
+        m.y1,
+        m.x2,
+        m.y2,
+        m.x3,
+        m.y3,
+    )
 
 
 @kernel(inline=True)
@@ -168,26 +178,35 @@ def at_usual_frequency(spring: Spring) -> Spring:
     if not relaxes(spring.plate):
         return spring
     own, usual = spring.plate, 0.2 * math.log(USUAL_SPEED)
-    plate, faster, growth = relaxed(
-        own, 1.0, 0.4 * math.log(spring.solid / spring.stiffness) - usual
-    )
+    plate, faster, growth = relaxed(own, 1.0, 0.4 * math.log(spring.solid / spring.stiffness) - usual)
     stiffness = spring.stiffness * math.exp(growth)
     softer = math.exp(own.growth.yield_power * growth)
     slower = plate.inelasticity / own.inelasticity if own.inelasticity > 0.0 else 1.0
     return Spring(
-        spring.mass, spring.solid, stiffness, spring.mobility * slower,
-        spring.scale * softer, spring.relaxation, spring.ratio,
+        spring.mass,
+        spring.solid,
+        stiffness,
+        spring.mobility * slower,
+        spring.scale * softer,
+        spring.relaxation,
+        spring.ratio,
         PlateConstants(
-            plate.inelasticity * faster, plate.transit * faster, plate.x_at_one * (faster * faster),
-            plate.saturated / faster, plate.corrections,
+            plate.inelasticity * faster,
+            plate.transit * faster,
+            plate.x_at_one * (faster * faster),
+            plate.saturated / faster,
+            plate.corrections,
             ModulusGrowth(
-                0.4 * math.log(spring.solid / stiffness) - usual, own.growth.modulus_power,
-                own.growth.plate_power, own.growth.yield_power, own.growth.wave,
+                0.4 * math.log(spring.solid / stiffness) - usual,
+                own.growth.modulus_power,
+                own.growth.plate_power,
+                own.growth.yield_power,
+                own.growth.wave,
                 own.growth.wave_slope,
             ),
             RateOfStrain(own.rate.slope, own.rate.per_speed * softer),
         ),
-    )  # fmt: skip
+    )
 
 
 @kernel(cache=True)
@@ -226,9 +245,7 @@ def returning(spring: Spring, mobility: float) -> float:
 
 
 @kernel
-def _first_known(
-    law: Array, spring: Spring, state: State, overlap: float, step: float
-) -> tuple[float, float, float]:
+def _first_known(law: Array, spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float, float]:
     """Mobility, stiffening, strength of a contact in its second step, when the speed is known."""
     if not state.largest_compression > 0.0 or state.stiffening > 0.0:
         return state.mobility, state.stiffening, state.strength
@@ -237,11 +254,7 @@ def _first_known(
         return spring.mobility, 1.0, 0.0
     found = impact(law, spring, speed)
     stiffer = found.stiffer
-    return (
-        found.inelasticity * found.time / spring.mass,
-        stiffer * stiffer * math.sqrt(stiffer),
-        found.strength,
-    )
+    return (found.inelasticity * found.time / spring.mass, stiffer * stiffer * math.sqrt(stiffer), found.strength)
 
 
 @kernel
@@ -252,9 +265,7 @@ def _force(law: Array, loading: bool, q: float, curve: UnloadingCurve) -> float:
 
 
 @kernel
-def _balance(
-    law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float
-) -> tuple[float, float]:
+def _balance(law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -283,12 +294,7 @@ def _balance(
 
 @kernel(cache=True)
 def advance(
-    law: Array,
-    spring: Spring,
-    state: State,
-    overlap: float,
-    step: float,
-    near: EdgeEcho | None = None,
+    law: Array, spring: Spring, state: State, overlap: float, step: float, near: EdgeEcho | None = None
 ) -> State:
     """State at the end of a step [s], from the overlap [m] at its end.
 
@@ -301,9 +307,8 @@ def advance(
 
 @kernel
 def stepped(
-    law: Array, spring: Spring, state: State, overlap: float, step: float, near: EdgeEcho | None,
-    room: int,
-) -> State:  # fmt: skip
+    law: Array, spring: Spring, state: State, overlap: float, step: float, near: EdgeEcho | None, room: int
+) -> State:
     """`advance` where it is known what `contactlaw.equation.force.room_for` says of the law."""
     if not overlap > 0.0:
         return PARTED

@@ -9,13 +9,4 @@ from contactlaw.table.certificate import BOUNDS, Certificate, bounds
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, build, certify, with_shapes
 
-__all__ = [
-    "BOUNDS",
-    "Certificate",
-    "Settings",
-    "Table",
-    "bounds",
-    "build",
-    "certify",
-    "with_shapes",
-]
+__all__ = ["BOUNDS", "Certificate", "Settings", "Table", "bounds", "build", "certify", "with_shapes"]

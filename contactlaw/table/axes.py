@@ -118,8 +118,7 @@ class TableGrid:
         along = self.axes[0].place(rows)
         lines = [rows[:, None], *(axis.nodes(along) for axis in self.axes[1:])]
         spread = [
-            np.expand_dims(line, [other for other in others if other != max(k, 1)])
-            for k, line in enumerate(lines)
+            np.expand_dims(line, [other for other in others if other != max(k, 1)]) for k, line in enumerate(lines)
         ]
         return np.broadcast_arrays(*spread)
 

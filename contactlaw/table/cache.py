@@ -49,12 +49,7 @@ def file_name(law: Law, settings: Settings) -> str:
     >>> file_name(myc, Settings()) == file_name(myc, Settings(rtol=1e-11))
     False
     """
-    ingredients = {
-        "law": law.key,
-        "settings": asdict(settings),
-        "schema": file.SCHEMA,
-        "sources": fingerprint(),
-    }
+    ingredients = {"law": law.key, "settings": asdict(settings), "schema": file.SCHEMA, "sources": fingerprint()}
     digest = hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
     return f"table-{digest[:24]}.h5"
 
@@ -112,10 +107,7 @@ def cached_slides(table: Table, kappa: float) -> Array:
 
 
 def _kept(
-    law: Law,
-    settings: Settings,
-    make: Callable[[Table | None], Table],
-    is_whole: Callable[[Table], bool],
+    law: Law, settings: Settings, make: Callable[[Table | None], Table], is_whole: Callable[[Table], bool]
 ) -> Table:
     """Read a table from the cache; if it is missing or not whole, make it and keep it."""
     try:

@@ -81,9 +81,8 @@ class Certificate:
 
 
 def compare_outcomes(
-    law: Law, settings: Settings, grid: TableGrid, packed: Array, points: int, seed: int,
-    progress: Progress,
-) -> tuple[Outcome, dict[str, Array]]:  # fmt: skip
+    law: Law, settings: Settings, grid: TableGrid, packed: Array, points: int, seed: int, progress: Progress
+) -> tuple[Outcome, dict[str, Array]]:
     """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
         raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
@@ -122,9 +121,7 @@ def _finer(settings: Settings) -> float:
     return max(settings.rtol / 10, RANGES["rtol"][0])
 
 
-def random_points(
-    grid: TableGrid, count: int, generator: np.random.Generator
-) -> tuple[Array, Array, Array]:
+def random_points(grid: TableGrid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:
     """Draw points of the grid's axes; a curved kink counts at its least and its largest chi.
 
     Without a third axis ln k is 0.

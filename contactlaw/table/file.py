@@ -69,9 +69,7 @@ _SERIES = {
 _SEGMENT = {
     "start": _Part("where it begins along its axis, over series_inelasticity [-]", (SERIES,)),
     "end": _Part("where it ends [-]", (SERIES,)),
-    "shares": _Part(
-        "of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]"
-    ),
+    "shares": _Part("of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]"),
 }
 
 
@@ -83,10 +81,7 @@ _STRENGTHS = {
 
 
 def _fields(grid: TableGrid) -> dict[str, _Part]:
-    return {
-        name: _Part(one.description, grid.shape, one.least, one.largest)
-        for name, one in STORED.items()
-    }
+    return {name: _Part(one.description, grid.shape, one.least, one.largest) for name, one in STORED.items()}
 
 
 def _by_strength(grid: TableGrid) -> dict[str, _Part]:
@@ -283,8 +278,7 @@ def _law(file: h5py.File) -> Law:
         knots, cells = (tuple(several[name].tolist()) for name in ("knots", "cells"))
         strengths = Strengths(several["data"], knots, cells)
     coefficient, scale, smallest, largest = (
-        float(file.attrs[name])
-        for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
+        float(file.attrs[name]) for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
     )
     return Law(
         family=file.attrs["law"],
@@ -305,8 +299,7 @@ def _overloads(file: h5py.File) -> Axis:
     """Read the axis of ln chi; the others follow from the law and the settings."""
     group = file["axes/log_overload"]
     segments = (
-        Segment(**_take(group, k, _SEGMENT), graded=bool(group[k].attrs["graded"]))
-        for k in map(str, range(len(group)))
+        Segment(**_take(group, k, _SEGMENT), graded=bool(group[k].attrs["graded"])) for k in map(str, range(len(group)))
     )
     return Axis(grids.AXES[1], tuple(segments), float(group.attrs["stretch"]))
 

@@ -26,15 +26,7 @@ from contactlaw.equation import force, zener
 from contactlaw.laws import Law, Strengths
 from contactlaw.laws._branches import END
 from contactlaw.table import axes as _axes
-from contactlaw.table.axes import (
-    SERIES,
-    Axis,
-    Segment,
-    TableGrid,
-    chebyshev_nodes,
-    power_series,
-    series_values,
-)
+from contactlaw.table.axes import SERIES, Axis, Segment, TableGrid, chebyshev_nodes, power_series, series_values
 from contactlaw.table.lookup import ELASTIC, ROWS, STRETCHED, TERMS
 
 Array = NDArray[np.float64]
@@ -107,18 +99,14 @@ def inelasticity_axis(settings: Settings) -> Axis:
 def strength_axis(strengths: Strengths, coarser: int = 1) -> Axis:
     """Ln of the strength from 0 to the largest, in segments between the knots."""
     segments = []
-    for (low, high), cells in zip(
-        itertools.pairwise(strengths.knots), strengths.cells, strict=True
-    ):
+    for (low, high), cells in zip(itertools.pairwise(strengths.knots), strengths.cells, strict=True):
         ends = np.full(SERIES, low), np.full(SERIES, high)
         count = max(-(-cells // coarser) + 1, _axes.FEWEST)
         segments.append(Segment(*ends, np.linspace(0.0, 1.0, count), graded=False))
     return Axis(AXES[2], tuple(segments))
 
 
-def with_steps(
-    law: Law, grid: TableGrid, settings: Settings, steps: float | Array, coarser: int = 1
-) -> TableGrid:
+def with_steps(law: Law, grid: TableGrid, settings: Settings, steps: float | Array, coarser: int = 1) -> TableGrid:
     """Place other nodes between the same kinks; one step for all segments, or one for each.
 
     Cells along the strength are wider by a factor.
@@ -146,8 +134,9 @@ def on_demand(law: Law) -> Settings:
         largest_inelasticity=largest_inelasticity(law),
         largest_overload=float(f"{_BEYOND * deepest:.3g}"),
         log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
-        inelasticity_nodes=41, rtol=1e-11 if law.strengths is None else 1e-10,
-    )  # fmt: skip
+        inelasticity_nodes=41,
+        rtol=1e-11 if law.strengths is None else 1e-10,
+    )
 
 
 def axes_with(overload: Axis, law: Law, settings: Settings) -> tuple[Axis, ...]:
@@ -232,9 +221,7 @@ def _end(data: Array, strength: float) -> float:
     return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
 
 
-def _kink_lines(
-    law: Law, settings: Settings, lam: Array, elastic: Array
-) -> tuple[list[Array], list[bool]]:
+def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tuple[list[Array], list[bool]]:
     """Ln chi of the kinks and the table's end along lambda, and which segments are graded."""
     end = math.log(settings.largest_overload)
     leaves = _straight(law)
@@ -252,9 +239,7 @@ def _kink_lines(
     return [*lines, np.full(lam.size, end)], graded
 
 
-def _overloads(
-    law: Law, kink: Array | float, lam: Array, elastic: Array, strength: Array | float = 0.0
-) -> Array:
+def _overloads(law: Law, kink: Array | float, lam: Array, elastic: Array, strength: Array | float = 0.0) -> Array:
     """Overloads at which the largest compression is that of a kink."""
     data = law.at_any_strength
     found: Array = zener.overload_at(data, lam, elastic, kink, 1e-12, strength=strength)

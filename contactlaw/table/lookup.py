@@ -119,13 +119,10 @@ def plate_of(table: Array) -> PlateConstants:
     """Read the constants of the plate; `log_time` is for T_H of a sphere of 1 m at 1 m/s as 1."""
     w, k, r = table, WAVES, GROWTH
     corrections = PlateCorrections(
-        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5],
-        w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
-    )  # fmt: skip
+        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10]
+    )
     growth = ModulusGrowth(w[r], w[r + 1], w[r + 2], w[r + 3], w[r + 4], w[r + 5])
-    return PlateConstants(
-        w[C_LAM], w[TRANSIT], w[REACH], w[SATURATED], corrections, growth, NO_RATE
-    )  # fmt: skip
+    return PlateConstants(w[C_LAM], w[TRANSIT], w[REACH], w[SATURATED], corrections, growth, NO_RATE)
 
 
 def lam_max(table: Array) -> float:
@@ -186,9 +183,7 @@ def exp(x: float) -> float:
 
     x = k ln 2 + r, |r| < 0.35: the series of exp(r), and k into the bits of the exponent.
     """
-    shifted = (
-        x * (1.0 / math.log(2.0)) + 1.5 * 2.0**52
-    )  # rounds to a whole number, in the last bits
+    shifted = x * (1.0 / math.log(2.0)) + 1.5 * 2.0**52  # rounds to a whole number, in the last bits
     k = shifted - 1.5 * 2.0**52
     r = (x - k * _LN_2_HIGH) - k * _LN_2_LOW
     r2 = r * r
@@ -272,9 +267,11 @@ def _place_in(table: Array, at: int) -> tuple[float, float, float]:
 def _four_rows(table: Array, at: int, row: int) -> tuple[Six, Six, Six, Six]:
     """Four rows, to be read before a loop: in it the table might be what is written."""
     return (
-        _row_at(table, at, row), _row_at(table, at, row + 1), _row_at(table, at, row + 2),
+        _row_at(table, at, row),
+        _row_at(table, at, row + 1),
+        _row_at(table, at, row + 2),
         _row_at(table, at, row + 3),
-    )  # fmt: skip
+    )
 
 
 @kernel(inline=True)
@@ -425,9 +422,7 @@ def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, flo
 
 
 @kernel
-def locate_all(
-    table: Array, x: Array, log_chi: Array, first: Integers, along: Array, low: Array, high: Array
-) -> None:
+def locate_all(table: Array, x: Array, log_chi: Array, first: Integers, along: Array, low: Array, high: Array) -> None:
     """`locate` for many places, in loops of one operation that become vector instructions.
 
     `first` gets row times columns + column, `x` and `along` the places within the cell. `low` and
@@ -516,9 +511,7 @@ def _four(table: Array, p: np.uint64, step: np.uint64, b: Four) -> Four:
 
 
 @kernel(inline=True)
-def _field(
-    table: Array, p: np.uint64, row: np.uint64, column: np.uint64, s: float, t: float, place: float
-) -> float:
+def _field(table: Array, p: np.uint64, row: np.uint64, column: np.uint64, s: float, t: float, place: float) -> float:
     """One field of a table with layers, from its 64 coefficients, which begin at p."""
     a, b, w = weights(s), weights(t), weights(place)
     c, d = _four(table, p, column, b), _four(table, p + row, column, b)
@@ -555,9 +548,17 @@ class _Contact(NamedTuple):
 
 @kernel(inline=True)
 def _contact(
-    plate: PlateConstants, stretch: float, log_speed: float, root: float, radius: float,
-    thickness: float, mass: float, later: float, thin: bool, usual: bool,
-) -> _Contact:  # fmt: skip
+    plate: PlateConstants,
+    stretch: float,
+    log_speed: float,
+    root: float,
+    radius: float,
+    thickness: float,
+    mass: float,
+    later: float,
+    thin: bool,
+    usual: bool,
+) -> _Contact:
     """Coordinate x of an impact, and what is to be taken from ln chi.
 
     Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
@@ -611,9 +612,8 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
         plate = with_saturation(plate, plate.saturated * exp(0.25 * at.later))
     usual = not relaxes(plate) and mass == 1.0
     one = _contact(
-        plate, table[STRETCH], log_speed, root, radius, thickness, mass, at.later,
-        is_thin(plate.corrections), usual,
-    )  # fmt: skip
+        plate, table[STRETCH], log_speed, root, radius, thickness, mass, at.later, is_thin(plate.corrections), usual
+    )
     if not 0.0 <= one.x <= table[X_MAX]:
         return _NOWHERE
     log_chi = table[C_CHI] + (0.8 * log_speed - one.stiffer) + log_elastic_at(table, one.x, at)
@@ -643,9 +643,7 @@ def cor_at(table: Array, at: Place) -> float:
 
 
 @kernel(cache=True)
-def restitution_on_plate(
-    table: Array, speed: float, radius: float, thickness: float, mass: float
-) -> float:
+def restitution_on_plate(table: Array, speed: float, radius: float, thickness: float, mass: float) -> float:
     """COR of one sphere on a plate; NaN for bad input and outside the table.
 
     The mass is over that of a solid sphere.
@@ -705,9 +703,7 @@ def _stretch(table: Array, strength: Array, x: Array, factor: Array, log_chi: Ar
 
 
 @kernel
-def _locate_layers(
-    table: Array, strength: Array, first: Integers, layer: Integers, place: Array
-) -> None:
+def _locate_layers(table: Array, strength: Array, first: Integers, layer: Integers, place: Array) -> None:
     """Turn indices in a table without layers into those with, and find places between layers."""
     for n in range(int(table[STRENGTHS])):
         at = int(table[STRENGTHS_AT]) + n * STRENGTH
@@ -726,9 +722,19 @@ def _locate_layers(
 
 @kernel
 def _coordinates(
-    table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, x: Array,
-    log_chi: Array, log_w: Array, root: Array, strength: Array, later: Array, more: Array,
-) -> None:  # fmt: skip
+    table: Array,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    mass: Array,
+    x: Array,
+    log_chi: Array,
+    log_w: Array,
+    root: Array,
+    strength: Array,
+    later: Array,
+    more: Array,
+) -> None:
     """Coordinates of impacts as `place_of` has them, and root as in `_Contact`.
 
     `later` and `more` are scratch.
@@ -747,22 +753,16 @@ def _coordinates(
     thin, usual = is_thin(plate.corrections), not relaxes(plate) and mass.size == 0
     if usual and not rated and thin:
         for i in range(x.size):
-            x[i] = _contact(
-                plate, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, 0.0, True, True
-            ).x
+            x[i] = _contact(plate, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, 0.0, True, True).x
     elif usual and not rated:
         for i in range(x.size):
-            one = _contact(
-                plate, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, 0.0, False, True
-            )
+            one = _contact(plate, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, 0.0, False, True)
             x[i], root[i] = one.x, one.root
             log_chi[i] -= 1.25 * one.stiffer  # times 0.8 below, as ln V is
     elif usual and not thin:
         for i in range(x.size):
             own = with_saturation(plate, plate.saturated * exp(0.25 * later[i]))
-            one = _contact(
-                own, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, later[i], False, True
-            )
+            one = _contact(own, stretch, 0.0, root[i], radius[i], thickness[i], 1.0, later[i], False, True)
             x[i], root[i] = one.x, one.root
             log_chi[i] -= 1.25 * one.stiffer
     else:
@@ -770,9 +770,17 @@ def _coordinates(
             grown = later[i] if rated else 0.0
             own = with_saturation(plate, plate.saturated * exp(0.25 * grown))
             one = _contact(
-                own, stretch, log_chi[i], root[i], radius[i], thickness[i],
-                mass[i] if mass.size > 0 else 1.0, grown, thin, False,
-            )  # fmt: skip
+                own,
+                stretch,
+                log_chi[i],
+                root[i],
+                radius[i],
+                thickness[i],
+                mass[i] if mass.size > 0 else 1.0,
+                grown,
+                thin,
+                False,
+            )
             x[i], root[i] = one.x, one.root
             log_chi[i] -= 1.25 * one.stiffer
     series, c_chi = series_at(table, HEADER), table[C_CHI]
@@ -786,9 +794,15 @@ def _coordinates(
 
 @kernel
 def _are_inside(
-    table: Array, speed: Array, radius: Array, thickness: Array, x: Array, log_chi: Array,
-    strength: Array, outside: Array,
-) -> bool:  # fmt: skip
+    table: Array,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    x: Array,
+    log_chi: Array,
+    strength: Array,
+    outside: Array,
+) -> bool:
     """Whether all impacts are valid and in the table; those that are not get coordinates of 0.
 
     `outside` is NaN for them, and is written only if there are some.
@@ -822,9 +836,7 @@ def _row(scratch: Array, row: int, count: int) -> Array:
 
 
 @kernel(cache=True)
-def restitutions(
-    table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: Array
-) -> int:
+def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: Array) -> int:
     """Write the COR of many spheres on plates into out; return how many are NaN.
 
     Masses are over those of solid spheres; without any, all spheres are.
@@ -862,9 +874,8 @@ def restitutions(
 
 @kernel(cache=True)
 def outcomes(
-    table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: Outcome,
-    root: Array,
-) -> int:  # fmt: skip
+    table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: Outcome, root: Array
+) -> int:
     """Write all fields of valid impacts on plates; return how many are NaN, being outside.
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
@@ -984,9 +995,17 @@ def yield_speeds(table: Array, c_chi: float, radius: Array, thickness: Array, ou
         log_speed, x = -1.25 * c_chi, math.nan
         for _ in range(60):  # 0.12^30 and 0.33^60 are far below rounding
             one = _contact(
-                plate, table[STRETCH], log_speed, math.exp(0.2 * log_speed), radius[n],
-                thickness[n], 1.0, 0.0, is_thin(plate.corrections), not relaxes(plate),
-            )  # fmt: skip
+                plate,
+                table[STRETCH],
+                log_speed,
+                math.exp(0.2 * log_speed),
+                radius[n],
+                thickness[n],
+                1.0,
+                0.0,
+                is_thin(plate.corrections),
+                not relaxes(plate),
+            )
             x = one.x
             if not 0.0 <= x <= table[X_MAX]:
                 break

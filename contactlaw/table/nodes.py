@@ -18,13 +18,7 @@ from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import lookup, shapes, splines, sweep
 from contactlaw.table.axes import TableGrid
-from contactlaw.table.certificate import (
-    Certificate,
-    bounds,
-    compare_histories,
-    compare_outcomes,
-    random_points,
-)
+from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes, random_points
 from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.sweep import Progress, no_progress
 
@@ -96,11 +90,7 @@ def shape_grid(table: Table) -> TableGrid:
 
 
 def build(
-    law: Law,
-    settings: Settings | None = None,
-    *,
-    points: int = POINTS,
-    progress: Progress = no_progress,
+    law: Law, settings: Settings | None = None, *, points: int = POINTS, progress: Progress = no_progress
 ) -> Table:
     """Sweep the equation over all nodes, on all cores, and certify the table.
 
@@ -144,9 +134,7 @@ def _solved(
     return {name: getattr(found, name).reshape(chosen[0].shape) for name in STORED}
 
 
-def _solved_layers(
-    law: Law, grid: TableGrid, settings: Settings, progress: Progress
-) -> dict[str, Array]:
+def _solved_layers(law: Law, grid: TableGrid, settings: Settings, progress: Progress) -> dict[str, Array]:
     """Solve a few layers at all nodes, among them those that end the axis, and others coarsely.
 
     Between the few, fields are nearly straight lines along the strength. How far they are from them
@@ -189,9 +177,8 @@ def thinned(table: Table, error: float) -> Table:
 
 
 def _widest_steps(
-    table: Table, rows: int, error: float, points: tuple[Array, Array, Array], exact: Array,
-    coarser: int,
-) -> Array | None:  # fmt: skip
+    table: Table, rows: int, error: float, points: tuple[Array, Array, Array], exact: Array, coarser: int
+) -> Array | None:
     """Largest step in each segment with which its COR errs no more than `error`; None if none does.
 
     Splines do not run across kinks, so the error in a segment is that of its own steps.
@@ -223,9 +210,7 @@ def _looked_up(table: Table, lam: Array, log_chi: Array, strength: Array) -> Out
 
 def _resampled(table: Table, rows: int, steps: float | Array, coarser: int) -> Table:
     """Table on other nodes; one step along ln chi for all segments, or one for each."""
-    settings = dataclasses.replace(
-        table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
-    )
+    settings = dataclasses.replace(table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps)))
     grid = grids.with_steps(table.law, table.grid, settings, steps, coarser)
     lam, log_chi, *_ = (values.ravel() for values in grid.nodes())
     found = _looked_up(table, lam, log_chi, grid.points()[2])  # just above a knot, where laws jump
@@ -276,9 +261,7 @@ def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
     return out.reshape(*grid.shape, 2, shapes.SIZE)
 
 
-def certify(
-    table: Table, points: int = 10_000, seed: int = 0, *, progress: Progress = no_progress
-) -> Certificate:
+def certify(table: Table, points: int = 10_000, seed: int = 0, *, progress: Progress = no_progress) -> Certificate:
     """Compare lookups with the solver at random points off the grid.
 
     The points fall into equal shares: below yield, each segment between two kinks, the close
@@ -304,11 +287,7 @@ def certify(
     ValueError
         If there are too few or too many points, or the seed is negative.
     """
-    looked, errors = compare_outcomes(
-        table.law, table.settings, table.grid, table.packed, points, seed, progress
-    )
+    looked, errors = compare_outcomes(table.law, table.settings, table.grid, table.packed, points, seed, progress)
     if table.states is not None:
-        errors["force_history"] = compare_histories(
-            table.law, table.settings, table.packed_shapes, looked
-        )
+        errors["force_history"] = compare_histories(table.law, table.settings, table.packed_shapes, looked)
     return Certificate.of(errors, looked.restitution.size, seed)

@@ -65,9 +65,7 @@ class Shapes(NamedTuple):
 def _states(shapes: Shapes, lam: float, log_chi: float, strength: float, out: Array) -> None:
     """Put times and speeds of one contact, between touch and separation, into out (2 SIZE,)."""
     x, at = lam / (lam + shapes.header[lookup.STRETCH]), lookup.at_strength(shapes.header, strength)
-    row, column, s, t = lookup.locate(
-        shapes.header, x, lookup.like(log_chi, lookup.stretched(shapes.header, x, at))
-    )
+    row, column, s, t = lookup.locate(shapes.header, x, lookup.like(log_chi, lookup.stretched(shapes.header, x, at)))
     a, b, c = lookup.weights(s), lookup.weights(t), lookup.layer_weights(at)
     for n in range(out.size):
         out[n] = 0.0
@@ -103,20 +101,14 @@ def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
 
 
 @kernel(cache=True)
-def _sample(
-    law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History
-) -> None:
+def _sample(law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History) -> None:
     """Sample contacts; mark those in `along_cap` that unload along the cap, and skip them."""
     samples, room = out.time.shape[1], np.empty(force.room_for(law))
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = found.restitution[n], found.contact_time[n]
-        w_m, lam, y = (
-            found.elastic_compression[n],
-            found.inelasticity[n],
-            found.yield_ratio[n],
-        )
+        w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
         own = law if room.size == 0 else force.at_strength(law, found.strength[n], room)
         log_chi, strength = math.log(w_m / y) if y < math.inf else 0.0, found.strength[n]
         _states(shapes, lam, log_chi, strength, inner)

@@ -94,9 +94,14 @@ def _changes(law: Array, out: Outcome, kappa: float) -> Array:
 
 
 def after(
-    law: Array, found: Outcome, kappa: float, psi: Array, samples: int = 801, springs: int = 64,
+    law: Array,
+    found: Outcome,
+    kappa: float,
+    psi: Array,
+    samples: int = 801,
+    springs: int = 64,
     edges: Edges | None = None,
-) -> Array:  # fmt: skip
+) -> Array:
     """Speeds of the contact points after impacts (impacts, speeds) [mu V0], by integration."""
     path = outcome.history(found.inelasticity.size, samples)
     zener.histories(law, found, _RTOL, path, edges)

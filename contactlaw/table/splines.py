@@ -64,9 +64,7 @@ def header(grid: TableGrid) -> Array:
     blocks = np.zeros((sizes.size, BLOCK))
     series = [power_series(np.log(grid.elastic_compression), DEGREE)]
     lines_at = HEADER + DEGREE + 1 + blocks.size
-    for block, segment, first in zip(
-        blocks, overload.segments, np.cumsum(sizes + 2) - (sizes + 2), strict=True
-    ):
+    for block, segment, first in zip(blocks, overload.segments, np.cumsum(sizes + 2) - (sizes + 2), strict=True):
         cells = segment.shares.size - 1
         length = segment.end[0] - segment.start[0]
         block[[lookup.START, lookup.END]] = segment.start[0], segment.end[0]
@@ -82,9 +80,7 @@ def header(grid: TableGrid) -> Array:
         head[lookup.LAYERS], head[lookup.STRENGTHS] = (sizes + 2).sum(), sizes.size
         head[lookup.STRENGTHS_AT] = sum(map(len, parts))
         begins = np.cumsum(sizes + 2) - (sizes + 2)
-        for segment, first, rows in zip(
-            strength[0].segments, begins, grid.by_strength, strict=True
-        ):
+        for segment, first, rows in zip(strength[0].segments, begins, grid.by_strength, strict=True):
             ends = segment.start[0], segment.end[0]
             parts.append(np.array([*ends, segment.shares.size - 1.0, first, *rows.ravel()]))
     return np.concatenate(parts)

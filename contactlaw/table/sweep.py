@@ -25,9 +25,7 @@ def no_progress(parts: Iterator[Any], total: int) -> Iterable[Any]:
     return parts
 
 
-def in_parts(
-    function: Callable[[slice], _T], count: int, parts: int, progress: Progress
-) -> Sequence[_T]:
+def in_parts(function: Callable[[slice], _T], count: int, parts: int, progress: Progress) -> Sequence[_T]:
     """Apply a function that releases the GIL to slices of `count` points, on all cores."""
     edges = np.linspace(0, count, min(parts, count) + 1).astype(int).tolist()
     slices = [slice(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
@@ -42,9 +40,8 @@ def in_parts(
 
 
 def solve_overloads(
-    law: Law, lam: Array, chi: Array, strength: Array, rtol: float, parts: int,
-    progress: Progress = no_progress,
-) -> Outcome:  # fmt: skip
+    law: Law, lam: Array, chi: Array, strength: Array, rtol: float, parts: int, progress: Progress = no_progress
+) -> Outcome:
     """Solve impacts at many points; those with the same lambda have to lie side by side.
 
     Raises
@@ -55,9 +52,7 @@ def solve_overloads(
     out = outcome.at(lam, np.empty(lam.size), strength)
 
     def solve(part: slice) -> None:
-        status, n = zener.solve_overloads(
-            law.at_any_strength, rtol, chi[part], outcome.part(out, part)
-        )
+        status, n = zener.solve_overloads(law.at_any_strength, rtol, chi[part], outcome.part(out, part))
         if status != zener.OK:
             raise failure("node", law, lam[part], chi[part], status, n)
 

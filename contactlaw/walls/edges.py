@@ -137,9 +137,7 @@ def fill_edges(facets: Rows, corners: Floats, edges: Rows, part: Integers) -> Ro
     return rows
 
 
-def _lists(
-    corners: Floats, edges: Rows, part: Integers
-) -> Iterator[tuple[Integers, Integers, float]]:
+def _lists(corners: Floats, edges: Rows, part: Integers) -> Iterator[tuple[Integers, Integers, float]]:
     """Divide facets into groups; find edges nearest to a point of each, and the least distance."""
     mine, low, high = part[edges["facet"]], corners.min(axis=1), corners.max(axis=1)
     order = np.argsort(part, kind="stable")
@@ -164,16 +162,12 @@ def _lists(
 def _distances(edges: Rows, point: Floats) -> Floats:
     from_start = point - edges["start"]
     share = (from_start * edges["along"]).sum(axis=1) / edges["square"]
-    found: Floats = np.linalg.norm(
-        from_start - np.clip(share, 0.0, 1.0)[:, None] * edges["along"], axis=1
-    )
+    found: Floats = np.linalg.norm(from_start - np.clip(share, 0.0, 1.0)[:, None] * edges["along"], axis=1)
     return found
 
 
 @kernel
-def nearest_edge(
-    facet: Any, p: tuple[float, float, float], reach: float
-) -> tuple[float, int, float]:
+def nearest_edge(facet: Any, p: tuple[float, float, float], reach: float) -> tuple[float, int, float]:
     """Distance of a facet's point from the nearest edge [m], its kind and the radius of its hole.
 
     Facets all of which are beyond the reach have the distance inf. The point is in the coordinates

@@ -109,9 +109,8 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
         if at_a == along_a and at_b == along_b:
             return _on_face(facet, r, s)
         return _on_edge(
-            r, s, px - at_a * a[0] - at_b * b[0], py - at_a * a[1] - at_b * b[1],
-            pz - at_a * a[2] - at_b * b[2],
-        )  # fmt: skip
+            r, s, px - at_a * a[0] - at_b * b[0], py - at_a * a[1] - at_b * b[1], pz - at_a * a[2] - at_b * b[2]
+        )
     aa, bb, ab = facet.length_a**2, facet.length_b**2, facet.between
     size = aa * bb - ab * ab
     v, w = (bb * along_a - ab * along_b) / size, (aa * along_b - ab * along_a) / size
@@ -126,18 +125,12 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
         else:
             w = min(max((aa - ab + along_b - along_a) / (aa - 2.0 * ab + bb), 0.0), 1.0)
             v = 1.0 - w
-        dx, dy, dz = (
-            px - v * a[0] - w * b[0],
-            py - v * a[1] - w * b[1],
-            pz - v * a[2] - w * b[2],
-        )
+        dx, dy, dz = (px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2])
         square = dx * dx + dy * dy + dz * dz
         if square < best:
             best, best_v, best_w = square, v, w
     v, w = best_v, best_w
-    return _on_edge(
-        r, s, px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2]
-    )
+    return _on_edge(r, s, px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2])
 
 
 @kernel
@@ -150,10 +143,7 @@ def contains(facet: Any, p: Point, margin: float) -> bool:
     if facet.kind == RECTANGLE:
         along_a = px * a[0] + py * a[1] + pz * a[2]
         along_b = px * b[0] + py * b[1] + pz * b[2]
-        return bool(
-            -margin <= along_a <= facet.length_a + margin
-            and -margin <= along_b <= facet.length_b + margin
-        )
+        return bool(-margin <= along_a <= facet.length_a + margin and -margin <= along_b <= facet.length_b + margin)
     return bool(on_facet(facet, p, margin).x >= 0.0)
 
 

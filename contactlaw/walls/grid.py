@@ -17,11 +17,18 @@ from contactlaw._jit import as_python, enable_caching, kernel
 Floats = NDArray[np.float64]
 
 GRID: list[tuple[Any, ...]] = [
-    ("origin", "f8", 3), ("per_length", "f8"), ("cells", "i8", 3),
-    ("starts", "i8"), ("entries", "i8"), ("entry_count", "i8"),  # addresses of the lists
-    ("busy", "i8"), ("cell_count", "i8"),  # address of a bit per cell, set if its list has facets
-    ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # low, high: box around the facets
-]  # fmt: skip
+    ("origin", "f8", 3),
+    ("per_length", "f8"),
+    ("cells", "i8", 3),
+    ("starts", "i8"),
+    ("entries", "i8"),
+    ("entry_count", "i8"),  # addresses of the lists
+    ("busy", "i8"),
+    ("cell_count", "i8"),  # address of a bit per cell, set if its list has facets
+    ("reach", "f8"),
+    ("low", "f8", 3),
+    ("high", "f8", 3),  # low, high: box around the facets
+]
 
 _SMALL = 10_000  # facets times cells that Python fills in 0.1 s; the compiler takes 1.5 s
 _MOST = 1 << 20  # cells of a large grid, up to twice as many by rounding; 8 bytes each
@@ -130,9 +137,7 @@ def _halve(block: Any, other: Any) -> None:
 
 
 @kernel(cache=True)
-def _fill_lists(
-    corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
-) -> None:
+def _fill_lists(corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any) -> None:
     """Count the facets of each cell in `ends`, one index on, or write them if `entries` has room.
 
     The box around a long thin facet that lies across the axes holds nearly all cells, and the facet

@@ -104,8 +104,7 @@ class Mesh:
             raise ArgumentError("triangles", None, f"none of {len(triangles)} has an area [m2]")
         if lost:
             warnings.warn(
-                f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates",
-                stacklevel=3,
+                f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates", stacklevel=3
             )
         rim: Any = ()
         if self.edges is not None:
@@ -280,10 +279,7 @@ class Mesh:
         >>> len(drum.triangles)
         144
         """
-        return cls.cone(
-            start, end, radius, radius, thickness, facets=facets, model=model, motion=motion,
-            edges=edges,
-        )  # fmt: skip
+        return cls.cone(start, end, radius, radius, thickness, facets=facets, model=model, motion=motion, edges=edges)
 
     @classmethod
     def disc(
@@ -325,9 +321,7 @@ class Mesh:
         n = len(around)
         here = np.arange(n)
         fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))
-        return cls(
-            np.vstack((middle + radius * around, middle)), fan, thickness, model, motion, edges
-        )
+        return cls(np.vstack((middle + radius * around, middle)), fan, thickness, model, motion, edges)
 
 
 def _stl(path: str | Path) -> io.BytesIO:
@@ -387,8 +381,7 @@ def _valid_triangles(vertices: Floats, triangles: Integers) -> Integers:
     """Numbers of the triangles that have an area, without duplicates."""
     corners = vertices[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
-                           axis=1)  # fmt: skip
+    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     some = np.flatnonzero(twice > _FLAT * sides.max(axis=1) ** 2)
     # Duplicates have the same three corners, in any order and under any vertex numbers.
     _, number_of = np.unique(vertices, axis=0, return_inverse=True)

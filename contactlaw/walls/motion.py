@@ -24,10 +24,16 @@ FARTHEST = 1e6  # largest coordinate [m]; a double resolves 1e-10 m there, less 
 MOTION: list[tuple[Any, ...]] = [
     ("moves", "i8"),
     ("velocity", "f8", 3),  # of a translation
-    ("axis", "f8", 3), ("spin", "f8"), ("hub", "f8", 3),  # spin [rad/s]
-    ("amplitude", "f8", 3), ("frequency", "f8"), ("phase", "f8"),  # [rad/s], [rad]
-    ("times", "i8"), ("displacements", "i8"), ("count", "i8"),  # addresses of a table, its rows
-]  # fmt: skip
+    ("axis", "f8", 3),
+    ("spin", "f8"),
+    ("hub", "f8", 3),  # spin [rad/s]
+    ("amplitude", "f8", 3),
+    ("frequency", "f8"),
+    ("phase", "f8"),  # [rad/s], [rad]
+    ("times", "i8"),
+    ("displacements", "i8"),
+    ("count", "i8"),  # addresses of a table, its rows
+]
 
 
 def floats(value: Any) -> Floats:
@@ -242,8 +248,7 @@ def check_motion(motion: Any) -> None:
     """Refuse what is no motion."""
     if motion is not None and not isinstance(motion, Motion):
         raise TypeError(
-            "motion: expected a Translation, Rotation, Vibration or Tabulated of "
-            f"contactlaw.walls, got {motion!r}"
+            f"motion: expected a Translation, Rotation, Vibration or Tabulated of contactlaw.walls, got {motion!r}"
         )
 
 
@@ -286,21 +291,13 @@ def _displacement(row: Any, time: float) -> tuple[float, float, float]:
     if m > n:
         share = (time - times[n]) / (times[m] - times[n])
     p, q = places[n], places[m]
-    return (
-        x + p[0] + share * (q[0] - p[0]),
-        y + p[1] + share * (q[1] - p[1]),
-        z + p[2] + share * (q[2] - p[2]),
-    )
+    return (x + p[0] + share * (q[0] - p[0]), y + p[1] + share * (q[1] - p[1]), z + p[2] + share * (q[2] - p[2]))
 
 
 @kernel(entry=True)
 def move_one(row: Any, time: float, dt: float) -> None:
     """Set a wall's position and velocity at a time, the end of a step of length dt [s]."""
-    last, here, then = (
-        _displacement(row, time - dt),
-        _displacement(row, time),
-        _displacement(row, time + dt),
-    )
+    last, here, then = (_displacement(row, time - dt), _displacement(row, time), _displacement(row, time + dt))
     for k in range(3):
         row.shift[k] = row.velocity[k] * time + here[k]
         row.half_rate[k] = row.velocity[k] + (here[k] - last[k]) / dt

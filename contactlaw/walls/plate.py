@@ -98,14 +98,9 @@ def check_models(models: Any) -> None:
     if models is None or isinstance(models, ImpactModel):
         return
     if not isinstance(models, Mapping):
-        raise TypeError(
-            "model: expected a contactlaw.ImpactModel, or a dict of them by atom type, got "
-            f"{models!r}"
-        )
+        raise TypeError(f"model: expected a contactlaw.ImpactModel, or a dict of them by atom type, got {models!r}")
     for kind, model in models.items():
         if not isinstance(kind, int | np.integer) or isinstance(kind, bool) or kind < 1:
             raise ArgumentError("model", kind, "atom types are integers from 1 on")
         if not isinstance(model, ImpactModel):
-            raise TypeError(
-                f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}"
-            )
+            raise TypeError(f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}")

@@ -29,17 +29,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.walls.edges import SMOOTH
-from contactlaw.walls.facet import (
-    Point,
-    Touch,
-    cell_of,
-    contains,
-    entries_of,
-    height,
-    on_facet,
-    to_frame,
-    turned,
-)
+from contactlaw.walls.facet import Point, Touch, cell_of, contains, entries_of, height, on_facet, to_frame, turned
 from contactlaw.walls.memory import array_at
 
 _SEAM = 1e-4  # [r] distance from a facet within which a point counts as on it
@@ -58,10 +48,7 @@ ROOM = _MOST + 1
 # pass, 0 if it has none, and the pass lies between list positions `one` and `other`. The search
 # uses the rest.
 OVERLAP = np.dtype(
-    [
-        (name, "i8")
-        for name in ("facet", "face", "representative", "one", "other", "done", "near", "far")
-    ]
+    [(name, "i8") for name in ("facet", "face", "representative", "one", "other", "done", "near", "far")]
     + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
     align=True,
 )

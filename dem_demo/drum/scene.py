@@ -65,13 +65,8 @@ class Drum(Bed):
 
         motion = Rotation(axis=(0, 1, 0), speed=self.spin)
         ends = (0.0, 0.0, 0.0), (0.0, self.length, 0.0)
-        shell = Mesh.cylinder(
-            *ends, self.drum, thickness, facets=_FACETS, motion=motion, edges="supported"
-        )
-        discs = [
-            Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion, edges="supported")
-            for end in ends
-        ]
+        shell = Mesh.cylinder(*ends, self.drum, thickness, facets=_FACETS, motion=motion, edges="supported")
+        discs = [Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion, edges="supported") for end in ends]
         return [shell, *discs]
 
     def write_walls(self, file: h5py.File) -> None:
@@ -108,11 +103,13 @@ def drum(
     from contactlaw import material
 
     check(
-        Drum, beads=beads, seed=seed, duration=duration,
+        Drum,
+        beads=beads,
+        seed=seed,
+        duration=duration,
         positive={"drum": (drum, "m"), "length": (length, "m"), "thickness": (thickness, "m")},
-        not_negative={"speed": (speed, "m/s"), "turns": (turns, "1/s"),
-                      "friction": (friction, "1")},
-    )  # fmt: skip
+        not_negative={"speed": (speed, "m/s"), "turns": (turns, "1/s"), "friction": (friction, "1")},
+    )
     if not 0.0 < radius[0] <= radius[1] < 0.5 * min(drum, length):
         raise ArgumentError(
             "radius",
@@ -123,16 +120,22 @@ def drum(
     rng = np.random.default_rng(seed)
     size: Floats = rng.uniform(*radius, beads)
     return Drum(
-        radius=size, position=_places(beads, radius[1], drum, length, rng),
-        velocity=np.array([0.0, 0.0, -speed]), thickness=thickness, drum=drum, length=length,
-        turns=turns, sphere_material=material(sphere), plate_material=material(plate),
-        friction=friction, duration=duration, seed=seed,
-    )  # fmt: skip
+        radius=size,
+        position=_places(beads, radius[1], drum, length, rng),
+        velocity=np.array([0.0, 0.0, -speed]),
+        thickness=thickness,
+        drum=drum,
+        length=length,
+        turns=turns,
+        sphere_material=material(sphere),
+        plate_material=material(plate),
+        friction=friction,
+        duration=duration,
+        seed=seed,
+    )
 
 
-def _places(
-    beads: int, radius: float, drum: float, length: float, rng: np.random.Generator
-) -> Floats:
+def _places(beads: int, radius: float, drum: float, length: float, rng: np.random.Generator) -> Floats:
     """Positions of the beads: random sites of a lattice within the drum, jittered."""
     step, inside = _SPACING * radius, drum - radius
     along = max(1, int((length - 2.0 * radius) // step))
@@ -148,6 +151,6 @@ def _places(
             None,
             f"{beads} do not fit into the drum, {len(site)} do; take a larger --drum or --length, "
             "or smaller beads (--radius)",
-        )  # fmt: skip
+        )
     chosen = site[rng.choice(len(site), beads, replace=False)]
     return np.asarray(chosen + rng.uniform(-spare, spare, (beads, 3)))

@@ -91,9 +91,14 @@ class Bed(ABC):
 
 
 def check(
-    scene: type[Bed], *, beads: int, seed: int, duration: float,
-    positive: Mapping[str, tuple[float, str]], not_negative: Mapping[str, tuple[float, str]],
-) -> None:  # fmt: skip
+    scene: type[Bed],
+    *,
+    beads: int,
+    seed: int,
+    duration: float,
+    positive: Mapping[str, tuple[float, str]],
+    not_negative: Mapping[str, tuple[float, str]],
+) -> None:
     """Refuse numbers out of range; the mappings give the value and the unit of each name."""
     if not beads >= 1:
         raise ArgumentError("beads", beads, "at least one is needed")

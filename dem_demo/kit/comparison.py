@@ -50,11 +50,7 @@ def plan(arguments: argparse.Namespace, scene: Bed, speed: float) -> Plan:
 
 
 def start(
-    arguments: argparse.Namespace,
-    command: str,
-    chosen: Plan,
-    texts: Tale,
-    drawn: type[drawing.Drawing[Any]],
+    arguments: argparse.Namespace, command: str, chosen: Plan, texts: Tale, drawn: type[drawing.Drawing[Any]]
 ) -> int:
     """Simulate both runs, and write the records, figures, summary and page."""
     kind = type(chosen.scene)

@@ -68,9 +68,7 @@ class Drawing(ABC, Generic[S]):
         """Show a frame."""
         run, (middle, reach) = self.run, self.slice(self.run.scene)
         place, time = run.position[frame].astype(float), float(run.time[frame])
-        near = np.flatnonzero(
-            (np.abs(place[:, 1] - middle) < reach) & (run.status[frame] == FLYING)
-        )
+        near = np.flatnonzero((np.abs(place[:, 1] - middle) < reach) & (run.status[frame] == FLYING))
         near = near[np.argsort(-place[near, 1])]  # from back to front
         colour = np.full(len(place), np.nan)
         past = self._last[: int(np.searchsorted(self._end, time, side="right"))]
@@ -97,10 +95,7 @@ def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], title: str) -> Figure:
     for axes, run in shown:
         drawing = drawn(axes, run, restitution_range(runs.law))
         drawing.show(frame)
-    bar = figure.colorbar(
-        drawing.beads, ax=[axes for axes, _ in shown], location="right",
-        pad=0.02, fraction=0.03,
-    )  # fmt: skip
+    bar = figure.colorbar(drawing.beads, ax=[axes for axes, _ in shown], location="right", pad=0.02, fraction=0.03)
     bar.set_label("COR of the last impact")
     return figure
 

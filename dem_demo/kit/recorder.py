@@ -62,10 +62,14 @@ class Recorder:
     """
 
     def __init__(
-        self, path: Path, making: Making, attributes: Mapping[str, object],
-        write_scene: Callable[[h5py.File], None], trajectories: Sequence[Dataset],
+        self,
+        path: Path,
+        making: Making,
+        attributes: Mapping[str, object],
+        write_scene: Callable[[h5py.File], None],
+        trajectories: Sequence[Dataset],
         frame_rate: float,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.path, self._making, self._attributes = path, making, attributes
         self._write_scene, self._trajectories = write_scene, trajectories
         self._frame_rate = frame_rate
@@ -74,16 +78,21 @@ class Recorder:
     def add(self, frame: NamedTuple) -> None:
         """Append one frame."""
         values = frame._asdict()
-        self._frames.append({one.name: np.array(values[one.name], one.kind)
-                             for one in self._trajectories})  # fmt: skip
+        self._frames.append({one.name: np.array(values[one.name], one.kind) for one in self._trajectories})
 
     def save(self, record: Record) -> None:
         """Write the file; without room for all, an `OSError` after the contacts alone are tried."""
         making, sphere = self._making, self._making.model.pair.sphere
         on_wall = bodies_of(making.model)
         bodies = [on_wall, on_wall._replace(pair=Pair(sphere, sphere))]
-        made = {**record.made, **self._attributes, "command": making.command, "law": on_wall.law,
-                "outside": making.model.outside, "time_step": making.time_step}  # fmt: skip
+        made = {
+            **record.made,
+            **self._attributes,
+            "command": making.command,
+            "law": on_wall.law,
+            "outside": making.model.outside,
+            "time_step": making.time_step,
+        }
         if making.constant_cor is not None:
             made["constant_cor"] = making.constant_cor
         on_bead = (record.rows["plate"] < 0).astype(np.int64)
@@ -104,9 +113,7 @@ class Recorder:
             write(group, name, values, unit, description)
 
 
-def run(
-    begin: Callable[[], Simulation], frames: int, name: str, recorder: Recorder | None
-) -> BaseException | None:
+def run(begin: Callable[[], Simulation], frames: int, name: str, recorder: Recorder | None) -> BaseException | None:
     """Simulate and record a run, and return what stopped it or kept frames out, if anything did.
 
     The recorder, which is None on all ranks but 0, writes its file in whichever way the run ends.

@@ -41,8 +41,7 @@ def summary(tale: Tale, runs: Runs[Any]) -> str:
     columns = [dict(facts(tale, run)) for run in runs.both]
     lines = [*title(tale, runs), ""]
     lines += [
-        "".join([f"{name:{_WIDTH}}", *(f"{column.get(name, '-'):>18}" for column in columns)])
-        for name in columns[0]
+        "".join([f"{name:{_WIDTH}}", *(f"{column.get(name, '-'):>18}" for column in columns)]) for name in columns[0]
     ]
     lines += ["", "Bead on bead is the engine's own, not recorded impact by impact"]
     lines += [f"{run.name}: {run.record.left_out}" for run in runs.both if run.record.left_out]

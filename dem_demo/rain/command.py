@@ -31,28 +31,52 @@ def add(commands: Any) -> None:
     )
     add = rain.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add("--plates", type=options.lengths, metavar="H,...",
+    add(
+        "--plates",
+        type=options.lengths,
+        metavar="H,...",
         default=options.text(defaults.THICKNESSES),
-        help="thickness of each plate [m], or with units; inf: a half-space")  # fmt: skip
+        help="thickness of each plate [m], or with units; inf: a half-space",
+    )
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the plates")
-    add("--radius", type=options.radii, metavar="MIN,MAX",
-        default=options.text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
-    add("--speed", type=options.speeds, metavar="MIN,MAX",
+    add(
+        "--radius",
+        type=options.radii,
+        metavar="MIN,MAX",
+        default=options.text(defaults.RADIUS),
+        help="bead radii [m], or with units",
+    )
+    add(
+        "--speed",
+        type=options.speeds,
+        metavar="MIN,MAX",
         default=options.text(defaults.SPEED),
-        help="speeds at which beads leave the nozzles [m/s], or with units")  # fmt: skip
-    add("--friction", type=float, metavar="MU", default=0.0,
-        help="coefficient of friction on the plates; beads on each other have none")  # fmt: skip
-    add("--tilt", type=float, metavar="DEG", default=argparse.SUPPRESS,
+        help="speeds at which beads leave the nozzles [m/s], or with units",
+    )
+    add(
+        "--friction",
+        type=float,
+        metavar="MU",
+        default=0.0,
+        help="coefficient of friction on the plates; beads on each other have none",
+    )
+    add(
+        "--tilt",
+        type=float,
+        metavar="DEG",
+        default=argparse.SUPPRESS,
         help="angle between nozzles and the vertical, to the left and to the right in turn "
-        f"[degrees] (default: {defaults.TILT:g} with friction, else 0)")  # fmt: skip
-    add("--duration", type=float, metavar="T", default=defaults.DURATION,
-        help="simulated time [s]")  # fmt: skip
-    add("--seed", type=int, metavar="S", default=defaults.SEED,
-        help="the same seed gives the same rain")  # fmt: skip
-    add("--outside", choices=("raise", "solve", "clamp"), default="solve",
-        help="impacts outside the law's table stop the rain, are integrated, or get the value at "
-        "its border and a flag")  # fmt: skip
+        f"[degrees] (default: {defaults.TILT:g} with friction, else 0)",
+    )
+    add("--duration", type=float, metavar="T", default=defaults.DURATION, help="simulated time [s]")
+    add("--seed", type=int, metavar="S", default=defaults.SEED, help="the same seed gives the same rain")
+    add(
+        "--outside",
+        choices=("raise", "solve", "clamp"),
+        default="solve",
+        help="impacts outside the law's table stop the rain, are integrated, or get the value at its border and a flag",
+    )
     options.add_law(add)
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
     rain.set_defaults(start=_start)
@@ -66,9 +90,7 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
         from dem_demo.rain.engine import Rain
 
     scene, model = _plan(arguments)
-    show = session.Show(
-        record.NAME, figures, record.read_folder, report.summary, page.page, film.gif
-    )
+    show = session.Show(record.NAME, figures, record.read_folder, report.summary, page.page, film.gif)
 
     def simulate(folder: Path) -> BaseException | None:
         making = Making(model, command, scene.time_step)

@@ -64,9 +64,8 @@ class Rain:
         self.emitted = 0
         n = scene.beads.radius.size
         self.now = Frame(
-            scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8),
-            np.zeros(n),
-        )  # fmt: skip
+            scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8), np.zeros(n)
+        )
 
     def advance(self) -> None:
         """Simulate one frame, emitting beads when their time has come."""

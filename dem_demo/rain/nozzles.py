@@ -77,13 +77,7 @@ def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive:
 
 
 def _draw(
-    n: int,
-    plates: int,
-    radius: tuple[float, float],
-    speed: tuple[float, float],
-    period: float,
-    seed: int,
-    tilt: float,
+    n: int, plates: int, radius: tuple[float, float], speed: tuple[float, float], period: float, seed: int, tilt: float
 ) -> Beads:
     """Draw times, places, sizes and speeds of beads.
 

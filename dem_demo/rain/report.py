@@ -32,8 +32,7 @@ def _bead_line(run: Run) -> str:
         return "Bead on bead: no impacts"
     speed, cor = rows["approach_speed"], rows["restitution"]
     return (
-        f"Bead on bead: {rows.size} impacts, {speed.mean():.2f} m/s on average, "
-        f"COR {cor.min():.3f} - {cor.max():.3f}"
+        f"Bead on bead: {rows.size} impacts, {speed.mean():.2f} m/s on average, COR {cor.min():.3f} - {cor.max():.3f}"
     )
 
 

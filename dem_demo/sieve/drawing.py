@@ -49,7 +49,4 @@ class Sheet(Drawing[Sieve]):
         ends = np.r_[0.0, np.column_stack((holes - half, holes + half)).ravel(), deck.length]
         found = [([a, b], [0.0, 0.0]) for a, b in ends.reshape(-1, 2)]
         found += [([x, x], [0.0, deck.wall]) for x in (0.0, deck.length)]
-        return [
-            Line2D(np.multiply(x, MM), np.multiply(z, MM), color=style.INK, linewidth=2.2)
-            for x, z in found
-        ]
+        return [Line2D(np.multiply(x, MM), np.multiply(z, MM), color=style.INK, linewidth=2.2) for x, z in found]

@@ -73,9 +73,7 @@ class Sieve(Bed):
         """Corners [m] of the space around the deck, as deep as a bead can fall."""
         bottom = -self.top_speed * self.duration - _AROUND
         top = float(self.position[:, 2].max()) + _AROUND
-        return (-_AROUND, -_AROUND, bottom), (
-            self.deck.length + _AROUND, self.deck.width + _AROUND, top,
-        )  # fmt: skip
+        return (-_AROUND, -_AROUND, bottom), (self.deck.length + _AROUND, self.deck.width + _AROUND, top)
 
     def deck_place(self, time: float) -> Floats:
         """Displacement of the deck at a time [m]."""
@@ -138,12 +136,13 @@ def sieve(
     from contactlaw import material
 
     check(
-        Sieve, beads=beads, seed=seed, duration=duration,
-        positive={"opening": (opening, "m"), "thickness": (thickness, "m"),
-                  "frequency": (frequency, "1/s")},
-        not_negative={"speed": (speed, "m/s"), "amplitude": (amplitude, "m"),
-                      "friction": (friction, "1")},
-    )  # fmt: skip
+        Sieve,
+        beads=beads,
+        seed=seed,
+        duration=duration,
+        positive={"opening": (opening, "m"), "thickness": (thickness, "m"), "frequency": (frequency, "1/s")},
+        not_negative={"speed": (speed, "m/s"), "amplitude": (amplitude, "m"), "friction": (friction, "1")},
+    )
     if not 0.0 < radius[0] < 0.5 * opening < radius[1] < 2.0 * opening:
         raise ArgumentError(
             "radius",
@@ -152,19 +151,26 @@ def sieve(
             f"to four times as wide, got {radius[0]!r},{radius[1]!r}",
         )
     share = math.sqrt(beads / _BEADS)
-    deck = Deck(
-        max(_FEWEST[0], round(_COLUMNS * share)), max(_FEWEST[1], round(_ROWS * share)), opening
-    )
+    deck = Deck(max(_FEWEST[0], round(_COLUMNS * share)), max(_FEWEST[1], round(_ROWS * share)), opening)
     rng = np.random.default_rng(seed)
     size = np.where(rng.random(beads) < 0.5, *radius)
     position = _feed(beads, radius[1], deck, rng)
     position[:, 2] += LIFT * amplitude
     velocity = speed * np.array([_DRIFT, 0.0, -1.0])
     return Sieve(
-        radius=size, position=position, velocity=velocity, deck=deck, thickness=thickness,
-        sphere_material=material(sphere), plate_material=material(plate), frequency=frequency,
-        amplitude=amplitude, friction=friction, duration=duration, seed=seed,
-    )  # fmt: skip
+        radius=size,
+        position=position,
+        velocity=velocity,
+        deck=deck,
+        thickness=thickness,
+        sphere_material=material(sphere),
+        plate_material=material(plate),
+        frequency=frequency,
+        amplitude=amplitude,
+        friction=friction,
+        duration=duration,
+        seed=seed,
+    )
 
 
 def _feed(beads: int, radius: float, deck: Deck, rng: np.random.Generator) -> Floats:

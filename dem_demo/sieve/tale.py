@@ -21,8 +21,7 @@ def title(run: Run[Sieve]) -> tuple[str, str]:
         f"{large:g} mm, on a deck of {label(scene.thickness)} {scene.plate_material.name}, "
         f"{deck.length * 1e3:.0f} x {deck.width * 1e3:.0f} mm, openings of {label(deck.opening)}, "
         f"{len(deck.triangles())} triangles",
-        f"{scene.duration * scene.frequency:.3g} periods of {scene.frequency:g} Hz, amplitude "
-        f"{label(scene.amplitude)}",
+        f"{scene.duration * scene.frequency:.3g} periods of {scene.frequency:g} Hz, amplitude {label(scene.amplitude)}",
     )
 
 

@@ -42,8 +42,7 @@ def test_yield_speeds_are_those_of_the_table(law, pair):
     # The bead yields where some compression is left after the rebound: another way to find it.
     if law in ("myc", "thornton") and pair == "the bead yields":
         below, above = (
-            solver.rebounds(Impacts(found * by, radius, thickness, found.shape))
-            for by in (1 - 1e-4, 1 + 1e-4)
+            solver.rebounds(Impacts(found * by, radius, thickness, found.shape)) for by in (1 - 1e-4, 1 + 1e-4)
         )
         assert (below.plastic_fraction == 0.0).all() and (above.plastic_fraction > 0.0).all()
 

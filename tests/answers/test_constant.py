@@ -41,9 +41,7 @@ def test_it_keeps_what_it_is_asked_to(law):
     assert best.impacts == 200
 
     pushed = model.constant(SPEED, RADIUS, 2e-3, keep="momentum")
-    assert given(SPEED, RADIUS, pushed.restitution) == pytest.approx(
-        given(SPEED, RADIUS, e), rel=1e-12
-    )
+    assert given(SPEED, RADIUS, pushed.restitution) == pytest.approx(given(SPEED, RADIUS, e), rel=1e-12)
     wrong = lost(SPEED, RADIUS, pushed.restitution) / true - 1
     assert pushed.energy_error == pytest.approx(wrong, rel=1e-9)
     assert abs(wrong) > 1e-4
@@ -67,9 +65,7 @@ def test_values_broadcast(model):
     v, r, w = (part.ravel() for part in np.broadcast_arrays(speeds, sizes, shares))
     assert grid == model.constant(v, r, H, weights=w)
     assert grid.impacts == 6
-    assert model.constant(5.0, R, H).restitution == pytest.approx(
-        model.restitution(5.0, R, H), rel=1e-15
-    )
+    assert model.constant(5.0, R, H).restitution == pytest.approx(model.restitution(5.0, R, H), rel=1e-15)
 
 
 def test_nothing_is_lost_on_a_half_space_below_yield(pair):
@@ -86,8 +82,7 @@ def test_a_loss_of_a_rounding_has_no_error(e):
     assert (best.energy_error, best.mean_energy_error) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("e, error", [([0.0, 0.2], math.inf), ([1e-170, 0.1], math.inf),
-                                      ([0.0, 0.0], 0.0)])  # fmt: skip
+@pytest.mark.parametrize("e, error", [([0.0, 0.2], math.inf), ([1e-170, 0.1], math.inf), ([0.0, 0.0], 0.0)])
 def test_a_height_of_nothing_has_no_finite_error(e, error):
     one = np.ones(2)
     best = constant(one, one, one, np.array(e), np.zeros(2, dtype=int), "energy")
@@ -114,9 +109,7 @@ def test_flags_are_counted_and_what_is_outside_is_refused(pair, model):
     solving = cl.ImpactModel(pair, law="myc", outside="solve")
     v = np.array([1.0, 1e4])
     e = solving.solve(v, R, H).restitution
-    assert lost(v, R, solving.constant(v, R, H).restitution) == pytest.approx(
-        lost(v, R, e), rel=1e-12
-    )
+    assert lost(v, R, solving.constant(v, R, H).restitution) == pytest.approx(lost(v, R, e), rel=1e-12)
 
 
 @pytest.mark.parametrize(

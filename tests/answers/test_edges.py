@@ -74,9 +74,7 @@ def test_the_kernel_answers_as_the_solver(kind):
 
 
 def test_tangential_answers_near_an_edge():
-    far, near = (
-        STEEL.oblique(SPEED, 2.0, R, H, 0.1, "solve", edge_distance=s) for s in (math.inf, 1e-3)
-    )
+    far, near = (STEEL.oblique(SPEED, 2.0, R, H, 0.1, "solve", edge_distance=s) for s in (math.inf, 1e-3))
     assert near.restitution == STEEL.solve(SPEED, R, H, edge_distance=1e-3).restitution
     # both slide all the time, so that friction takes its coefficient times the normal impulse
     for hit in (far, near):

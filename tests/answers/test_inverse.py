@@ -82,10 +82,7 @@ def test_the_commands_say_the_same(steel, capsys):
     assert other["restitution"] == 0.99 and other["remark"].startswith("no thickness: ")
     assert row["thickness"] == one.value[0] and row["thickness_high"] == one.high[0]
     assert (row["plate"], row["speed"], row["restitution"]) == ("glass", 2.0, 0.5)
-    assert (
-        said.endswith("\n")
-        and "law fem, speed 2.0 m/s, radius 0.001 m, COR 0.99: no thickness" in said
-    )
+    assert said.endswith("\n") and "law fem, speed 2.0 m/s, radius 0.001 m, COR 0.99: no thickness" in said
     assert main(["speed", *STEEL, "--cor", "90%", "--thickness", "5mm"]) == 0
     asked, names, _, row, *_ = capsys.readouterr().out.splitlines()
     assert asked == "stainless-steel-304-ball on glass, law fem"

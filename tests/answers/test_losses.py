@@ -13,9 +13,7 @@ import contactlaw as cl
 
 def impacts(count):
     generator = np.random.default_rng(7)
-    v, r, slenderness = np.exp(
-        generator.uniform(*np.log([[0.1, 1e-4, 0.05], [8.0, 1e-2, 1.2]]), (count, 3))
-    ).T
+    v, r, slenderness = np.exp(generator.uniform(*np.log([[0.1, 1e-4, 0.05], [8.0, 1e-2, 1.2]]), (count, 3))).T
     return v, r, r / slenderness
 
 
@@ -62,10 +60,7 @@ def test_the_moduli_are_those_at_the_frequency_of_the_impact(pair, speed, radius
 
 
 def test_a_loss_factor_of_nothing_changes_nothing():
-    lossless, none = (
-        replace(polymer.SOFT, loss_factor=(0.0, 1e4)),
-        replace(polymer.SOFT, loss_factor=None),
-    )
+    lossless, none = (replace(polymer.SOFT, loss_factor=(0.0, 1e4)), replace(polymer.SOFT, loss_factor=None))
     assert lossless == none
     little = replace(polymer.SOFT, loss_factor=(1e-6, 1e4))
     hits = [cl.ImpactModel(cl.Pair(one, "glass")).solve(2.0, 1e-3, 2e-3) for one in (none, little)]
@@ -119,10 +114,7 @@ def test_oblique_impacts_from_the_table_are_those_of_the_solver():
     model = cl.ImpactModel(cl.Pair(bead, "glass"))
     speed, mu = 0.3, 0.3
     sliding = np.array([1e-4, 1e-2, 0.3, 1.0, 3.0, 10.0]) * mu * speed
-    table, exact = (
-        model.oblique(speed, sliding, 1e-3, 3e-3, mu, method=method)
-        for method in ("table", "solve")
-    )
+    table, exact = (model.oblique(speed, sliding, 1e-3, 3e-3, mu, method=method) for method in ("table", "solve"))
     np.testing.assert_allclose(table.sliding_speed, exact.sliding_speed, atol=2e-3 * mu * speed)
     assert (np.abs(exact.sliding_speed) < sliding).all() and (exact.friction_energy > 0.0).all()
 
@@ -131,10 +123,7 @@ def test_the_slowest_impacts_lose_what_slow_ones_do():
     """Their compression is below the smallest one of which the law knows the loss."""
     model = polymer.WEAK_MODEL
     speed, radius = np.array([1e-5, 1e-7, 1e-12]), np.array([1.5, 1e-2, 100.0])
-    for hit in (
-        model.solve(speed, radius, 3.0 * radius),
-        model.lookup(speed, radius, 3.0 * radius),
-    ):
+    for hit in (model.solve(speed, radius, 3.0 * radius), model.lookup(speed, radius, 3.0 * radius)):
         assert hit.restitution == pytest.approx(0.438, abs=1e-3)
 
 
@@ -155,16 +144,14 @@ def test_an_answer_that_is_not_finite_names_its_impact(monkeypatch):
 
 def test_errors_of_a_plate_are_those_of_the_material_given():
     """Its modulus is carried to the bead's frequency, by the loss factor that is uncertain."""
-    plate = replace(
-        polymer.SOFT, name="p", loss_factor=(0.5, 1e2), uncertainty={"loss_factor": 0.2}
-    )
+    plate = replace(polymer.SOFT, name="p", loss_factor=(0.5, 1e2), uncertainty={"loss_factor": 0.2})
     found = cl.ImpactModel(cl.Pair(polymer.SOFT, plate)).uncertainty(1.0, 1e-3, 5e-3).restitution
     ends = [
-        cl.ImpactModel(
-            cl.Pair(polymer.SOFT, replace(plate, loss_factor=(0.5 * math.exp(z), 1e2)))
-        ).solve(1.0, 1e-3, 5e-3).restitution
+        cl.ImpactModel(cl.Pair(polymer.SOFT, replace(plate, loss_factor=(0.5 * math.exp(z), 1e2))))
+        .solve(1.0, 1e-3, 5e-3)
+        .restitution
         for z in (-0.2, 0.2)
-    ]  # fmt: skip
+    ]
     width = 0.5 * abs(ends[1] - ends[0])
     assert found.causes["loss factor of the plate"] == pytest.approx(width, rel=1e-3)
 

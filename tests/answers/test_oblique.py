@@ -27,12 +27,7 @@ def impacts(count, seed=0):
 
 
 @pytest.mark.parametrize(
-    "law",
-    [
-        "myc",
-        "losses and flow",
-        *(pytest.param(law, marks=pytest.mark.long) for law in ("fem", "hertz")),
-    ],
+    "law", ["myc", "losses and flow", *(pytest.param(law, marks=pytest.mark.long) for law in ("fem", "hertz"))]
 )
 def test_table_is_within_its_promise(law):
     model, (v, s, r, h, mu) = PAIRS[law], impacts(1000)
@@ -131,9 +126,8 @@ def test_kernel_is_collide():
     @numba.njit
     def one(v, omega, n):
         return collide(
-            (v[0], v[1], v[2]), (omega[0], omega[1], omega[2]), (n[0], n[1], n[2]),
-            1e-3, 4e-3, 0.25, (0.0, 0.0, 0.0),
-        )  # fmt: skip
+            (v[0], v[1], v[2]), (omega[0], omega[1], omega[2]), (n[0], n[1], n[2]), 1e-3, 4e-3, 0.25, (0.0, 0.0, 0.0)
+        )
 
     for n in range(50):
         new, turned = one(velocity[n], spin[n], normal[n])
@@ -222,8 +216,12 @@ def test_oblique_refuses(change, match):
 )
 def test_collide_refuses(change, match):
     given = {
-        "velocity": [0, 0, -1.0], "spin": REST, "normal": [0, 0, 1.0],
-        "radius": 1e-3, "thickness": 3e-3, "friction": 0.1,
-    }  # fmt: skip
+        "velocity": [0, 0, -1.0],
+        "spin": REST,
+        "normal": [0, 0, 1.0],
+        "radius": 1e-3,
+        "thickness": 3e-3,
+        "friction": 0.1,
+    }
     with pytest.raises(ValueError, match=match):
         PAIRS["myc"].collide(**(given | change))

@@ -32,10 +32,7 @@ PAIRS = {
 }
 # Each needs about ten tables; those of the others are of the same kinds.
 LONG = pytest.mark.long
-NAMES = [
-    pytest.param(name, marks=LONG) if name in ("plate", "a corner of the law") else name
-    for name in PAIRS
-]
+NAMES = [pytest.param(name, marks=LONG) if name in ("plate", "a corner of the law") else name for name in PAIRS]
 FIELDS = [name for name in cl.Rebound.__dataclass_fields__ if name != "flags"]
 
 
@@ -177,9 +174,7 @@ def test_beads(other):
 
 def test_histories_are_those_of_the_solver():
     given = [0.5, 3.0], R, [2e-3, 5e-3]
-    ours, exact = (
-        model("sphere").force_history(*given, samples=65, method=how) for how in ("table", "solve")
-    )
+    ours, exact = (model("sphere").force_history(*given, samples=65, method=how) for how in ("table", "solve"))
     for name, values in exact._asdict().items():
         assert np.abs(getattr(ours, name) - values).max() < 3e-3 * values.max(), name
     load = cl.load_signal([0.0, 1e-3], *given, model=model("sphere"), rate=1e6)

@@ -37,9 +37,7 @@ def integrated(name, pair, speed, thickness):
 
 def quotient(function, step=1e-4):
     """Derivative of function(factor) with respect to ln(factor) at 1, to the fourth order."""
-    near, far = (
-        (function(math.exp(h)) - function(math.exp(-h))) / (2 * h) for h in (step, 2 * step)
-    )
+    near, far = ((function(math.exp(h)) - function(math.exp(-h))) / (2 * h) for h in (step, 2 * step))
     return (4 * near - far) / 3
 
 
@@ -103,12 +101,8 @@ def test_every_law_has_its_elasticities(any_law):
     ways = {
         "speed": lambda x: integrated(name, pair, v * x, h),
         "thickness": lambda x: integrated(name, pair, v, h * x),
-        "sphere_modulus": lambda x: integrated(
-            name, changed(pair, "sphere", "youngs_modulus", x), v, h
-        ),
-        "yield_strength": lambda x: integrated(
-            name, changed(pair, "sphere", "yield_strength", x), v, h
-        ),
+        "sphere_modulus": lambda x: integrated(name, changed(pair, "sphere", "youngs_modulus", x), v, h),
+        "yield_strength": lambda x: integrated(name, changed(pair, "sphere", "yield_strength", x), v, h),
     }
     ours = any_law.sensitivity(v, RADIUS, h)
     step = 5e-4
@@ -153,9 +147,7 @@ def all_changed(pair, number, factor):
 
 
 @pytest.mark.parametrize(
-    "names",
-    [*PAIRS[:2], *(pytest.param(names, marks=pytest.mark.long) for names in PAIRS[2:])],
-    ids="-".join,
+    "names", [*PAIRS[:2], *(pytest.param(names, marks=pytest.mark.long) for names in PAIRS[2:])], ids="-".join
 )
 def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
     """Each changed input makes a new pair, law and model."""
@@ -197,11 +189,7 @@ def test_fem_with_numbers_in_its_name_holds_them_fixed(pair, monkeypatch):
 
 @pytest.mark.parametrize(
     "flow",
-    [
-        {"yield_strength": 300e6, "hardening": (500e6, 0.3)},
-        {"hardness": 1.2e9},
-        {"hardness": 1.2e9, "hardening": 0.3},
-    ],
+    [{"yield_strength": 300e6, "hardening": (500e6, 0.3)}, {"hardness": 1.2e9}, {"hardness": 1.2e9, "hardening": 0.3}],
 )
 def test_the_strength_is_the_whole_flow_stress(flow):
     """A factor on A and B, whether they are given or follow from a hardness."""
@@ -212,9 +200,14 @@ def test_the_strength_is_the_whole_flow_stress(flow):
     def cor(factor):
         known = metal.flow
         body = cl.Material(
-            "metal", 200e9, 0.3, 7800, yield_strength=factor * known.strength,
-            hardening=(factor * known.hardening, known.exponent), kind="metal",
-        )  # fmt: skip
+            "metal",
+            200e9,
+            0.3,
+            7800,
+            yield_strength=factor * known.strength,
+            hardening=(factor * known.hardening, known.exponent),
+            kind="metal",
+        )
         return cl.ImpactModel(cl.Pair(body, plate)).solve(*impact).restitution
 
     expected = math.log(cor(1.01) / cor(0.99)) / math.log(1.01 / 0.99)

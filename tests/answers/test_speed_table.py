@@ -16,9 +16,12 @@ RNG = np.random.default_rng(5)
 X = np.sort(RNG.uniform(0, 1, 13))
 # Curves: convex, of changing curvature, with a corner, and random.
 CURVES = {
-    "root": np.sqrt(X), "wave": np.sin(9 * X), "corner": np.abs(X - X[5]),
-    "noise": RNG.uniform(0, 1, X.size), "step": np.where(X > 0.4, 1.0, 0.0),
-}  # fmt: skip
+    "root": np.sqrt(X),
+    "wave": np.sin(9 * X),
+    "corner": np.abs(X - X[5]),
+    "noise": RNG.uniform(0, 1, X.size),
+    "step": np.where(X > 0.4, 1.0, 0.0),
+}
 
 
 def largest_miss(x, y, rows):
@@ -72,10 +75,7 @@ def test_on_a_half_space_one_line_leads_to_yield(model):
     rows = model.speed_table(R, math.inf, error=1e-5)
     yields = model.yield_speed(R, math.inf)
     assert rows.speed[1] == pytest.approx(yields, rel=0.01)
-    assert model.speed_table(R, math.inf, error=1e-5, fastest=yields).speed.tolist() == [
-        0.1,
-        yields,
-    ]
+    assert model.speed_table(R, math.inf, error=1e-5, fastest=yields).speed.tolist() == [0.1, yields]
 
 
 def test_flags_and_what_is_outside(pair, model):

@@ -23,32 +23,42 @@ def known_to(body, **errors):
 
 
 def steel(name, strength, error):
-    return cl.Material(name, 207e9, 0.3, 7800, strength, kind="metal",
-                       uncertainty={"yield_strength": error})  # fmt: skip
+    return cl.Material(name, 207e9, 0.3, 7800, strength, kind="metal", uncertainty={"yield_strength": error})
 
 
-COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal",
-                     hardening=(292e6, 0.31), rate=(0.025, 1.0))  # fmt: skip
+COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", hardening=(292e6, 0.31), rate=(0.025, 1.0))
 # name: bead, plate, speeds, thicknesses for a bead of 1 mm, errors of speed, radius, thickness
 CASES = {
     "the bead flows": (
         known_to("stainless-steel-304", yield_strength=0.3, **STIFF),
-        known_to("soda-lime-glass", **STIFF), [0.1, 2.0], [0.4e-3, 2e-3], (),
+        known_to("soda-lime-glass", **STIFF),
+        [0.1, 2.0],
+        [0.4e-3, 2e-3],
+        (),
     ),
     "flow begins": (
-        known_to("gamma-alumina", yield_strength=0.2, youngs_modulus=0.1), "glass",
-        [4.0, 6.0, 8.0], [0.8e-3, 2e-3, INF], (),
+        known_to("gamma-alumina", yield_strength=0.2, youngs_modulus=0.1),
+        "glass",
+        [4.0, 6.0, 8.0],
+        [0.8e-3, 2e-3, INF],
+        (),
     ),
     "elastic, near 0 and 1": (
-        known_to("soda-lime-glass", youngs_modulus=0.3), "alumina", [1.0], [0.3e-3, 1e-3, 6e-3],
+        known_to("soda-lime-glass", youngs_modulus=0.3),
+        "alumina",
+        [1.0],
+        [0.3e-3, 1e-3, 6e-3],
         (0.1, 0.05, 0.1),
     ),
     "either may flow": (steel("a", 4e8, 0.2), steel("b", 4.5e8, 0.2), [2.0], [0.8e-3, 5e-3], ()),
     "hardening and rate": (
-        known_to(COPPER, yield_strength=0.2, hardening=0.15, rate=0.3), "glass", [1.0],
-        [2e-3], (0.0, 0.0, 0.05),
+        known_to(COPPER, yield_strength=0.2, hardening=0.15, rate=0.3),
+        "glass",
+        [1.0],
+        [2e-3],
+        (0.0, 0.0, 0.05),
     ),
-}  # fmt: skip
+}
 
 SLOW = "the bead flows", "either may flow", "hardening and rate"
 
@@ -102,14 +112,10 @@ def test_without_errors_only_the_law_is_uncertain():
     steel = dataclasses.replace(cl.material("stainless-steel-304"), uncertainty={})
     model = cl.ImpactModel(cl.Pair(steel, "glass"))
     bands, hit = model.uncertainty(3.0, 1e-3, 5e-3), model.solve(3.0, 1e-3, 5e-3)
-    for (name, band), rms in zip(
-        vars(bands).items(), law_errors.MODEL_ERRORS["fem"][0], strict=True
-    ):
+    for (name, band), rms in zip(vars(bands).items(), law_errors.MODEL_ERRORS["fem"][0], strict=True):
         value = getattr(hit, name)
         assert band.causes == {"model": pytest.approx(rms * value, rel=1e-3)}
-        assert (band.low, band.high) == pytest.approx(
-            (value * (1 - rms), value * (1 + rms)), rel=1e-4
-        )
+        assert (band.low, band.high) == pytest.approx((value * (1 - rms), value * (1 + rms)), rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -127,23 +133,17 @@ def test_one_number_alone_makes_the_band_of_its_ends(body, number, error, within
     cor = cl.ImpactModel(cl.Pair(bead, "glass")).uncertainty(*at).restitution
     cause = f"{number.replace('_', ' ')} of the bead"
     assert list(cor.causes) == [cause, "model"]
-    low, high = (
-        cl.ImpactModel(cl.Pair(drawn(bead, [z, 0.0]), "glass")).solve(*at).restitution
-        for z in (-1.0, 1.0)
-    )
+    low, high = (cl.ImpactModel(cl.Pair(drawn(bead, [z, 0.0]), "glass")).solve(*at).restitution for z in (-1.0, 1.0))
     width = 0.5 * abs(high - low)
     assert cor.causes[cause] == pytest.approx(width, rel=within)
     if body is not COPPER:
-        assert 0.5 * (cor.high - cor.low) == pytest.approx(
-            np.hypot(width, cor.causes["model"]), rel=0.02
-        )
+        assert 0.5 * (cor.high - cor.low) == pytest.approx(np.hypot(width, cor.causes["model"]), rel=0.02)
 
 
 def test_one_material_errs_alike_in_both_bodies():
     one, other = steel("a", 4e8, 0.2), steel("b", 4e8, 0.2)
     alike, apart = (
-        cl.ImpactModel(cl.Pair(one, plate)).uncertainty(2.0, 1e-3, 5e-3).restitution
-        for plate in (one, other)
+        cl.ImpactModel(cl.Pair(one, plate)).uncertainty(2.0, 1e-3, 5e-3).restitution for plate in (one, other)
     )
     assert list(alike.causes) == ["yield strength of both bodies", "model"]
     parts = [apart.causes[f"yield strength of {body}"] for body in ("the bead", "the plate")]
@@ -152,15 +152,30 @@ def test_one_material_errs_alike_in_both_bodies():
 
 
 def test_a_number_that_follows_from_the_hardness_has_an_error_too():
-    body = cl.Material("h", 124e9, 0.34, 8960, kind="metal", hardness=1e9, hardening=0.3,
-                       uncertainty={"hardness": 0.1, "hardening": 0.1})  # fmt: skip
+    body = cl.Material(
+        "h",
+        124e9,
+        0.34,
+        8960,
+        kind="metal",
+        hardness=1e9,
+        hardening=0.3,
+        uncertainty={"hardness": 0.1, "hardening": 0.1},
+    )
     causes = cl.ImpactModel(cl.Pair(body, "glass")).uncertainty(3.0, 1e-3, 5e-3).restitution.causes
     assert causes["hardness of the bead"] > causes["hardening of the bead"] > 0.01
 
 
 def test_shapes_and_refusals():
-    lossy = cl.Material("pom", 2.9e9, 0.49, 1410, kind="polymer", loss_factor=(0.9, 1e4),
-                        uncertainty={"loss_factor": 0.3, "poissons_ratio": 0.3})  # fmt: skip
+    lossy = cl.Material(
+        "pom",
+        2.9e9,
+        0.49,
+        1410,
+        kind="polymer",
+        loss_factor=(0.9, 1e4),
+        uncertainty={"loss_factor": 0.3, "poissons_ratio": 0.3},
+    )
     model = cl.ImpactModel(cl.Pair(lossy, "glass"))
     bands = model.uncertainty([1.0, 2.0], 1e-3, [[1e-3], [2e-3], [INF]], thickness_error=0.1)
     for band in vars(bands).values():
@@ -171,9 +186,7 @@ def test_shapes_and_refusals():
     with pytest.raises(ValueError, match="speed_error: got 5.0; must lie between 0 and 1"):
         model.uncertainty(1.0, 1e-3, 1e-3, speed_error=5.0)
     foam = cl.Material("w", 600e9, 0.2, 2500, kind="ceramic", uncertainty={"youngs_modulus": 1.0})
-    with pytest.raises(
-        ValueError, match="uncertainty: got 1.0; youngs_modulus is too large.*material 'w'"
-    ):
+    with pytest.raises(ValueError, match="uncertainty: got 1.0; youngs_modulus is too large.*material 'w'"):
         cl.ImpactModel(cl.Pair(foam, "glass")).uncertainty(1.0, 1e-3, 1e-3)
 
 

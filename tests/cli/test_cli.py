@@ -25,8 +25,7 @@ IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
 
 
 # Ends of bands.
-ENDS = [f"{name}_{end}" for name in ("restitution", "contact_time", "peak_force")
-        for end in ("low", "high")]  # fmt: skip
+ENDS = [f"{name}_{end}" for name in ("restitution", "contact_time", "peak_force") for end in ("low", "high")]
 ASKED = {"sphere": "gamma-alumina", "plate": "glass", "law": "myc"}
 SIZES = {"speed": 12.0, "radius": 0.9e-3, "thickness": 1e-3}
 
@@ -104,9 +103,14 @@ def test_several_values_are_every_combination(model, capsys):
         assert row["yield_speed"] == model.yield_speed(row["radius"], h)
     assert rows[0]["flags"] == []
     assert set(rows[0]) == {
-        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__, *ENDS,
+        "speed",
+        "radius",
+        "thickness",
+        "yield_speed",
+        *cl.Rebound.__dataclass_fields__,
+        *ENDS,
         *ASKED,
-    }  # fmt: skip
+    }
 
 
 def test_a_table_has_a_row_per_impact_and_units(capsys):
@@ -116,9 +120,13 @@ def test_a_table_has_a_row_per_impact_and_units(capsys):
     assert names.split()[:4] == ["speed", "radius", "thickness", "COR"]
     assert units.split()[:4] == ["[m/s]", "[mm]", "[mm]", "[-]"]
     assert [row.split()[:3] for row in rows[:6]] == [
-        ["1", "0.9", "0.5"], ["70", "0.9", "0.5"], ["1", "0.9", "1"], ["70", "0.9", "1"],
-        ["1", "0.9", "inf"], ["70", "0.9", "inf"],
-    ]  # fmt: skip
+        ["1", "0.9", "0.5"],
+        ["70", "0.9", "0.5"],
+        ["1", "0.9", "1"],
+        ["70", "0.9", "1"],
+        ["1", "0.9", "inf"],
+        ["70", "0.9", "inf"],
+    ]
     columns = {line.partition("  FAST_IMPACT")[0].rstrip().rfind(" ") for line in rows[:6]}
     assert max(columns) < len(units)
     assert rows[1].endswith("FAST_IMPACT")
@@ -172,15 +180,16 @@ def test_a_spreadsheet_computes_no_name(command, name, capsys):
         (["--law", "kogut_etsion(9)"], "poissons_ratio must lie between 0 and 0.5, not '9'"),
         (["--speed", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the table, its "),
         (["--speed", "1,1e4"], "--outside solve integrates the equation there, --outside clamp"),
-        (["--speed", "1:100:9", "--radius", "1um:1mm:2000", "--thickness", "1mm:2mm:2000"],
-         "--speed, --radius, --thickness: every combination is 36000000 impacts"),
+        (
+            ["--speed", "1:100:9", "--radius", "1um:1mm:2000", "--thickness", "1mm:2mm:2000"],
+            "--speed, --radius, --thickness: every combination is 36000000 impacts",
+        ),
         (["--plot", "cor.xyz"], "--plot: got 'cor.xyz'; must end in .png, .svg or .pdf"),
         (["--plot", "cor"], "--plot: got 'cor'; must end in"),
         (["--plot", "nowhere/cor.png"], "--plot: there is no folder nowhere"),
-        (["--solve", "--law", "hertz", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"],
-         "did not solve"),
+        (["--solve", "--law", "hertz", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"], "did not solve"),
     ],
-)  # fmt: skip
+)
 def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
     assert main([*IMPACT, *change]) == 1
     captured = capsys.readouterr()
@@ -198,10 +207,7 @@ def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
         (["history", *IMPACT[1:], "--speed", "1e4"], ": 10000 m/s, radius 0.9 mm, thickness 1 mm"),
         (["history", *IMPACT[1:], "--plot", "contact.xyz"], "--plot: got 'contact.xyz'; must end"),
         (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
-        (
-            ["table", "check", "--points", "100", "--seed", "-1"],
-            "--seed: got -1; must not be negative",
-        ),
+        (["table", "check", "--points", "100", "--seed", "-1"], "--seed: got -1; must not be negative"),
         (["table", "info", "--law", "hertz"], "--law: got 'hertz'; never yields"),
         (["table", "info", "missing.h5"], "table: there is no file missing.h5"),
         (["table", "build", "--out", "nowhere/t.h5"], "--out: there is no folder nowhere"),
@@ -359,11 +365,7 @@ sys.exit(main(["table", "check"]))
 
 def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
     process = subprocess.Popen(
-        [sys.executable, "-c", SLOW],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", SLOW], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout.readline() == "inside\n"
     process.send_signal(signal.SIGINT)
@@ -374,9 +376,7 @@ def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
 
 def shell(command):
     """Exit status of a command in bash: its own, not that of the last command of a pipe."""
-    return subprocess.run(
-        ["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True
-    )
+    return subprocess.run(["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True)
 
 
 @pytest.mark.parametrize("command", ["materials", "materials --json"])

@@ -27,10 +27,7 @@ ANSWERED = [
     f"{PAIR} --thickness 0.12mm --speed 12",
     f"{STEEL} --thickness 1mm,10mm --speed 0.01,1",
     "cor --sphere glass --plate glass --radius 1mm --thickness 2mm --speed 3",
-    *(
-        f"{PAIR} --thickness 1mm --speed 12 --law {law}"
-        for law in ("myc", "hertz", "jackson_green", "stronge")
-    ),
+    *(f"{PAIR} --thickness 1mm --speed 12 --law {law}" for law in ("myc", "hertz", "jackson_green", "stronge")),
 ]
 REFUSED = [
     f"{PAIR} --thickness 0.05mm --speed 12",
@@ -62,9 +59,8 @@ json.dump(found, sys.stdout)
 
 def outcomes(commands, route):
     done = subprocess.run(
-        [sys.executable, "-c", BOTH, route],
-        input=json.dumps(commands), capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        [sys.executable, "-c", BOTH, route], input=json.dumps(commands), capture_output=True, text=True, check=True
+    )
     return json.loads(done.stdout)
 
 
@@ -145,8 +141,10 @@ def run(command, folder, *before):
     code = "import sys; from contactlaw.__main__ import main; sys.exit(main())"
     return subprocess.run(
         [sys.executable, "-c", "\n".join((*before, code)), *command.split()],
-        env=environment, capture_output=True, text=True,
-    )  # fmt: skip
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
 
 
 def test_a_few_impacts_leave_neither_code_nor_a_table(tmp_path, both):
@@ -190,15 +188,16 @@ def test_the_band_is_that_of_the_model(capsys):
             value = pytest.approx(getattr(band, end), rel=1e-6)
             assert float(row[f"{name}_{end}{unit}"]) == record[f"{name}_{end}"] == value
     table = printed(f"{SURE},1 {GIVEN}", capsys)
-    assert (
-        f"  {cor.low:.3g}-{cor.high:.3g}  " in table and "yield strength of the bead 0 to" in table
-    )
+    assert f"  {cor.low:.3g}-{cor.high:.3g}  " in table and "yield strength of the bead 0 to" in table
 
 
 def test_strengths_without_an_error_are_named(capsys):
     """A band of moduli alone would look as if the COR were known."""
-    table = " ".join(printed("cor --sphere aluminium-6061-t6 --plate glass --radius 1e-3 "
-                             "--thickness 1e-2 --speed 1,2", capsys).split())  # fmt: skip
+    table = " ".join(
+        printed(
+            "cor --sphere aluminium-6061-t6 --plate glass --radius 1e-3 --thickness 1e-2 --speed 1,2", capsys
+        ).split()
+    )
     assert "as far as errors are known (errors of the strength of the bead are not)." in table
 
 

@@ -14,8 +14,7 @@ from contactlaw.cli.parts.impacts import units
 
 PAIR = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
 SIZES = ["--radius", "0.9mm", "--thickness", "0.5mm,inf"]
-SWEEP = ["sweep", *PAIR, "--radius", "0.5mm,0.9mm", "--thickness", "0.5mm,1mm,inf",
-         "--speed", "0.5:60:4log"]  # fmt: skip
+SWEEP = ["sweep", *PAIR, "--radius", "0.5mm,0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0.5:60:4log"]
 CONSTANT = ["constant", *PAIR, *SIZES, "--speed", "1:60:30log"]
 
 
@@ -39,9 +38,14 @@ def test_a_sweep_as_hdf5(tmp_path, grid, model, capsys):
     assert flag.startswith("FAST_IMPACT, 6 of 24: ")
     with h5py.File(out) as file:
         assert dict(file.attrs) == {
-            "format": "contactlaw-sweep", "schema": 1, "contactlaw_version": cl.__version__,
-            "sphere": "gamma-alumina", "plate": "glass", "law": "myc", "outside": "raise",
-        }  # fmt: skip
+            "format": "contactlaw-sweep",
+            "schema": 1,
+            "contactlaw_version": cl.__version__,
+            "sphere": "gamma-alumina",
+            "plate": "glass",
+            "law": "myc",
+            "outside": "raise",
+        }
         fields = [*cl.Rebound.__dataclass_fields__, "yield_speed"]
         assert set(file) == {"speed", "radius", "thickness", *fields}
         for name, values in (("radius", r), ("thickness", h), ("speed", v)):
@@ -103,10 +107,16 @@ def test_a_constant_has_its_errors_beside_it(model, capsys):
     assert units.split() == ["[mm]", "[-]", "[-]", "[-]", "[%]", "[%]", "[-]", "[%]"]
     best = model.constant(np.geomspace(1, 60, 30), 0.9e-3, 0.5e-3)
     assert thin.split() == [
-        "0.5", "30", f"{best.restitution:.4f}", f"{best.spread:.4f}", "0.00",
-        f"{100 * best.rebound_error:.3g}", f"{best.mean:.4f}",
-        f"{100 * best.mean_energy_error:.2f}", "FAST_IMPACT",
-    ]  # fmt: skip
+        "0.5",
+        "30",
+        f"{best.restitution:.4f}",
+        f"{best.spread:.4f}",
+        "0.00",
+        f"{100 * best.rebound_error:.3g}",
+        f"{best.mean:.4f}",
+        f"{100 * best.mean_energy_error:.2f}",
+        "FAST_IMPACT",
+    ]
     assert thick.split()[0] == "inf"
     assert "95 of 100 impacts rebound to a height that is within this share of their own" in meaning
     assert flag.startswith("FAST_IMPACT, 4 of 60: ")
@@ -120,8 +130,7 @@ def test_a_constant_as_csv(keep, model, capsys):
         best = model.constant(np.geomspace(1, 60, 30), 0.9e-3, thickness, keep)
         assert float(row["thickness_m"]) == thickness
         assert (row["keep"], int(row["impacts"]), row["flags"]) == (keep, 30, "FAST_IMPACT:2")
-        for name in ("restitution", "spread", "energy_error", "rebound_error", "mean",
-                     "mean_energy_error"):  # fmt: skip
+        for name in ("restitution", "spread", "energy_error", "rebound_error", "mean", "mean_energy_error"):
             assert float(row[name]) == pytest.approx(getattr(best, name), rel=1e-12, abs=1e-13)
 
 
@@ -132,9 +141,7 @@ def test_a_constant_from_a_table_of_ones_own(tmp_path, model, capsys):
     thin, thick = read_csv(capsys.readouterr().out)
     best = model.constant([0.5, 8.0], 0.9e-3, 0.5e-3, weights=[3, 2])
     assert float(thin["restitution"]) == pytest.approx(best.restitution, rel=1e-12)
-    assert float(thick["restitution"]) == pytest.approx(
-        model.restitution(9.0, 0.9e-3, np.inf), rel=1e-12
-    )
+    assert float(thick["restitution"]) == pytest.approx(model.restitution(9.0, 0.9e-3, np.inf), rel=1e-12)
 
 
 TABLE = ["speed-table", *PAIR, "--radius", "0.9mm", "--thickness", "1mm"]
@@ -171,10 +178,7 @@ def test_a_speed_table(model, capsys):
         ([*TABLE, "--slowest", "20"], "--slowest: got 20.0; must be below the fastest speed, 10.0"),
         ([*TABLE, "--slowest", "0"], "--slowest: got 0.0; must lie"),
         ([*TABLE, "--fastest", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
-        (
-            [*CONSTANT, "--thickness", "1mm:2mm:101"],
-            "--thickness: 101 different ones, 100 is the most",
-        ),
+        ([*CONSTANT, "--thickness", "1mm:2mm:101"], "--thickness: 101 different ones, 100 is the most"),
     ],
 )
 def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, monkeypatch, capsys):
@@ -190,9 +194,14 @@ def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, m
 
 @pytest.mark.parametrize(
     "argv",
-    [["constant", *PAIR, *SIZES], [*CONSTANT, "--record", "a.csv"], SWEEP,
-     [*CONSTANT, "--lammps", "--yade"], [*TABLE, "--thickness", "1mm,2mm"]],
-)  # fmt: skip
+    [
+        ["constant", *PAIR, *SIZES],
+        [*CONSTANT, "--record", "a.csv"],
+        SWEEP,
+        [*CONSTANT, "--lammps", "--yade"],
+        [*TABLE, "--thickness", "1mm,2mm"],
+    ],
+)
 def test_wrong_usage_is_status_2(argv, capsys):
     with pytest.raises(SystemExit) as stop:
         main(argv)

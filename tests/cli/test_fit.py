@@ -49,9 +49,7 @@ def test_json_holds_all_of_the_fit(usual, found, capsys):
     printed = json.loads(capsys.readouterr().out)
     assert printed["values"]["thickness"] == pytest.approx(found.values["thickness"], rel=1e-9)
     assert printed["errors"]["thickness"] == pytest.approx(found.errors["thickness"], rel=1e-9)
-    assert printed["residuals"]["restitution"] == pytest.approx(
-        found.residuals["restitution"].tolist(), abs=1e-9
-    )
+    assert printed["residuals"]["restitution"] == pytest.approx(found.residuals["restitution"].tolist(), abs=1e-9)
     assert printed["radius_m"] == 1e-3
     assert len(printed["flags"]) == 12 and printed["units"] == {"thickness": "m"}
 
@@ -87,7 +85,7 @@ def test_tables_as_people_write_them(head, rows, table):
             ["velocty,COR", "1,0.5"],
             "no column of speeds in its first line, 'velocty, COR': call one "
             "speed_m/s, did you mean velocity for 'velocty'?",
-        ),  # fmt: skip
+        ),
         (["v,COR,diameter,radius", "1,0.5,1,1"], "columns of radius and of diameter"),
         (["speed,COR", "", "1,o.5"], "line 3, column 'COR': 'o.5' is no number"),
         (["speed;COR", "1;0,5", "2;1,5"], "line 3: restitution: got 1.5 (element 1)"),
@@ -101,10 +99,7 @@ def test_tables_as_people_write_them(head, rows, table):
         (["speed,COR", "1,", "2,n/a"], "none of its rows has a number in a column of what is"),
         (["speed,COR", "-1,0.5"], "speed: got -1.0"),
         (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
-        (
-            ["speed,COR", "1.0,0.5", "", "1,5,0.5"],
-            "line 4 has 3 fields, '1,5,0.5', where the first",
-        ),
+        (["speed,COR", "1.0,0.5", "", "1,5,0.5"], "line 4 has 3 fields, '1,5,0.5', where the first"),
         (["# in May", "speed;COR", "1;2"], ", line 3: restitution: got 2.0 (element 0)"),
         (["speed,COR", "1,88.5%"], "is no number such as 1.5; units belong into the name of the"),
         (["speed,COR", "1,5,0,5"], "a decimal comma? Write numbers with a point"),
@@ -128,10 +123,7 @@ def test_tables_that_are_refused(lines, words, table, capsys):
             [*FIT, "--prior", "plate_yield_strength=5GPa"],
             "--prior: got 5000000000.0; the error of plate_yield_strength must",
         ),
-        (
-            [*FIT[:-1], "yield_strength", "--thickness", "1.2mm"],
-            "--unknown: the data do not determine",
-        ),
+        ([*FIT[:-1], "yield_strength", "--thickness", "1.2mm"], "--unknown: the data do not determine"),
         (["--sphere", "stel", *FIT[2:]], "--sphere: unknown material 'stel'"),
         ([*FIT, "--law", "fme"], "--law: got 'fme'; unknown law; did you mean 'fem'"),
         ([*FIT, "--plot", "fit.txt"], "--plot: got 'fit.txt'; must end in .png"),
@@ -214,9 +206,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
 
     drawn = []
     save = Figure.savefig
-    monkeypatch.setattr(
-        Figure, "savefig", lambda self, *a, **named: (drawn.append(self), save(self, *a, **named))
-    )
+    monkeypatch.setattr(Figure, "savefig", lambda self, *a, **named: (drawn.append(self), save(self, *a, **named)))
     path = tmp_path / "fit.png"
     unknown = ["--thickness", "1.2mm", "--unknown", "plate_yield_strength"]
     assert main(["fit", usual, *BODIES, "--radius", "1mm", *unknown, "--plot", str(path)]) == 0
@@ -225,9 +215,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     curve = max((line for line in above.lines), key=lambda line: len(line.get_xdata()))
     table = cl.ImpactModel(STEEL, outside="solve")
     middle = curve.get_xdata()[80]
-    assert curve.get_ydata()[80] == pytest.approx(
-        table.solve(middle, RADIUS, THICKNESS).restitution, rel=0.01
-    )
+    assert curve.get_ydata()[80] == pytest.approx(table.solve(middle, RADIUS, THICKNESS).restitution, rel=0.01)
     assert above.collections and below.collections  # bands
     assert str(path) in capsys.readouterr().out
     path.write_text("before")
@@ -304,10 +292,7 @@ def test_a_record_of_a_run_is_fitted(run, found, capsys):
     assert cl.fit(STEEL, walls, "thickness").values == pytest.approx(printed["values"], rel=1e-9)
     assert main(asked) == 0 and "\n     11    11 " in capsys.readouterr().out
     for words, said in (
-        (
-            ["fit", path, "--unknown", "thickness"],
-            "several pairs, bearing-steel-52100 on aluminium",
-        ),
+        (["fit", path, "--unknown", "thickness"], "several pairs, bearing-steel-52100 on aluminium"),
         ([*asked, "--radius", "1mm"], "--radius: the record has its own"),
     ):
         assert main(words) == 1

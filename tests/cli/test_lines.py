@@ -64,9 +64,7 @@ def script(style, types):
         neighbor 0.0005 bin
         region box block -0.001 0.05 -0.001 0.05 -0.001 0.05 units box
         create_box {types} box"""
-    put = [
-        f"create_atoms 1 single {x:.15g} {y:.15g} {z:.15g} units box" for (x, y, z), _ in beads()
-    ]
+    put = [f"create_atoms 1 single {x:.15g} {y:.15g} {z:.15g} units box" for (x, y, z), _ in beads()]
     move = [
         f"group one id {n}\nvelocity one set {x} {y} {z} units box\ngroup one delete"
         for n, (_, (x, y, z)) in enumerate(beads(), start=1)
@@ -124,9 +122,8 @@ def test_liggghts_reads_them(capsys, tmp_path, wanted):
         run {STEPS}
 """)
     done = subprocess.run(
-        ["liggghts", "-in", "in.drops", "-log", "none"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+        ["liggghts", "-in", "in.drops", "-log", "none"], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     last = (tmp_path / "end.txt").read_text().split("ITEM: ATOMS")[-1].splitlines()[1:]
     check(np.array([line.split()[1:] for line in last], dtype=float), wanted)
@@ -161,8 +158,7 @@ def test_the_modulus_of_lammps_walls_is_the_pairs(capsys, tmp_path):
     """LAMMPS turns the modulus into E/(2 (1 - nu^2)): a contact lasts as long as Hertz's."""
     from lammps_box import quiet
 
-    assert cli.main([*ASKED[:5], "--law", "hertz", *ASKED[7:9], "--thickness", "inf",
-                     "--speed", "5", "--lammps"]) == 0  # fmt: skip
+    assert cli.main([*ASKED[:5], "--law", "hertz", *ASKED[7:9], "--thickness", "inf", "--speed", "5", "--lammps"]) == 0
     (tmp_path / "walls.lammps").write_text(capsys.readouterr().out)
     lmp = quiet(f"""{script("sphere", 1)}
         comm_modify vel yes

@@ -20,12 +20,8 @@ BEAD = "oblique --sphere alumina --plate glass --radius 2.5mm --thickness 25mm -
 def test_rows_are_those_of_the_model(capsys):
     assert main([*BEAD, "--angle", "0,10,60", "--friction", "0.1,0.3", "--csv"]) == 0
     rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
-    assert [(row["friction"], row["angle_deg"]) for row in rows[2:4]] == [
-        ("0.1", "60.0"), ("0.3", "0.0"),
-    ]  # fmt: skip
-    row = {
-        name: float(value) for name, value in rows[4].items() if value and not value[0].isalpha()
-    }
+    assert [(row["friction"], row["angle_deg"]) for row in rows[2:4]] == [("0.1", "60.0"), ("0.3", "0.0")]
+    row = {name: float(value) for name, value in rows[4].items() if value and not value[0].isalpha()}
     angle = np.radians(10)
     speed, sliding = 3.9 * np.cos(angle), 3.9 * np.sin(angle)
     model = cl.ImpactModel(cl.Pair("alumina", "glass"))
@@ -44,16 +40,12 @@ def test_a_table_and_a_plot(capsys, tmp_path):
     assert main([*BEAD, "--angle", "10:80:3", "--friction", "0.2"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "alumina on glass, law fem"
-    assert len(lines) == 6 and lines[1].split()[:6] == [
-        "angle", "friction", "speed", "radius", "thickness", "COR",
-    ]  # fmt: skip
+    assert len(lines) == 6 and lines[1].split()[:6] == ["angle", "friction", "speed", "radius", "thickness", "COR"]
     path = tmp_path / "oblique.png"
     assert main([*BEAD, "--angle", "1:80:9", "--friction", "0.1", "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(b"\x89PNG")
     sorted_too = tmp_path / "sorted.svg", tmp_path / "unsorted.svg"
-    for file, angles, frictions in zip(
-        sorted_too, ("0,30,60", "60,0,30,30"), ("0.1,0.2", "0.2,0.1,0.2"), strict=True
-    ):
+    for file, angles, frictions in zip(sorted_too, ("0,30,60", "60,0,30,30"), ("0.1,0.2", "0.2,0.1,0.2"), strict=True):
         options = ["--angle", angles, "--friction", frictions, "--plot", str(file)]
         assert main([*BEAD, *options]) == 0
     paths = [re.findall(r'<path d="[^"]*"', file.read_text()) for file in sorted_too]
@@ -61,10 +53,7 @@ def test_a_table_and_a_plot(capsys, tmp_path):
     capsys.readouterr()
     empty = tmp_path / "empty.png"
     assert main([*BEAD, "--angle", "30", "--friction", "0.1", "--plot", str(empty)]) == 1
-    assert (
-        "--plot: got no two values of angle, speed, thickness, radius, friction to draw"
-        in capsys.readouterr().err
-    )
+    assert "--plot: got no two values of angle, speed, thickness, radius, friction to draw" in capsys.readouterr().err
     assert not empty.exists()
 
 
@@ -91,9 +80,7 @@ def test_fluents_function_reflects_as_the_model_does(tmp_path):
     assert "int x;" not in re.sub(r"/\*.*?\*/", "", source.read_text(), flags=re.DOTALL)
     (tmp_path / "udf.h").write_text(UDF)
     command = ["gcc", "-std=c90", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-I"]
-    subprocess.run(
-        [*command, tmp_path, "-shared", "-fPIC", source, "-o", library, "-lm"], check=True
-    )
+    subprocess.run([*command, tmp_path, "-shared", "-fPIC", source, "-o", library, "-lm"], check=True)
     normal, along = np.array([2.0, -1.0, 2.0]) / 3.0, np.array([1.0, 2.0, 0.0]) / 5.0**0.5
     reflect = ctypes.CDLL(library).contactlaw_reflect
     model = cl.ImpactModel(cl.Pair("alumina", "glass"))
@@ -134,10 +121,7 @@ def test_acutrace_gets_both_coefficients_over_the_normal_speed(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (
-            ["--friction", "0.1,0.2", "--angle", "1,80"],
-            "--fluent: got 2 angles and of speed, thickness",
-        ),
+        (["--friction", "0.1,0.2", "--angle", "1,80"], "--fluent: got 2 angles and of speed, thickness"),
         (
             ["--friction", "0.1", "--angle", "40,40"],
             "--fluent: got 1 angles and of speed, thickness, radius, friction 1, 1, 1, 1 values",

@@ -35,7 +35,7 @@ IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".sp
         (POM, {"yield_strength": 62e6}),
         ("E=2.8 GPa, nu=0.35, rho=1.41g/cm3, hardness=30 HV, kind=polymer", {"hardness": "30 HV"}),
     ],
-)  # fmt: skip
+)
 def test_numbers_make_the_material_that_python_makes(text, more):
     assert material_of("sphere", text, {}) == cl.Material(text, **NUMBERS, **more)
 
@@ -44,8 +44,9 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     path = tmp_path / "mine.toml"
     path.write_text(FILE, encoding="utf-8-sig")  # as editors of Windows save it
     mine = cl.read_materials(path)
-    assert mine["delrin"] == cl.Material("my-pom", **NUMBERS, yield_strength=62e6,
-        source="my-pom", uncertainty={"yield_strength": 0.1})  # fmt: skip
+    assert mine["delrin"] == cl.Material(
+        "my-pom", **NUMBERS, yield_strength=62e6, source="my-pom", uncertainty={"yield_strength": 0.1}
+    )
     assert mine["hard-304"].density == cl.material("304").density
     assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
     assert main(["cor", "--materials", str(path), "--sphere", "Delrin", *IMPACT]) == 0
@@ -58,14 +59,10 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"]]
 
 
-def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(
-    tmp_path, capsys
-):
+def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):
     path = tmp_path / "mine.toml"
     path.write_text('[soft]\nlike = "glass"\nyield_strength = 1e8\nsource = "tests of {May}"')
-    assert cl.read_materials(path)["soft"].source.endswith(
-        "yield strength 1e+08 Pa: tests of {May}"
-    )
+    assert cl.read_materials(path)["soft"].source.endswith("yield strength 1e+08 Pa: tests of {May}")
     text = "E=200GPa nu=0.3 rho=7800 hardness=62"
     assert main(["cor", "--sphere", text, *IMPACT]) == 0
     assert "hardness=62 is 62 Pa; HRC, HV or HB?" in capsys.readouterr().err
@@ -74,18 +71,12 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            "pomm",
-            "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is",
-        ),
+        ("pomm", "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is"),
         ("E=2.8GPa nuu=0.35 rho=1410", "--sphere: unknown 'nuu'; did you mean nu? known: E, nu"),
         ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu=0.35"),
         ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
         ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus: got 2.8; below"),
-        (
-            "E=2GPa E=3GPa nu=0.35 rho=1410",
-            "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice",
-        ),
+        ("E=2GPa E=3GPa nu=0.35 rho=1410", "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice"),
         ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
         ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
         ("POM, E=2GPa nu=0.35 rho=1410", "'POM' has no key: write KEY=..."),
@@ -146,9 +137,11 @@ def test_a_length_without_a_unit_draws_a_warning(capsys, tmp_path):
 
 def test_numbers_of_a_file_may_have_units_and_short_names(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text('[sheet]\nlike = "dc01"\nyield = "250 N/mm2"\nhardness = "1.1 GPa"\n'
-                    '[bead]\nE = "2.8 GPa"\nnu = 0.35\nrho = "1.41 g/cm3"\nhardness = "80 HV"\n'
-                    '[other]\nlike = "BEAD"\nE = 3e9')  # fmt: skip
+    path.write_text(
+        '[sheet]\nlike = "dc01"\nyield = "250 N/mm2"\nhardness = "1.1 GPa"\n'
+        '[bead]\nE = "2.8 GPa"\nnu = 0.35\nrho = "1.41 g/cm3"\nhardness = "80 HV"\n'
+        '[other]\nlike = "BEAD"\nE = 3e9'
+    )
     mine, steel = cl.read_materials(path), cl.material("DC01")
     sheet, bead = mine["sheet"], mine["bead"]
     assert (sheet.youngs_modulus, sheet.density) == (steel.youngs_modulus, steel.density)

@@ -109,13 +109,17 @@ def test_a_map_of_one_value(drawn, tmp_path):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ("--radius 1mm:2mm:9 --thickness 1mm:9mm:9 --speed 1,2",
-         "--speed, --thickness, --radius: got 2, 9, 9 values, too many for one picture: give one"),
+        (
+            "--radius 1mm:2mm:9 --thickness 1mm:9mm:9 --speed 1,2",
+            "--speed, --thickness, --radius: got 2, 9, 9 values, too many for one picture: give one",
+        ),
         ("--radius 1mm:2mm:7 --thickness 1mm,2mm --speed 1,2", "got 2, 2, 7 values, too many"),
-        ("--radius 1mm --thickness 1mm:9mm:9,inf --speed 1:2:9",
-         "--thickness: got inf; no axis of a map reaches it: leave it out"),
+        (
+            "--radius 1mm --thickness 1mm:9mm:9,inf --speed 1:2:9",
+            "--thickness: got inf; no axis of a map reaches it: leave it out",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_no_picture_shows_is_refused(asked, said, tmp_path, capsys):
     path = tmp_path / "cor.svg"
     body = ["cor", "--sphere=gamma-alumina", "--plate=glass", f"--plot={path}"]
@@ -151,9 +155,11 @@ def test_kinds_of_flags_are_told_apart_and_the_yield_point_marked(drawn, tmp_pat
 
 @pytest.mark.parametrize(
     ("sizes", "said"),
-    [("0.9mm --thickness 0.3mm --speed 60", "Beyond a limit: plate thinner than R/1.8"),
-     ("0.9mm --thickness 1mm --speed 5", "Inside every limit")],
-)  # fmt: skip
+    [
+        ("0.9mm --thickness 0.3mm --speed 60", "Beyond a limit: plate thinner than R/1.8"),
+        ("0.9mm --thickness 1mm --speed 5", "Inside every limit"),
+    ],
+)
 def test_a_history_says_its_limits(drawn, sizes, said, tmp_path):
     picked = f"history --sphere gamma-alumina --plate glass --law myc --radius {sizes} --plot"
     main([*picked.split(), str(tmp_path / "contact.png")])
@@ -195,13 +201,8 @@ def test_the_band_is_shaded_and_explained(pair, drawn, tmp_path):
 
 
 def test_nothing_is_explained_that_is_not_there(drawn, tmp_path):
-    figure = picture(
-        drawn, tmp_path, f"--radius {R} --thickness 1mm --speed 1,5 --law myc --no-band"
-    )
-    assert (
-        caption(figure)
-        == "gamma-alumina on glass, law myc, plate 1 mm, radius 0.9 mm. Nothing yields"
-    )
+    figure = picture(drawn, tmp_path, f"--radius {R} --thickness 1mm --speed 1,5 --law myc --no-band")
+    assert caption(figure) == "gamma-alumina on glass, law myc, plate 1 mm, radius 0.9 mm. Nothing yields"
     assert figure.axes[0].get_xscale() == "linear" and not figure.legends
     asked = f"--radius {R} --thickness 1mm --speed 0.5,1 --no-band"
     figure = picture(drawn, tmp_path, asked, "stainless-steel-304 on glass")
@@ -214,18 +215,29 @@ def test_nothing_is_explained_that_is_not_there(drawn, tmp_path):
         ([R], [1e-3], [1.0, 20.0], []),
         ([R], [n * 1e-3 for n in range(1, 10)], [1.0, 2.0, 50.0], ["1 m/s", "2 m/s", "50 m/s"]),
         ([R], [n * 1e-4 for n in range(3, 99)], np.geomspace(0.01, 99, 9), None),
-        ([R], [0.4e-3, 0.7e-3, 1e-3, 2e-3, INF], [0.1, 150.0],
-         ["plate 0.4 mm", "plate 0.7 mm", "plate 1 mm", "plate 2 mm", "half-space"]),
-        ([R], [n * 1e-3 for n in range(4, 12)], [1.0, 20.0],  # within 0.003 of each other
-         [f"plate {n} mm" for n in range(4, 12)]),
-        ([50e-6, 0.3e-3, 0.9e-3], [1e-3], [0.01, 10.0],
-         ["radius 50 µm", "radius 0.3 mm", "radius 0.9 mm"]),
+        (
+            [R],
+            [0.4e-3, 0.7e-3, 1e-3, 2e-3, INF],
+            [0.1, 150.0],
+            ["plate 0.4 mm", "plate 0.7 mm", "plate 1 mm", "plate 2 mm", "half-space"],
+        ),
+        (
+            [R],
+            [n * 1e-3 for n in range(4, 12)],
+            [1.0, 20.0],  # within 0.003 of each other
+            [f"plate {n} mm" for n in range(4, 12)],
+        ),
+        ([50e-6, 0.3e-3, 0.9e-3], [1e-3], [0.01, 10.0], ["radius 50 µm", "radius 0.3 mm", "radius 0.9 mm"]),
         ([0.3e-3, 0.9e-3], [INF], [1e-25, 50.0], ["radius 0.3 mm", "radius 0.9 mm"]),
         ([0.3e-3, 0.9e-3], [1e-3, INF], [1.0, 20.0], ["plate 1 mm", "half-space"] * 2),
-        ([n * 0.2e-3 for n in range(1, 6)], [n * 1e-3 for n in range(1, 9)], [0.1, 50.0],
-         [f"plate {n} mm" for n in range(1, 9)] * 5),
+        (
+            [n * 0.2e-3 for n in range(1, 6)],
+            [n * 1e-3 for n in range(1, 9)],
+            [0.1, 50.0],
+            [f"plate {n} mm" for n in range(1, 9)] * 5,
+        ),
     ],
-)  # fmt: skip
+)
 def test_every_curve_is_named_and_nothing_overlaps(drawn, tmp_path, radii, plates, speeds, names):
     sizes = zip(("radius", "thickness", "speed"), (radii, plates, speeds), strict=True)
     asked = " ".join(f"--{name} {','.join(map(str, listed))}" for name, listed in sizes)
@@ -240,11 +252,7 @@ def test_every_curve_is_named_and_nothing_overlaps(drawn, tmp_path, radii, plate
         for tick in axes.get_xticklabels()
         if axes.viewLim.x0 <= tick.get_position()[0] <= axes.viewLim.x1  # others are not drawn
     ]
-    texts += [
-        *labels,
-        *figure.texts,
-        *(text for keys in figure.legends for text in keys.get_texts()),
-    ]
+    texts += [*labels, *figure.texts, *(text for keys in figure.legends for text in keys.get_texts())]
     figure.draw_without_rendering()
     boxes = {text: text.get_window_extent() for text in texts if text.get_text()}
     for one, other in itertools.combinations(boxes, 2):
@@ -260,9 +268,7 @@ def test_every_curve_is_named_and_nothing_overlaps(drawn, tmp_path, radii, plate
         assert 0 <= box.y0 and box.y1 <= figure.bbox.y1, text
 
 
-@pytest.mark.parametrize(
-    ("suffix", "begins"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")]
-)
+@pytest.mark.parametrize(("suffix", "begins"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")])
 @pytest.mark.parametrize("speeds", ["1,5", "1:60:9"])
 def test_formats(suffix, begins, speeds, tmp_path, capsys):
     path = tmp_path / f"cor.{suffix}"

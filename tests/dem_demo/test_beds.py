@@ -129,16 +129,20 @@ def test_the_summary_says_both_and_how_long_it_took(name, folder):
         ("drum --seed -1", ["seed", "negative"]),
         ("sieve --radius 1mm,2mm", ["radius", "pass the opening"]),
         ("sieve --thickness 0", ["--thickness", "positive"]),
-        *((f"{scene} {options}", words) for scene in KINDS for options, words in (
-            ("--beads 0", ["beads", "at least one"]),
-            ("--thickness -1mm", ["--thickness", "positive"]),
-            ("--constant-cor 1.2", ["--constant-cor: got 1.2; must lie between 0.2 and 1"]),
-            ("--duration 1e-9", ["duration", "at least one frame"]),
-            ("--sphere stele", ["stele"]),
-            ("--law hertzz", ["law", "hertz"]),
-        )),
+        *(
+            (f"{scene} {options}", words)
+            for scene in KINDS
+            for options, words in (
+                ("--beads 0", ["beads", "at least one"]),
+                ("--thickness -1mm", ["--thickness", "positive"]),
+                ("--constant-cor 1.2", ["--constant-cor: got 1.2; must lie between 0.2 and 1"]),
+                ("--duration 1e-9", ["duration", "at least one frame"]),
+                ("--sphere stele", ["stele"]),
+                ("--law hertzz", ["law", "hertz"]),
+            )
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tmp_path, capsys):
     assert cli.main([*options.split(), "--out", str(tmp_path / "out")]) == 1
     errors = capsys.readouterr().err

@@ -116,9 +116,8 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     """The run is long, and interrupted when its dump has begun to grow."""
     long = [*DRUM, "--duration", "9", "--beads", "20", "--out", "out"]
     process = subprocess.Popen(
-        [*unrendered.COMMAND, *long], cwd=tmp_path, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        [*unrendered.COMMAND, *long], cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
     end = time.monotonic() + 120
     while time.monotonic() < end and not any(
         file.stat().st_size > 8_000 for file in tmp_path.glob(".out.*/drum.lammpstrj")
@@ -135,9 +134,7 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
 
 
 @pytest.mark.parametrize("first", [True, False])
-def test_an_interrupt_before_the_first_step_or_between_the_runs(
-    first, tmp_path, monkeypatch, capsys
-):
+def test_an_interrupt_before_the_first_step_or_between_the_runs(first, tmp_path, monkeypatch, capsys):
     create, calls = lammps.Simulation._create, []
 
     def stop(self):

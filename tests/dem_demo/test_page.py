@@ -82,9 +82,7 @@ def test_a_bead_turns_on_from_piece_to_piece(folder):
     made = paths.pieces(read(folder / "rain.h5"))
     one, two = made[:-1], made[1:]
     turned = one["angle"] + one["spin"] * (one["end"] - one["start"])
-    np.testing.assert_allclose(
-        two["angle"], np.where(one["bead"] == two["bead"], turned, 0.0), atol=1e-6
-    )
+    np.testing.assert_allclose(two["angle"], np.where(one["bead"] == two["bead"], turned, 0.0), atol=1e-6)
 
 
 def test_a_page_of_an_empty_rain(tmp_path, page, monkeypatch):

@@ -76,9 +76,7 @@ def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures):
     rows, radius = run.collisions, run.scene.beads.radius
     on = rows[rows["plate"] >= 0]
     thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
-    found = run.model.lookup(
-        on["approach_speed"], radius[on["bead"]], thickness, edge_distance=run.edge_distance
-    )
+    found = run.model.lookup(on["approach_speed"], radius[on["bead"]], thickness, edge_distance=run.edge_distance)
     assert on["flags"].tolist() == found.flags.tolist()
     thin = (on["flags"] & cl.Validity.THIN_PLATE) != 0
     assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
@@ -147,9 +145,7 @@ def test_summary_is_that_of_any_run_with_such_a_record(rain, run):
     assert text.endswith(tables.text(Run(cl.read_record(rain / "rain.h5"))) + "\n")
     for n in range(3):
         mine = run.collisions[run.collisions["plate"] == n]
-        assert re.search(
-            rf"^{n}: .* +{mine.size} +{np.median(mine['approach_speed']):.3g} m/s", text, re.M
-        )
+        assert re.search(rf"^{n}: .* +{mine.size} +{np.median(mine['approach_speed']):.3g} m/s", text, re.M)
         assert sum(plate_shares(run, n)) == pytest.approx(1.0, abs=1e-5)
     assert "half-space" in text
 
@@ -255,11 +251,7 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
     assert "Energy of all beads: none has been thrown yet" in text
 
 
-@pytest.mark.parametrize(
-    "more",
-    [[], ["--friction", "1"]],
-    ids=["model", "oblique"],
-)
+@pytest.mark.parametrize("more", [[], ["--friction", "1"]], ids=["model", "oblique"])
 def test_a_rain_that_never_lands(more, tmp_path, empty_pictures, capfd):
     """Its page is shown in test_page.py. Without a terminal it is quiet."""
     few = ["rain", "--law", "myc", *"--beads 2 --speed 0.5,0.6 --duration 0.01".split(), *more]

@@ -52,16 +52,18 @@ class Dust:
     def start(self, arguments, command):
         self.before()
         show = session.Show(
-            "dust", self.figures, lambda folder: self, lambda run: "Dust.",
-            lambda run, pictures, film: "<p>Dust</p>", lambda run: b"film" * 10_000,
-        )  # fmt: skip
+            "dust",
+            self.figures,
+            lambda folder: self,
+            lambda run: "Dust.",
+            lambda run, pictures, film: "<p>Dust</p>",
+            lambda run: b"film" * 10_000,
+        )
 
         def simulate(folder):
             making = Making(cl.ImpactModel(cl.Pair("glass", "glass")), command, 1.0)
             noise = [Dataset("noise", "f8", "1", "noise")]
-            recorder = Recorder(
-                folder / "dust.h5", making, {}, lambda file: file.create_group("dust"), noise, 100.0
-            )
+            recorder = Recorder(folder / "dust.h5", making, {}, lambda file: file.create_group("dust"), noise, 100.0)
             return run(lambda: self, FRAMES, "dust", recorder)
 
         return session.deliver(arguments.out, show, simulate)
@@ -71,9 +73,7 @@ class Dust:
 def dust(monkeypatch):
     """The scene that the command runs; its one option is the folder."""
     made = Dust()
-    given = SimpleNamespace(
-        parse_args=lambda argv: SimpleNamespace(start=made.start, out=Path(argv[-1]))
-    )
+    given = SimpleNamespace(parse_args=lambda argv: SimpleNamespace(start=made.start, out=Path(argv[-1])))
     monkeypatch.setattr(cli, "parser", lambda: given)
     return made
 

@@ -100,9 +100,10 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
     places += [(2.0 * p, 2.0 * p), (2e-3, 2e-3), (78e-3, 3e-3)]
     scene = dataclasses.replace(
         scenes.sieve(beads=6, thickness=1e-3, plate="glass", amplitude=0.0, friction=0.0),
-        radius=np.full(6, 0.9e-3), position=np.array([(x, y, 2e-3) for x, y in places]),
+        radius=np.full(6, 0.9e-3),
+        position=np.array([(x, y, 2e-3) for x, y in places]),
         velocity=np.array([0.0, 0.0, -2.0]),
-    )  # fmt: skip
+    )
     scene.write_files(tmp_path)
     model = cl.ImpactModel(PAIR, LAW, outside="clamp")
     step = lammps.time_step(scene, model)
@@ -163,9 +164,7 @@ def test_energy_in_proportion_to_area_has_one_density(runs):
     area = areas(run.scene.deck.triangles()[sheet])
     rows = np.zeros(area.size, IMPACT)
     rows["triangle"], rows["wave_energy"] = np.flatnonzero(sheet), 7.0 * area
-    found = measure.density(
-        dataclasses.replace(run, record=dataclasses.replace(run.record, rows=rows))
-    )
+    found = measure.density(dataclasses.replace(run, record=dataclasses.replace(run.record, rows=rows)))
     assert found == pytest.approx(np.full(area.size, 7.0))
 
 
@@ -196,9 +195,7 @@ def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
     """OVITO reads a text format with a header for each frame, and one row per bead."""
     text = (sieve / "sieve.lammpstrj").read_text()
     assert text.count("ITEM: TIMESTEP") == runs.law.time.size
-    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (
-        runs.law.time.size
-    )
+    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (runs.law.time.size)
     lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
     head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     columns = lines[head].split()[2:]

@@ -17,9 +17,12 @@ LONG = ["rain", "--beads", "300", "--duration", "6", "--law", "myc", "--out", "o
 
 def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
     process = subprocess.Popen(
-        [sys.executable, "-m", "dem_demo", *LONG], cwd=tmp_path, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        [sys.executable, "-m", "dem_demo", *LONG],
+        cwd=tmp_path,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=120)
@@ -61,9 +64,7 @@ def test_a_failing_impact_keeps_those_before_it(monkeypatch, tmp_path, capsys):
     assert 10 < cl.read_record(tmp_path / "out/rain-partial.h5").rows.size <= 20
 
 
-def test_an_impact_outside_the_table_is_integrated_or_stops_the_run(
-    tmp_path, nothing_drawn, capsys
-):
+def test_an_impact_outside_the_table_is_integrated_or_stops_the_run(tmp_path, nothing_drawn, capsys):
     """Beads of carbon steel hit each other harder than the law's table reaches."""
     hard = ["rain", "--sphere", "carbon-steel-1020", "--law", "myc", "--duration", "0.3"]
     hard += ["--beads", "40", "--out", str(tmp_path / "out")]
@@ -85,8 +86,7 @@ KINDS = "glass", "aluminium-2024-t351", "epdm"
 
 
 @pytest.mark.parametrize(
-    "sphere",
-    [one if one in KINDS else pytest.param(one, marks=pytest.mark.long) for one in cl.materials()],
+    "sphere", [one if one in KINDS else pytest.param(one, marks=pytest.mark.long) for one in cl.materials()]
 )
 def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, request, tmp_path, capsys):
     """The beads fall on glass at up to 15 m/s; figures are drawn of bodies that do not yield."""

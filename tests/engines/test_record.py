@@ -31,12 +31,35 @@ def add(record, *observed):
 
 def test_every_column_has_a_unit_and_a_description():
     assert IMPACT.names == (
-        "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
-        "sliding_speed", "kind", "sliding_speed_after", "spin_x", "spin_y", "spin_z",
-        "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
-        "friction_energy", "wall_work", "radius", "mass", "material", "thickness", "triangle",
+        "time",
+        "bead",
+        "plate",
+        "other",
+        "x",
+        "y",
+        "z",
+        "approach_speed",
+        "restitution",
+        "sliding_speed",
+        "kind",
+        "sliding_speed_after",
+        "spin_x",
+        "spin_y",
+        "spin_z",
+        "contact_time",
+        "peak_force",
+        "plastic_energy",
+        "wave_energy",
+        "other_energy",
+        "friction_energy",
+        "wall_work",
+        "radius",
+        "mass",
+        "material",
+        "thickness",
+        "triangle",
         "flags",
-    )  # fmt: skip
+    )
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
     units = {"1", "s", "m", "kg", "m/s", "rad/s", "N", "J"}
     for column in COLUMNS:

@@ -33,9 +33,7 @@ CALLED = set()
 
 
 class Strict(np.ndarray):
-    def __getitem__(
-        self, key
-    ):  # Python counts negative indices from the end, machine code does not
+    def __getitem__(self, key):  # Python counts negative indices from the end, machine code does not
         assert isinstance(key, slice | tuple) or key >= 0, f"index {key} is negative"
         return super().__getitem__(key)
 
@@ -68,9 +66,7 @@ def attempt(data):
     edges, notes = edge.Edges(np.tile(EDGE, (4, 1)), *many[2]), zener.Notes(*many[3:8, :2].mT)
     for goal, near in ((0, None), (1, None), (1, edges), (2, edges), (3, None)):
         zener._integrate(goal, law, *many[0, :2], np.zeros(4), 1e-3, notes, np.empty((12, 4)), near)
-    tangential.slide_all(
-        law, many[0, 0], np.zeros(4), many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3
-    )
+    tangential.slide_all(law, many[0, 0], np.zeros(4), many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3)
 
 
 def run(kernel, *arguments):

@@ -101,9 +101,7 @@ def test_no_force_is_driven_by_the_plate(size):
     for kind, nu, share in cases:
         mobility = 1.0
         for part in response_of(kind, nu, share, size).reshape(-1, SIZE):
-            for (a, b, turn, _), (c, d) in zip(
-                part[:12].reshape(3, 4), part[12:].reshape(3, 2), strict=True
-            ):
+            for (a, b, turn, _), (c, d) in zip(part[:12].reshape(3, 4), part[12:].reshape(3, 2), strict=True):
                 first, second = (a, b) if turn == 0.0 else (a + 1j * turn, a - 1j * turn)
                 x, y = first / (omega + first), second / (omega + second)
                 x, y = (x, y) if turn == 0.0 else (0.5 * (x + y), -0.5j * (x - y))
@@ -133,18 +131,20 @@ def test_impacts_are_those_of_a_large_plate_of_finite_elements(kind, law):
 
     A plate that gives way so much that the sphere never leaves it has a COR of 0.
     """
-    data = (
-        HERTZ if law == "hertz" else laws.law(law, **(independent.FEM if law == "fem" else {})).data
-    )
+    data = HERTZ if law == "hertz" else laws.law(law, **(independent.FEM if law == "fem" else {})).data
     rows = [row for row in read() if (row["edge"], row["law"]) == (kind, law)]
     assert len(rows) >= 24
     for poisson in {row["poissons_ratio"] for row in rows}:
         these = [row for row in rows if row["poissons_ratio"] == poisson]
-        lam, y, s, e, share = np.array([
-            [float(row[name]) for name in ("inelasticity", "yield_compression", "distance",
-                                           "restitution", "plate_fraction")]
-            for row in these
-        ]).T  # fmt: skip
+        lam, y, s, e, share = np.array(
+            [
+                [
+                    float(row[name])
+                    for name in ("inelasticity", "yield_compression", "distance", "restitution", "plate_fraction")
+                ]
+                for row in these
+            ]
+        ).T
         edges = near(kind, float(poisson), s**-2)
         found = solved(data, lam, np.where(np.isinf(y), 1.0, y), edges)
         assert (found.status[e > 0.0] == zener.OK).all()
@@ -160,10 +160,7 @@ def test_few_steps_answer_as_the_integrator(y):
     lam, s = (each.ravel() for each in np.meshgrid([0.1, 0.3, 1.0], [0.4, 1.0, 3.0]))
     for kind in KINDS:
         edges = near(kind, 0.3, s**-2)
-        found = [
-            restitution_near(MYC, edges.response[n], lam[n], y, 1.0, edges.rate[n])
-            for n in range(lam.size)
-        ]
+        found = [restitution_near(MYC, edges.response[n], lam[n], y, 1.0, edges.rate[n]) for n in range(lam.size)]
         wanted = solved(MYC, lam, np.full(lam.size, y), edges)
         assert np.abs(found - wanted.restitution).max() < 1e-3
 

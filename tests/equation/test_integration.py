@@ -106,12 +106,14 @@ def test_energy_balance_over_the_whole_table_and_on_the_half_space(law):
 @pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)
 def test_energy_balance_at_the_kinks(law):
     steps = (0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3)
-    lam, chi = np.array([
-        (one, overload(law, one, kink) * (1 + step))
-        for one in (0.0, 1e-3, 0.05, 0.3, 1.0, 3.0, 5.0)
-        for kink in law.outcome_kinks
-        for step in steps
-    ]).T  # fmt: skip
+    lam, chi = np.array(
+        [
+            (one, overload(law, one, kink) * (1 + step))
+            for one in (0.0, 1e-3, 0.05, 0.3, 1.0, 3.0, 5.0)
+            for kink in law.outcome_kinks
+            for step in steps
+        ]
+    ).T
     worst = largest_imbalance(law, lam, chi)
     assert worst[0] < 1e-8, worst
 
@@ -130,8 +132,9 @@ def test_error_follows_the_tolerance():
 @pytest.mark.parametrize("ratio", [11.0, 100.0, 2000.0])
 def test_a_just_yielding_impact_by_series_is_that_by_integration(ratio):
     lam = np.array([0.0, 0.02, 0.3, 1.1, 4.0, 5.9, 7.0])  # the last one is beyond the series
-    one = laws.law("fem", sphere_ratio=ratio, plate_ratio=0.0, modulus_share=0.1,
-                   poissons_ratio=0.3, plate_poissons_ratio=0.3).data  # fmt: skip
+    one = laws.law(
+        "fem", sphere_ratio=ratio, plate_ratio=0.0, modulus_share=0.1, poissons_ratio=0.3, plate_poissons_ratio=0.3
+    ).data
     for law in (one, HERTZ, laws.law("myc").data):
         found = outcome.at(lam, 0.2)
         assert zener.solve_all(law, 1e-13, found)[0] == zener.OK
@@ -153,8 +156,7 @@ def test_far_below_yield_is_elastic():
 
 
 @pytest.mark.parametrize(
-    ("lam", "y"),
-    [(-0.1, 1.0), (math.nan, 1.0), (math.inf, 1.0), (0.1, 0.0), (0.1, -1.0), (0.1, math.nan)],
+    ("lam", "y"), [(-0.1, 1.0), (math.nan, 1.0), (math.inf, 1.0), (0.1, 0.0), (0.1, -1.0), (0.1, math.nan)]
 )
 def test_bad_input_is_a_status(lam, y):
     assert zener.solve(HERTZ, lam, y, 1e-10).status == zener.BAD_INPUT
@@ -166,12 +168,8 @@ def test_too_thin_is_a_status():
 
 def test_a_level_next_to_a_turn_is_sought_within_the_step():
     """The motion turns 1e-12 above a kink, where once one impact of 3e6 never ended."""
-    before = motion.ScaledState(
-        0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0, None, None
-    )
-    beyond = motion.ScaledState(
-        1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0, None, None
-    )
+    before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0, None, None)
+    beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0, None, None)
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
@@ -218,9 +216,12 @@ solved(0.6)
 def test_force_plate_and_losses_are_replaced_one_by_one():
     """Without the compiler a plate, a force or a loss channel can be replaced on its own."""
     run = subprocess.run(
-        [sys.executable, "-c", PARTS], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
-        check=True, capture_output=True, text=True,
-    )  # fmt: skip
+        [sys.executable, "-c", PARTS],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
     thin, stiff, mobile, doubled, halved = np.loadtxt(run.stdout.splitlines())
     assert mobile[:2] == pytest.approx(thin[:2], rel=1e-7)  # twice the mobility of the plate
     assert doubled[0] == pytest.approx(stiff[0], rel=1e-7)  # lambda goes with K^0.4

@@ -17,13 +17,16 @@ from contactlaw.softsphere import resized, unit_spring
 from contactlaw.stepping.spring import impact
 
 STEEL = cl.Pair("stainless-steel-304", "stainless-steel-304")
-PAIRS = [cl.Pair("gamma-alumina", "glass"), STEEL, cl.Pair("glass", "carbon-steel-1020"),
-         cl.Pair("aluminium-6061-t6", "pmma"), *polymer.PAIRS[:2]]  # fmt: skip
+PAIRS = [
+    cl.Pair("gamma-alumina", "glass"),
+    STEEL,
+    cl.Pair("glass", "carbon-steel-1020"),
+    cl.Pair("aluminium-6061-t6", "pmma"),
+    *polymer.PAIRS[:2],
+]
 COUNT = 8_000  # of each pair
 # These flags are decided before the impact is integrated.
-BEFOREHAND = (
-    Validity.FAST_IMPACT | Validity.RATE_DEPENDENT | Validity.SOFT_PLATE | Validity.THIN_PLATE
-)
+BEFOREHAND = Validity.FAST_IMPACT | Validity.RATE_DEPENDENT | Validity.SOFT_PLATE | Validity.THIN_PLATE
 
 
 def shear_modulus(body):
@@ -76,9 +79,7 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
             more = math.exp(eta_of(plate.corrections, r / h, least, lam, transit / time))
             time /= more
             thin, echo = lam * more, transit / time
-            lam = with_corrections(
-                plate.corrections, thin, echo, thin * echo**2, r / h * (x - least)
-            )
+            lam = with_corrections(plate.corrections, thin, echo, thin * echo**2, r / h * (x - least))
         units = bodies.numbers(Impact(v, r, h))
         ours = units.inelasticity, units.time, units.compression, units.force, units.stiffer
         assert ours == pytest.approx((lam, time, v * time, mass * v / time, more), rel=1e-13)
@@ -87,9 +88,7 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
 
 
 @pytest.mark.parametrize(
-    ("pair", "law"),
-    [*((pair, "fem") for pair in PAIRS), (STEEL, "myc"), (PAIRS[0], "hertz")],
-    ids=repr,
+    ("pair", "law"), [*((pair, "fem") for pair in PAIRS), (STEEL, "myc"), (PAIRS[0], "hertz")], ids=repr
 )
 def test_table_solver_and_stepping_have_the_same(pair, law):
     """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides."""
@@ -106,8 +105,7 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
     other = looked.flags ^ solved.flags
     assert not (other & BEFOREHAND).any()
     for n in np.flatnonzero(other):
-        at = [getattr(solved, name)[n] for name in ("contact_time", "peak_compression",
-                                                    "peak_force")]  # fmt: skip
+        at = [getattr(solved, name)[n] for name in ("contact_time", "peak_compression", "peak_force")]
         low, high = (
             flags_of(model.limits, r[n], h[n], units.compression[n], *(share * x for x in at))
             for share in (1.0 - 1e-4, 1.0 + 1e-4)

@@ -21,9 +21,7 @@ def solved(lam, chi, law=MYC):
     return found
 
 
-@pytest.mark.parametrize(
-    "kappa", [0.8, *(pytest.param(kappa, marks=pytest.mark.long) for kappa in (0.6, 1.0))]
-)
+@pytest.mark.parametrize("kappa", [0.8, *(pytest.param(kappa, marks=pytest.mark.long) for kappa in (0.6, 1.0))])
 @pytest.mark.parametrize(("lam", "chi"), [(0.0, 0.9), (0.3, 3.0), (1.0, 12.0), (2.0, 40.0)])
 def test_springs_of_scipy(lam, chi, kappa):
     found = solved(lam, chi)

@@ -127,8 +127,9 @@ def from_python(name, folder):
     script = ROOT / "tests/shared/uncompiled.py"
     subprocess.run(
         [sys.executable, script, folder / "in", folder / "out.npy"],
-        check=True, env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
-    )  # fmt: skip
+        check=True,
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+    )
     return np.load(folder / "out.npy")
 
 
@@ -217,17 +218,20 @@ def from_package(model, rows):
 # Largest errors as docs/c.md has them, and those of pairs with a rate, whose law is made for steps.
 # Times are within 1e-7, as neither integration controls their error.
 BOUNDS = {
-    "shares": 1e-9, "times": 1e-7, "peaks": 1e-9, "flags": 0.0, "cor": 1e-5, "near": 1e-3,
-    "steps": 1e-10, "up": 1e-8, "sliding": 2e-3, "status": 0.0,
-}  # fmt: skip
+    "shares": 1e-9,
+    "times": 1e-7,
+    "peaks": 1e-9,
+    "flags": 0.0,
+    "cor": 1e-5,
+    "near": 1e-3,
+    "steps": 1e-10,
+    "up": 1e-8,
+    "sliding": 2e-3,
+    "status": 0.0,
+}
 RATED = dict.fromkeys(("shares", "times", "peaks", "steps", "up"), 1e-6)
 RATED |= {"cor": 1e-2, "near": 2e-3}
-CHANGED = {
-    "a rate": RATED,
-    "both": RATED,
-    "losses and flow": {"near": 5e-3},
-    "fem, elastic": {"near": 2e-3},
-}
+CHANGED = {"a rate": RATED, "both": RATED, "losses and flow": {"near": 5e-3}, "fem, elastic": {"near": 2e-3}}
 
 
 def test_all_functions_answer_as_the_package(library):
@@ -251,8 +255,7 @@ def test_all_functions_answer_as_the_package(library):
 def test_the_series_is_not_for_the_loading_curve(tmp_path):
     """An elastic contact unloads along the loading curve, which is no power law here."""
     stiffening = np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e3])
-    law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
-                 loading=[Loading(0.0, stiffening)])  # fmt: skip
+    law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5, loading=[Loading(0.0, stiffening)])
     model, rows = cl.ImpactModel(cl.Pair("zirconia", "glass"), law), header.rows(1, seed=1)
     rows[0, :3], rows[0, 5] = (at := (100.0, 1e-3, 0.2e-3)), 0.1  # a solid sphere
     cl.export.header(tmp_path / "contactlaw.h", model, table="none")
@@ -344,8 +347,26 @@ int main(void)
 }
 """
 SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
-ODD = [0.0, -0.0, 1e-308, 5e-324, -5e-324, 1.7e308, -1.7e308, 1e-30, 1e-9, 1e3, 1e5, -1.0, 1e-160,
-       1e160, 2.2e-16, math.nan, math.inf, -math.inf]  # fmt: skip
+ODD = [
+    0.0,
+    -0.0,
+    1e-308,
+    5e-324,
+    -5e-324,
+    1.7e308,
+    -1.7e308,
+    1e-30,
+    1e-9,
+    1e3,
+    1e5,
+    -1.0,
+    1e-160,
+    1e160,
+    2.2e-16,
+    math.nan,
+    math.inf,
+    -math.inf,
+]
 
 
 def partly_odd(rng, usual, share):
@@ -364,8 +385,7 @@ def test_sanitizers_find_nothing_whatever_the_input(name, tmp_path):
     rng, count = np.random.default_rng(1), 300
     rows = partly_odd(rng, header.rows(count, seed=2), 0.15)
     rows[:, 3] = rng.integers(-1, 5, count)
-    factors = np.concatenate([np.ones((count, 6)), np.full((count, 1), 1e-3),
-                              np.tile(np.ones(7), (count, 60))], axis=1)  # fmt: skip
+    factors = np.concatenate([np.ones((count, 6)), np.full((count, 1), 1e-3), np.tile(np.ones(7), (count, 60))], axis=1)
     factors[:, 7::7] = rng.uniform(0.0, 2.0, (count, 60))
     lookups = partly_odd(rng, header.rows(100 * count, seed=3)[:, :3], 0.3)
     factors = partly_odd(rng, factors, 0.01)
@@ -387,16 +407,29 @@ def test_sanitizers_find_nothing_whatever_the_input(name, tmp_path):
 POM = cl.Material("POM", 2.9e9, 0.37, 1410, yield_strength=65e6)
 FLAGS = "flags of every impact: none flags of a body that yields: none table of COR"
 SAID = {
-    "metals": (STEEL, "fem", [
-        f"contactlaw {VERSION}", f"law fem: {model_of('fem, metals').force_law.source}", FLAGS,
-        "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3, yield strength",
-        "plate aluminium-6061-t6: E 6.89e+10 Pa", "SPDX-License-Identifier: BSD-3-Clause",
-    ]),
-    "polymer": (cl.Pair(POM, "glass"), "fem", [
-        "WARNING: a polymer", "every impact: RATE_DEPENDENT: a polymer, or as soft and light"]),
-    "soft steel": (cl.Pair("stainless-steel-304", "glass"), "myc", [
-        "a body that yields: OTHER_LAW: finite elements favour"]),
-}  # fmt: skip
+    "metals": (
+        STEEL,
+        "fem",
+        [
+            f"contactlaw {VERSION}",
+            f"law fem: {model_of('fem, metals').force_law.source}",
+            FLAGS,
+            "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3, yield strength",
+            "plate aluminium-6061-t6: E 6.89e+10 Pa",
+            "SPDX-License-Identifier: BSD-3-Clause",
+        ],
+    ),
+    "polymer": (
+        cl.Pair(POM, "glass"),
+        "fem",
+        ["WARNING: a polymer", "every impact: RATE_DEPENDENT: a polymer, or as soft and light"],
+    ),
+    "soft steel": (
+        cl.Pair("stainless-steel-304", "glass"),
+        "myc",
+        ["a body that yields: OTHER_LAW: finite elements favour"],
+    ),
+}
 
 
 @pytest.mark.parametrize("name", SAID)
@@ -418,9 +451,7 @@ def test_the_first_lines_say_what_it_is(name, tmp_path):
 def printed(folder, *calls, more="", also=(), **options):
     """Numbers of C expressions."""
     formats = " ".join(["%.17g"] * len(calls))
-    source = (
-        f'#include <stdio.h>\n{more}int main(void)\n{{ printf("{formats}", {", ".join(calls)});'
-    )
+    source = f'#include <stdio.h>\n{more}int main(void)\n{{ printf("{formats}", {", ".join(calls)});'
     program = build(folder, f"{source} return 0; }}\n", *WARNINGS, *also, **options)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
     return [float(one) for one in done.stdout.split()]
@@ -428,9 +459,7 @@ def printed(folder, *calls, more="", also=(), **options):
 
 def test_a_table_of_ones_own_without_a_certificate(tmp_path):
     """A table too coarse to be thinned is exported as it is, and the header states its error."""
-    settings = Settings(
-        inelasticity_nodes=6, log_overload_step=0.4, largest_inelasticity=1.0, largest_overload=3.0
-    )
+    settings = Settings(inelasticity_nodes=6, log_overload_step=0.4, largest_inelasticity=1.0, largest_overload=3.0)
     table = dataclasses.replace(tables.build(laws.law("myc"), settings), certificate=None)
     model = cl.ImpactModel(PAIR, law="myc", table=table)
     text = " ".join(line.strip(" *") for line in exported(tmp_path, model).splitlines()[:12])
@@ -444,8 +473,7 @@ def test_a_table_of_ones_own_without_a_certificate(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["*/int x;/*", "*\\int x;\\*", "a\nb\\", "\u202eback", "???/ \\u", 'q"%d$law', "x" * 300],
+    "name", ["*/int x;/*", "*\\int x;\\*", "a\nb\\", "\u202eback", "???/ \\u", 'q"%d$law', "x" * 300]
 )
 def test_whatever_a_law_or_a_material_is_called(name, tmp_path):
     sphere = dataclasses.replace(cl.material("gamma-alumina"), name=name)
@@ -470,9 +498,14 @@ def test_nothing_that_threads_could_share(tmp_path):
 
 
 BLOWN_UP = [
-    (2.1e-3, 1e-7), (math.nan, 1e-7), (-math.inf, 1e-7), (1e-6, math.nan), (1e-6, 0.0),
-    (1e-6, 1.0e2), (3.1e-6, 2e-11),  # the last one grows by 2e-6 m at 1e5 m/s
-]  # fmt: skip
+    (2.1e-3, 1e-7),
+    (math.nan, 1e-7),
+    (-math.inf, 1e-7),
+    (1e-6, math.nan),
+    (1e-6, 0.0),
+    (1e-6, 1.0e2),
+    (3.1e-6, 2e-11),  # the last one grows by 2e-6 m at 1e5 m/s
+]
 
 
 @pytest.mark.parametrize(("overlap", "dt"), BLOWN_UP)
@@ -494,19 +527,23 @@ def test_headers_of_the_largest_tables_are_as_small_as_the_docs_say():
 FLOWS = dataclasses.replace(metal.PLAIN.sphere, yield_strength=300e6)
 REFUSED = {
     "a table": ((PAIR, "myc"), {"table": "all"}, "table: got 'all'; must be 'cor' or 'none'"),
-    "a body that comes to yield": ((cl.Pair(metal.PAIR.sphere, FLOWS), "fem"), {},
-                                   "above 500000.*a rate for one of two bodies"),
-    "another rate": ((cl.Pair(metal.PAIR.sphere, dataclasses.replace(FLOWS, rate=(0.02, 1.0))),
-                      "fem"), {}, "above 500000.*a rate for one of two bodies"),
+    "a body that comes to yield": (
+        (cl.Pair(metal.PAIR.sphere, FLOWS), "fem"),
+        {},
+        "above 500000.*a rate for one of two bodies",
+    ),
+    "another rate": (
+        (cl.Pair(metal.PAIR.sphere, dataclasses.replace(FLOWS, rate=(0.02, 1.0))), "fem"),
+        {},
+        "above 500000.*a rate for one of two bodies",
+    ),
     # the few laws that it had for such pairs knew the rate of the weaker body alone
-    "rates": ((metal.STEEP, "fem"), {"table": "none"},
-              "above 500000.*a rate for one of two bodies"),
-}  # fmt: skip
+    "rates": ((metal.STEEP, "fem"), {"table": "none"}, "above 500000.*a rate for one of two bodies"),
+}
 REFUSED |= {
-    repr(prefix): ((PAIR, "myc"), {"prefix": prefix},
-                   "prefix: .*must be lower-case words and digits")
+    repr(prefix): ((PAIR, "myc"), {"prefix": prefix}, "prefix: .*must be lower-case words and digits")
     for prefix in ("", "Steel", "steel-glass", "2pairs", "a__b", "a_", None)
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("what", REFUSED)
@@ -538,9 +575,7 @@ def example(folder, name):
 
 def test_the_event_driven_example_is_pythons(tmp_path):
     model = cl.ImpactModel(PAIR)
-    for row, h in zip(
-        example(tmp_path, "event_driven"), (0.5e-3, 1e-3, 3e-3, math.inf), strict=True
-    ):
+    for row, h in zip(example(tmp_path, "event_driven"), (0.5e-3, 1e-3, 3e-3, math.inf), strict=True):
         speed = math.sqrt(2 * 9.81 * 0.5)
         time, expected = speed / 9.81, []
         for _ in range(5):
@@ -575,24 +610,14 @@ def test_the_documented_c_compiles(tmp_path):
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_several_pairs_live_in_one_source_file(compiler, tmp_path):
     """Each prefix has its own pair's numbers, and no name of another; without one they clash."""
-    models = {"contactlaw": model_of("myc"), "steel": cl.ImpactModel(STEEL),
-              "steel2": model_of("fem")}  # fmt: skip
+    models = {"contactlaw": model_of("myc"), "steel": cl.ImpactModel(STEEL), "steel2": model_of("fem")}
     for prefix, model in models.items():
         cl.export.header(tmp_path / f"{prefix}.h", model, prefix=prefix)
         assert prefix == "contactlaw" or "contactlaw_" not in (tmp_path / f"{prefix}.h").read_text()
     calls = [f"{prefix}_restitution(5.0, 1e-3, 2e-3)" for prefix in models]
     more = "".join(f'#include "{prefix}.h"\n' for prefix in [*models, *models])
-    (tmp_path / "other.c").write_text(
-        f"{more}double f(void);\ndouble f(void) {{ return {calls[1]}; }}\n"
-    )
-    found = printed(
-        tmp_path,
-        *calls,
-        "f()",
-        also=["other.c"],
-        more=f"{more}double f(void);\n",
-        compiler=compiler,
-    )
+    (tmp_path / "other.c").write_text(f"{more}double f(void);\ndouble f(void) {{ return {calls[1]}; }}\n")
+    found = printed(tmp_path, *calls, "f()", also=["other.c"], more=f"{more}double f(void);\n", compiler=compiler)
     for one, model in zip(found, [*models.values(), models["steel"]], strict=True):
         assert one == pytest.approx(model.restitution(5.0, 1e-3, 2e-3), abs=1e-5)
     cl.export.header(tmp_path / "steel.h", models["steel"], table="none")

@@ -20,8 +20,7 @@ MISSING = [name for name in TOOLS if not shutil.which(name)]
 if not Path("/usr/include/liggghts/fix_wall_gran_base.h").exists():
     MISSING.append("its headers")
 pytestmark = pytest.mark.skipif(
-    bool(MISSING),
-    reason=f"LIGGGHTS: {', '.join(MISSING)} missing: `make test-engines` says what to install",
+    bool(MISSING), reason=f"LIGGGHTS: {', '.join(MISSING)} missing: `make test-engines` says what to install"
 )
 WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
 WARNINGS += " -Wno-maybe-uninitialized"  # in LIGGGHTS's functions, as they are expanded in ours
@@ -100,11 +99,18 @@ class Scene:
 
     def script(self, start, walls, **changes):
         values = {
-            "start": start, "walls": walls, "step": 1e-7, "skin": 1e-3, "processors": "",
-            "properties": PROPERTIES, "friction": " ".join(["0"] * 25), "every": 100_000,
-            "thickness": " ".join(map(str, (1.0, *THICKNESS))), "dump": "dump.txt",
+            "start": start,
+            "walls": walls,
+            "step": 1e-7,
+            "skin": 1e-3,
+            "processors": "",
+            "properties": PROPERTIES,
+            "friction": " ".join(["0"] * 25),
+            "every": 100_000,
+            "thickness": " ".join(map(str, (1.0, *THICKNESS))),
+            "dump": "dump.txt",
             "digits": " %.17g" * (len(COLUMNS) - 1),
-        }  # fmt: skip
+        }
         assert changes.keys() <= values.keys()
         return SCRIPT.format_map(values | changes)
 
@@ -118,9 +124,14 @@ class Scene:
         root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         return subprocess.run(
             [*command, "-in", "in.script", "-log", "none"],
-            cwd=self.folder, env=os.environ | root, timeout=120,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-        )  # fmt: skip
+            cwd=self.folder,
+            env=os.environ | root,
+            timeout=120,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
 
     def run(self, script, ranks=1, dump="dump.txt"):
         """Columns of each dump, by name; the first axis is time."""
@@ -140,9 +151,7 @@ def zplane(kind=3, tangential="contactlaw"):
 
 def meshes(**kinds):
     """Plates of these atom types; LIGGGHTS needs all meshes in one wall."""
-    lines = [
-        f"fix {name} all mesh/surface file {name}.stl type {kind}" for name, kind in kinds.items()
-    ]
+    lines = [f"fix {name} all mesh/surface file {name}.stl type {kind}" for name, kind in kinds.items()]
     wall = "fix wall all wall/gran model contactlaw tangential contactlaw mesh"
     return "\n".join([*lines, f"{wall} n_meshes {len(kinds)} meshes {' '.join(kinds)}"])
 
@@ -153,9 +162,8 @@ def library(tmp_path_factory):
     folder = tmp_path_factory.mktemp("liggghts") / "wall"
     cl.export.liggghts(folder, MODEL)
     done = subprocess.run(
-        ["sh", folder / "build.sh"], env=os.environ | {"CXXFLAGS": WARNINGS},
-        capture_output=True, text=True,
-    )  # fmt: skip
+        ["sh", folder / "build.sh"], env=os.environ | {"CXXFLAGS": WARNINGS}, capture_output=True, text=True
+    )
     assert (done.returncode, done.stderr) == (0, "")
     return folder / "wall_contactlaw.so"
 
@@ -229,8 +237,10 @@ def test_a_bead_that_sticks_has_mindlins_spring(scene):
     start = scene.beads([(0.0, 0.0, RADIUS + GAP)], (1.0, 0.0, -5.0))
     script = scene.script(start, zplane(5, "history"), friction=" ".join(["1e6"] * 25), every=1)
     found = {name: one[:, 0] for name, one in scene.run(script + "run 200").items()}
-    compliance = sum(2 * (2 - one.poissons_ratio) * (1 + one.poissons_ratio) / one.youngs_modulus
-                     for one in (pair.sphere, pair.plate))  # fmt: skip
+    compliance = sum(
+        2 * (2 - one.poissons_ratio) * (1 + one.poissons_ratio) / one.youngs_modulus
+        for one in (pair.sphere, pair.plate)
+    )
     depth = np.maximum(RADIUS - found["z"], 0.0)
     speed = found["vx"] - RADIUS * found["omegay"]
     slip = np.cumsum(0.5 * step * (speed + np.roll(speed, 1)) * (depth > 0.0))
@@ -340,17 +350,14 @@ RIM = "fix rim all property/global freeEdge peratomtype 1 1 -1 1 1"
 WRONG = {
     "no thickness": (f"fix {SOUND}", "", "property storing value(s) for plateThickness"),
     "zero": ("0.001 0.003", "0 0.003", "plateThickness requires values between 1e-09 and 1e+20"),
-    "beads": ("model hertz tangential history", "model contactlaw tangential contactlaw",
-              "Unknown normal model"),
-    "tangential": ("contactlaw tangential contactlaw", "contactlaw tangential no_history",
-                   "Unknown normal model"),
-    "option": ("tangential contactlaw primitive", "tangential contactlaw damping on primitive",
-               "damping"),
+    "beads": ("model hertz tangential history", "model contactlaw tangential contactlaw", "Unknown normal model"),
+    "tangential": ("contactlaw tangential contactlaw", "contactlaw tangential no_history", "Unknown normal model"),
+    "option": ("tangential contactlaw primitive", "tangential contactlaw damping on primitive", "damping"),
     "edge": ("fix friction", f"{RIM}\nfix friction", "freeEdge requires values between 0 and"),
     "units": ("units si", "units cgs", "Normal model contactlaw is in SI units: take units si"),
     "too thin": ("0.001 0.003", "1e-6 0.003", "plates have to be at least 0.01 radii thick"),
     "blown up": ("timestep 1e-07", "timestep 1e-11", "has the simulation blown up?"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("wrong", WRONG)

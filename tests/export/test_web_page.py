@@ -70,8 +70,7 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     settings = [dict(zip(NUMBERS, one, strict=True)) for one in rows]
     page.open(tmp_path / "page.html", 1280)
     found = page.value(
-        f"{json.dumps(settings)}.map(collide).map((hit) => ({{...hit,"
-        " curve: pair.for_curve(hit).restitution}))"
+        f"{json.dumps(settings)}.map(collide).map((hit) => ({{...hit, curve: pair.for_curve(hit).restitution}}))"
     )
     rows = {name: np.array([one[name] for one in found]) for name in found[0]}
     mass *= model.pair.sphere.density * 4 / 3 * math.pi * radius**3
@@ -89,14 +88,8 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     np.testing.assert_allclose(rows["curve"], rows["restitution"], rtol=0, atol=3e-4)
     np.testing.assert_allclose(rows["friction_energy"], expected.friction_energy, rtol=10 * slide)
     # Absurd input, and as many steps in each impact as in Python, of a pair with a rate too.
-    usual, bodies = (
-        dict(zip(NUMBERS, (3.0, 1e-3, 2e-3, 0.8, 0.0, 0.3), strict=True)),
-        web_page._bodies(model),
-    )
-    settings = [
-        *settings[:4],
-        *({**usual, name: x} for name in NUMBERS if name != "angle" for x in ABSURD),
-    ]
+    usual, bodies = (dict(zip(NUMBERS, (3.0, 1e-3, 2e-3, 0.8, 0.0, 0.3), strict=True)), web_page._bodies(model))
+    settings = [*settings[:4], *({**usual, name: x} for name in NUMBERS if name != "angle" for x in ABSURD)]
     texts = page.value(
         f"{json.dumps(settings)}.map((one) => (({{ impact, ...rest }}) => ["
         "...Object.values(impact), ...Object.values(rest)].map(String))("

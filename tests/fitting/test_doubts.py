@@ -31,9 +31,7 @@ def said(pair, data, unknown, law="fem", stated=True):
     return " | ".join(note for note in notes if DOUBT.search(note))
 
 
-@pytest.mark.parametrize(
-    "seeds", [range(3), pytest.param(range(3, 8), marks=pytest.mark.long)], ids=["few", "more"]
-)
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 8), marks=pytest.mark.long)], ids=["few", "more"])
 @pytest.mark.parametrize("stated", [True, False])
 @pytest.mark.parametrize(
     ("pair", "unknown", "speed"),
@@ -48,14 +46,17 @@ def test_honest_data_raise_no_doubt(pair, unknown, speed, stated, seeds):
 @pytest.mark.parametrize(
     ("pair", "unknown", "kind", "factor", "words"),
     [
-        (ALUMINA, "yield_strength", "restitution", 1e-3,
-         r"yield_strength is 2\d times below that of gamma-alumina, 472.5 MPa: units"),
+        (
+            ALUMINA,
+            "yield_strength",
+            "restitution",
+            1e-3,
+            r"yield_strength is 2\d times below that of gamma-alumina, 472.5 MPa: units",
+        ),
         (STEEL, "plate_density", "contact_time", 1e3, r"3.\d times below .*: units"),
     ],
-)  # fmt: skip
-def test_a_value_that_speeds_in_other_units_give_is_named_as_far_off(
-    pair, unknown, kind, factor, words
-):
+)
+def test_a_value_that_speeds_in_other_units_give_is_named_as_far_off(pair, unknown, kind, factor, words):
     speed = FAST if pair is ALUMINA else None
     data = rebounds(pair, kinds=(kind,), noise=0.01, seed=2, speed=speed)
     data["speed"] = factor * data["speed"]

@@ -38,11 +38,19 @@ def true(pair, name):
 
 @pytest.mark.parametrize(
     "asked",
-    [("thickness",), ("radius",), ("density",), ("plate_density",), ("youngs_modulus",),
-     ("plate_youngs_modulus",), ("plate_yield_strength",), ("plate_yield_strength", "thickness"),
-     pytest.param(("radius", "thickness", "plate_yield_strength"), marks=pytest.mark.long)],
+    [
+        ("thickness",),
+        ("radius",),
+        ("density",),
+        ("plate_density",),
+        ("youngs_modulus",),
+        ("plate_youngs_modulus",),
+        ("plate_yield_strength",),
+        ("plate_yield_strength", "thickness"),
+        pytest.param(("radius", "thickness", "plate_yield_strength"), marks=pytest.mark.long),
+    ],
     ids="+".join,
-)  # fmt: skip
+)
 def test_exact_data_give_back_what_made_them(asked):
     data = rebounds(STEEL, kinds=KINDS, without=asked)
     found = cl.fit(STEEL, data, asked)
@@ -72,9 +80,7 @@ def test_trials_at_the_rates_of_the_impacts_are_the_model(pair):
     asked = parameters(pair, data, ["yield_strength", "plate_yield_strength"], {})
     of = Predictor(pair, law_of(pair, "fem"), data, asked, Values.of(data))
     for fineness, error in ((FINE, 2e-6), (COARSE, 1e-3), (ROUGH, 5e-2)):
-        found = dataclasses.replace(of, fineness=fineness).predicted(
-            np.array([true(pair, one.name) for one in asked])
-        )
+        found = dataclasses.replace(of, fineness=fineness).predicted(np.array([true(pair, one.name) for one in asked]))
         assert found == pytest.approx(of.values.value, rel=error)
 
 
@@ -161,9 +167,7 @@ def dense(speed, slenderness, kind, size):
     return size[:, None] * np.exp(-apart) * (kind[:, None] == kind) * size
 
 
-@pytest.mark.parametrize(
-    ("count", "plates", "close"), [(40, "many", 1e-9), (1500, "one", 5e-3), (1500, "many", 6e-2)]
-)
+@pytest.mark.parametrize(("count", "plates", "close"), [(40, "many", 1e-9), (1500, "one", 5e-3), (1500, "many", 6e-2)])
 def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates, close):
     """They agree exactly up to 600 different impacts; beyond, impacts in one cell err alike."""
     random = np.random.default_rng(4)
@@ -171,9 +175,12 @@ def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates,
     h = h if plates == "many" else np.full(count, THICKNESS)
     v[1], h[1] = v[0], h[0]  # equal impacts
     data = cl.Measurements(
-        speed=v, radius=RADIUS, thickness=h, restitution=np.full(count, 0.5),
+        speed=v,
+        radius=RADIUS,
+        thickness=h,
+        restitution=np.full(count, 0.5),
         peak_force=np.where(np.arange(count) % 3 == 0, 10.0, np.nan),
-    )  # fmt: skip
+    )
     moved = parameters(STEEL, data, "density", {})
     predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
     at = np.array([STEEL.sphere.density])
@@ -186,9 +193,7 @@ def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates,
     exact = off @ np.linalg.solve(np.diag(error**2) + matrix, off)
     assert shared.squares(off, error) == pytest.approx(exact, rel=close)
     propagated = gain @ matrix @ gain.T
-    assert shared.propagated(gain) == pytest.approx(
-        propagated, rel=close, abs=close * propagated.max()
-    )
+    assert shared.propagated(gain) == pytest.approx(propagated, rel=close, abs=close * propagated.max())
 
 
 def test_many_rebounds_take_little_memory():
@@ -200,9 +205,7 @@ def test_many_rebounds_take_little_memory():
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 40e6
-    assert found.values["thickness"] == pytest.approx(
-        THICKNESS, abs=4.0 * found.errors["thickness"]
-    )
+    assert found.values["thickness"] == pytest.approx(THICKNESS, abs=4.0 * found.errors["thickness"])
 
 
 def test_a_prior_costs_the_share_of_a_value_that_the_data_tell_of_it():
@@ -257,9 +260,7 @@ def test_a_strength_from_below_yield_is_refused_with_what_is_known():
         cl.fit(pair, data, "yield_strength")
     (least,) = re.findall(r"above (\S+) MPa", str(caught.value))
     # at that strength the fastest just yields, with what the errors leave
-    yields_at = cl.Pair(
-        dataclasses.replace(pair.sphere, yield_strength=float(least) * 1e6), pair.plate
-    ).yield_speed
+    yields_at = cl.Pair(dataclasses.replace(pair.sphere, yield_strength=float(least) * 1e6), pair.plate).yield_speed
     assert 1.0 < yields_at < 4.5
     assert pickle.loads(pickle.dumps(caught.value)).unknown == ("yield_strength",)
 
@@ -277,9 +278,7 @@ def test_a_product_is_told_where_its_factors_are_not():
     assert error < 0.05
 
 
-@pytest.mark.parametrize(
-    ("law", "asked"), [("myc", "plate_yield_strength"), ("hertz", "yield_strength")]
-)
+@pytest.mark.parametrize(("law", "asked"), [("myc", "plate_yield_strength"), ("hertz", "yield_strength")])
 def test_what_a_law_does_not_depend_on_is_refused(law, asked):
     pair = cl.Pair("gamma-alumina", "glass")
     with pytest.raises(cl.UnidentifiedError, match=f"law '{law}' does not depend on it"):
@@ -462,9 +461,8 @@ def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
     """docs/fit.md shows the command and its output."""
     docs = ROOT / "docs"
     command, shown = re.search(
-        r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```",
-        (docs / "fit.md").read_text("utf-8"), re.DOTALL,
-    ).groups()  # fmt: skip
+        r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```", (docs / "fit.md").read_text("utf-8"), re.DOTALL
+    ).groups()
     monkeypatch.chdir(tmp_path)
     shutil.copy(docs / "examples/rebounds.csv", tmp_path)
     assert main(shlex.split(command.replace("\\\n", " "))[1:]) == 0
@@ -478,11 +476,7 @@ SETS = 30
 
 @pytest.mark.parametrize(
     ("name", "law"),
-    [
-        pytest.param("thickness", "fem", marks=pytest.mark.long),
-        ("density", "fem"),
-        ("yield_strength", "myc"),
-    ],
+    [pytest.param("thickness", "fem", marks=pytest.mark.long), ("density", "fem"), ("yield_strength", "myc")],
 )
 def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(name, law):
     """A part of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""

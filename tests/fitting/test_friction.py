@@ -27,9 +27,7 @@ def measured(kinds, angle, friction, noise=0.0, seed=0):
     """What would be measured of these beads, with the stated relative errors of 1 + beta, ..."""
     _, along, hit = hits(angle, friction)
     spin = 2.5 * along * (1.0 - hit.tangential_restitution) / RADIUS
-    exact = dict(
-        zip(KINDS, (hit.tangential_restitution, hit.rotational_restitution, spin), strict=True)
-    )
+    exact = dict(zip(KINDS, (hit.tangential_restitution, hit.rotational_restitution, spin), strict=True))
     random = np.random.default_rng(seed)
     data = {"speed": SPEED, "angle": angle, "radius": RADIUS, "thickness": THICKNESS}
     for kind in kinds:
@@ -96,11 +94,7 @@ def test_friction_of_the_measurements_of_kharaz_and_others(column, kind):
 
 @pytest.mark.parametrize(
     ("friction", "noise"),
-    [
-        (0.5, 0.01),
-        pytest.param(1.0, 0.03, marks=pytest.mark.long),
-        pytest.param(2.0, 0.01, marks=pytest.mark.long),
-    ],
+    [(0.5, 0.01), pytest.param(1.0, 0.03, marks=pytest.mark.long), pytest.param(2.0, 0.01, marks=pytest.mark.long)],
 )
 def test_beads_that_stick_do_not_determine_it(friction, noise):
     data = measured(KINDS[:1], np.linspace(2.0, 12.0, 4), friction, noise)

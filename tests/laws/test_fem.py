@@ -55,9 +55,7 @@ def solver_of(pair):
     ],
 )
 @pytest.mark.parametrize("body", ["sphere", "plate"])
-def test_what_is_as_soft_and_light_as_a_polymer_is_taken_for_one(
-    modulus, density, kind, depends, body
-):
+def test_what_is_as_soft_and_light_as_a_polymer_is_taken_for_one(modulus, density, kind, depends, body):
     own = cl.Material("POM", modulus, 0.37, density, yield_strength=65e6, kind=kind)
     pair = cl.Pair(**({"sphere": "glass", "plate": "glass"} | {body: own}))
     flags = cl.ImpactModel(pair, law="hertz").lookup(0.1, R, 5e-3).flags
@@ -140,9 +138,7 @@ def test_thicker_plates_take_no_more_however_fast_the_impact(pair, speed):
 
 def soft(strength):
     """Indium of some strength under bearing steel."""
-    return cl.Pair(
-        "bearing-steel-52100", cl.Material("indium", 12.7e9, 0.45, 7310, yield_strength=strength)
-    )
+    return cl.Pair("bearing-steel-52100", cl.Material("indium", 12.7e9, 0.45, 7310, yield_strength=strength))
 
 
 def test_soft_bodies_follow_the_slope_of_the_law():
@@ -190,9 +186,7 @@ def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
     steel = cl.Material("a", 200e9, 0.3, 7850)
     strength = cl.Pair(steel, steel).effective_modulus / 12.0
     for share, flagged in ((1.05, False), (1.2, True), (2.7, True), (2.9, False)):
-        bodies = [
-            dataclasses.replace(steel, yield_strength=one) for one in (strength, strength * share)
-        ]
+        bodies = [dataclasses.replace(steel, yield_strength=one) for one in (strength, strength * share)]
         hit = answered(cl.Pair(*bodies), np.array([900.0]))
         assert hit.plastic_fraction[0] > 0.0
         assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
@@ -252,16 +246,12 @@ PAIRS = [(case.sphere, case.plate) for case in census.draw(72, 20)]
 
 
 @pytest.mark.parametrize(
-    "pair",
-    [*PAIRS[:5], *(pytest.param(pair, marks=pytest.mark.long) for pair in PAIRS[5:])],
-    ids="-".join,
+    "pair", [*PAIRS[:5], *(pytest.param(pair, marks=pytest.mark.long) for pair in PAIRS[5:])], ids="-".join
 )
 def test_tables_are_near_the_solver(pair):
     model = model_of(*pair)
     rng = np.random.default_rng(73)
-    speed, thickness = (
-        np.exp(rng.uniform(*np.log(limits), 50)) for limits in (census.SPEED, census.THICKNESS)
-    )
+    speed, thickness = (np.exp(rng.uniform(*np.log(limits), 50)) for limits in (census.SPEED, census.THICKNESS))
     looked, exact = (ask(speed, R, thickness) for ask in (model.lookup, model.solve))
     assert looked.restitution == pytest.approx(exact.restitution, abs=1e-5)
     assert model.restitution(speed, R, thickness) == pytest.approx(looked.restitution, abs=1e-10)
@@ -317,10 +307,7 @@ def test_equal_beads_both_yield():
     assert hit.restitution**2 + lost == pytest.approx(np.ones(3), abs=1e-4)  # the table's
     # beside one that is as stiff but does not yield, one flows where two did
     hard = dataclasses.replace(cl.material(steel), yield_strength=None)
-    alone = [
-        cl.restitution_sphere_sphere(*pair, speed[:2], R, R, law="fem")
-        for pair in ((steel, hard), (hard, steel))
-    ]
+    alone = [cl.restitution_sphere_sphere(*pair, speed[:2], R, R, law="fem") for pair in ((steel, hard), (hard, steel))]
     assert alone[0].tolist() == alone[1].tolist()
     assert (alone[0] > same[:2] + 0.005).all()
 

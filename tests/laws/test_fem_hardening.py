@@ -46,9 +46,8 @@ def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
     numbers = {"modulus_share": 0.4, "poissons_ratio": 0.3, "plate_poissons_ratio": 0.22}
     none = {"sphere_ratio": 0.0, "plate_ratio": 0.0}
     hard = law(
-        "fem", **numbers, **{**none, f"{role}_ratio": ratio},
-        **{f"{role}_hardening": times, f"{role}_exponent": n},
-    )  # fmt: skip
+        "fem", **numbers, **{**none, f"{role}_ratio": ratio}, **{f"{role}_hardening": times, f"{role}_exponent": n}
+    )
     onset = law("fem", **numbers, **{**none, f"{role}_ratio": ratio}).scale
     assert hard.onset == pytest.approx(onset)
     begins = {
@@ -61,10 +60,7 @@ def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
     for one in (hard, ideal):
         assert one.scale < depth < one.range[1] * one.scale
     ours, expected = (
-        (
-            one.loading(math.sqrt(depth / one.scale)) * one.scale**1.5,
-            one.residual(depth / one.scale) * one.scale,
-        )
+        (one.loading(math.sqrt(depth / one.scale)) * one.scale**1.5, one.residual(depth / one.scale) * one.scale)
         for one in (hard, ideal)
     )
     assert ours == pytest.approx(expected, rel=1e-9)
@@ -106,9 +102,7 @@ def test_a_stronger_body_may_not_have_strained_where_the_other_one_flows():
     weaker = dataclasses.replace(cl.material("glass"), yield_strength=56e6)
     for bodies in ((sphere, plate), (plate, sphere), (weaker, cl.material("copper-ofhc-annealed"))):
         ideal = [dataclasses.replace(body, hardening=None, rate=None) for body in bodies]
-        ours, theirs = (
-            model(*pair).solve(10.0, 1e-3, 1e-2).restitution for pair in (bodies, ideal)
-        )
+        ours, theirs = (model(*pair).solve(10.0, 1e-3, 1e-2).restitution for pair in (bodies, ideal))
         assert ours == pytest.approx(theirs, rel=3e-3)
 
 
@@ -121,13 +115,19 @@ def test_all_metals_that_harden_have_a_law_and_flow_on_from_yield(role):
         share, nu, nu_other, n = draw.uniform([0.01, 0.0, 0.0, 0.2], [0.99, 0.5, 0.5, 0.7])
         ratio, times = np.exp(draw.uniform(np.log([15.0, 0.2]), np.log([1200.0, 4.0])))
         made = fem.law_of(
-            fem.Given(**{
-                "modulus_share": share, f"{role}_ratio": ratio, f"{other}_ratio": ratio / 4.0,
-                "poissons_ratio": nu, "plate_poissons_ratio": nu_other,
-                f"{role}_hardening": times, f"{role}_exponent": n,
-            }),
+            fem.Given(
+                **{
+                    "modulus_share": share,
+                    f"{role}_ratio": ratio,
+                    f"{other}_ratio": ratio / 4.0,
+                    "poissons_ratio": nu,
+                    "plate_poissons_ratio": nu_other,
+                    f"{role}_hardening": times,
+                    f"{role}_exponent": n,
+                }
+            ),
             fem.fitted(),
-        )  # fmt: skip
+        )
         dm = np.geomspace(1.0, made.range[1], 50)
         left = np.array([made.residual(one) for one in dm])
         assert (np.diff(left / dm) > 0.0).all()

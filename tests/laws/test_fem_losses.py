@@ -30,9 +30,7 @@ def solved(loss, lam, plate_loss):
 def test_a_rebound_is_that_of_a_body_with_memory(loss):
     ours, memory = solved(loss, 0.0, 0.0), rebound(power_law(loss), 2000)
     assert ours.restitution == pytest.approx(memory.restitution, rel=5e-3)  # friction takes 3e-3
-    assert ours.contact_time / CONTACT_TIME == pytest.approx(
-        memory.contact_time / ELASTIC_TIME, rel=5e-3
-    )
+    assert ours.contact_time / CONTACT_TIME == pytest.approx(memory.contact_time / ELASTIC_TIME, rel=5e-3)
     left = memory.last_approach / memory.peak_approach
     assert ours.residual_compression / ours.peak_compression == pytest.approx(left, abs=2e-3)
 

@@ -42,9 +42,9 @@ def farthest(got, want, where):
 def places(kinks, count):
     """Compressions from 1e-3 to 1e5 d_Y: random ones, and at, below and above kinks."""
     rng = np.random.default_rng(1904)
-    spread = np.exp(np.concatenate([
-        rng.uniform(*np.log([1e-3, reference_laws.END]), count), rng.uniform(0, np.log(200), count)
-    ]))  # fmt: skip
+    spread = np.exp(
+        np.concatenate([rng.uniform(*np.log([1e-3, reference_laws.END]), count), rng.uniform(0, np.log(200), count)])
+    )
     steps = [0.0, *np.geomspace(1e-9, 0.1, 9), *-np.geomspace(1e-9, 0.1, 5)]
     near = [kink * (1 + step) for kink in kinks for step in steps]
     return [float(d) for d in (*spread, *near)]
@@ -82,10 +82,7 @@ class TestAgainstTheFormulas:
         for share in (1e-3, 0.3, 0.7, 0.99):
             q = [share * math.sqrt(dm - c.residual) for dm, c in zip(deepest, curves, strict=True)]
             got = [law.unloading(one, curve) for one, curve in zip(q, curves, strict=True)]
-            want = [
-                exact.unloading(dr + mpf(one) ** 2, mpf(dm))
-                for one, dr, dm in zip(q, left, deepest, strict=True)
-            ]
+            want = [exact.unloading(dr + mpf(one) ** 2, mpf(dm)) for one, dr, dm in zip(q, left, deepest, strict=True)]
             worst = farthest(got, want, deepest)
             assert worst[0] < 1e-12, (share, worst)
 

@@ -104,42 +104,57 @@ def unloading(*arguments, **options):
     ("wrong", "message"),
     [
         (loading(Loading(2.0, CUT_OFF.force)), "do not meet at 2 d_Y: 2.828427.* and 2.5 F_Y"),
-        (loading(CUT_OFF, Loading(3.0, lambda d: 4.0 + np.sin(d - 3.0))),
-         r"loading force of 'mine' does not rise at 4\.5"),  # 3 + pi/2
-        (loading(CUT_OFF, Loading(3.0, lambda d: 4.0 * np.exp(3.0 - d))),
-         r"loading force of 'mine' does not rise at 3 d_Y"),
-        (loading(Loading(1.0, lambda d: np.sqrt(2.0 - d))),
-         r"'mine'; its loading force is nan at 2\.0\d+ d_Y"),
-        (loading(Loading(1.0, lambda d: math.sqrt(d))),
-         "'mine'; its loading force has to take an array, as numpy's functions do"),
+        (
+            loading(CUT_OFF, Loading(3.0, lambda d: 4.0 + np.sin(d - 3.0))),
+            r"loading force of 'mine' does not rise at 4\.5",
+        ),  # 3 + pi/2
+        (
+            loading(CUT_OFF, Loading(3.0, lambda d: 4.0 * np.exp(3.0 - d))),
+            r"loading force of 'mine' does not rise at 3 d_Y",
+        ),
+        (loading(Loading(1.0, lambda d: np.sqrt(2.0 - d))), r"'mine'; its loading force is nan at 2\.0\d+ d_Y"),
+        (
+            loading(Loading(1.0, lambda d: math.sqrt(d))),
+            "'mine'; its loading force has to take an array, as numpy's functions do",
+        ),
         (loading(Loading(1.0, lambda d: d[:3])), "return one number for each element"),
-        (loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
-         "branches have to begin one after the other, below 100000 d_Y"),
+        (
+            loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
+            "branches have to begin one after the other, below 100000 d_Y",
+        ),
         (loading(CUT_OFF, Loading(1e6, CUT_OFF.force)), "branches have to begin one after"),
         (loading(Loading(0.5, CUT_OFF.force)), "follow Hertz's curve up to yield, 1 d_Y"),
-        ({"loading": [Loading(0.0, lambda d: d**1.5), CUT_OFF]},
-         "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ"),
-        ({"loading": [Loading(0.0, Polynomial([0.0, 0.0, 0.0, 2.0])), CUT_OFF]},
-         "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ"),
+        (
+            {"loading": [Loading(0.0, lambda d: d**1.5), CUT_OFF]},
+            "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ",
+        ),
+        (
+            {"loading": [Loading(0.0, Polynomial([0.0, 0.0, 0.0, 2.0])), CUT_OFF]},
+            "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ",
+        ),
         ({"loading": [CUT_OFF]}, "'mine'; its first branch has to begin at 0"),
         ({"loading": []}, "'mine'; its first branch has to begin at 0"),
-        (unloading(residual, 1.2),
-         r"'mine'; its loss is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy"),
+        (unloading(residual, 1.2), r"'mine'; its loss is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy"),
         (unloading(lambda dm: 0.1 * dm), "its residual compression jumps at 1 d_Y.* to 0.1"),
-        ({"unloading": [Unloading(1.0, residual), Unloading(4.0, lambda d: 0.5 * residual(d))]},
-         "'mine'; its residual compression jumps at 4 d_Y, from 1.35 to 0.675"),
-        ({"unloading": [Unloading(1.0, residual), Unloading(4.0, residual, 1.6)]},
-         "'mine'; its loss jumps at 4 d_Y"),
-        (unloading(lambda dm: 1.01 * (dm - 1.0) ** 2),
-         r"'mine'; its residual compression is not below the largest one at 2\.6"),
-        (unloading(lambda dm: np.where(dm < 10.0, residual(dm), np.nan)),
-         r"'mine'; its residual compression is nan at 1\d\.\d+ d_Y"),
+        (
+            {"unloading": [Unloading(1.0, residual), Unloading(4.0, lambda d: 0.5 * residual(d))]},
+            "'mine'; its residual compression jumps at 4 d_Y, from 1.35 to 0.675",
+        ),
+        ({"unloading": [Unloading(1.0, residual), Unloading(4.0, residual, 1.6)]}, "'mine'; its loss jumps at 4 d_Y"),
+        (
+            unloading(lambda dm: 1.01 * (dm - 1.0) ** 2),
+            r"'mine'; its residual compression is not below the largest one at 2\.6",
+        ),
+        (
+            unloading(lambda dm: np.where(dm < 10.0, residual(dm), np.nan)),
+            r"'mine'; its residual compression is nan at 1\d\.\d+ d_Y",
+        ),
         ({"unloading": [Unloading(2.0, residual)]}, "the first of unloading begins there"),
         ({"yield_coefficient": None}, "must be a positive number: the law yields, got None"),
         ({"yield_coefficient": -0.5}, "must be a positive number: the law yields, got -0.5"),
         (loading() | {"unloading": []}, "must be None: it never yields, got 0.5"),
     ],
-)  # fmt: skip
+)
 def test_wrong_laws_are_refused_and_the_message_says_where(wrong, message):
     with pytest.raises(ValueError, match=message):
         own(**wrong)
@@ -176,9 +191,7 @@ class TestMeasured:
 
     def test_too_few_points(self):
         compression, force = points(laws.law("myc"), count=4)
-        with pytest.raises(
-            ValueError, match=r"compression: 3 points lie beyond yield, .* at least 4"
-        ):
+        with pytest.raises(ValueError, match=r"compression: 3 points lie beyond yield, .* at least 4"):
             measured(compression=compression, force=force)
 
     def test_points_that_fall(self):
@@ -193,15 +206,11 @@ class TestMeasured:
     def test_a_wild_point(self):
         compression, force = points(laws.law("myc"), count=20)
         force[12:] *= 1.8  # a range of the gauge was changed
-        with pytest.raises(
-            ValueError, match=r"force: point \d+ beyond yield is off any smooth curve"
-        ):
+        with pytest.raises(ValueError, match=r"force: point \d+ beyond yield is off any smooth curve"):
             measured(compression=compression, force=force)
         compression, force = points(laws.law("myc"), count=8)
         force[5] *= 1.7
-        with pytest.raises(
-            ValueError, match=r"force: point \d beyond yield is off any smooth curve"
-        ):
+        with pytest.raises(ValueError, match=r"force: point \d beyond yield is off any smooth curve"):
             measured(compression=compression, force=force)
         compression, force = points(laws.law("myc"), count=20)
         d_y, _ = yield_scales(PAIR, 0.68, R)
@@ -217,14 +226,9 @@ class TestMeasured:
         small = measured()
         # the fit by least squares magnifies the rounding of the points
         for dm in (1.01, 2.0, 7.0, 39.0, 41.0, 1e4):
-            for of in (
-                lambda law, dm=dm: law.loading(math.sqrt(dm)),
-                lambda law, dm=dm: law.residual(dm),
-            ):
+            for of in (lambda law, dm=dm: law.loading(math.sqrt(dm)), lambda law, dm=dm: law.residual(dm)):
                 assert of(large) == pytest.approx(of(small), rel=1e-9)
-            assert large.dissipation(dm) == pytest.approx(
-                small.dissipation(dm), rel=1e-9, abs=1e-12
-            )
+            assert large.dissipation(dm) == pytest.approx(small.dissipation(dm), rel=1e-9, abs=1e-12)
 
     def test_arguments(self):
         with pytest.raises(TypeError, match=r"pair: expected a contactlaw\.Pair"):

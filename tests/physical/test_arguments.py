@@ -80,9 +80,7 @@ def test_units_are_not_lost(model):
     for name, value, call in calls(model):
         array = np.atleast_1d(np.asarray(value, dtype=np.float64))
         for bad in (Quantity(value), Quantity(array), array.view(UnitArray), [Quantity(value)]):
-            with pytest.raises(
-                ValueError, match=rf'^{name}.*convert it to SI .*: x.to\(".*"\).magnitude with pint'
-            ):
+            with pytest.raises(ValueError, match=rf'^{name}.*convert it to SI .*: x.to\(".*"\).magnitude with pint'):
                 call(bad)
 
 
@@ -122,10 +120,25 @@ def test_units_of_none_of_them_are_taken(model):
 
 
 ODD = [
-    "5", b"5", True, np.True_, 1j, {}, {1.0}, object(), Decimal(1), Fraction(1, 2), 10**400,
-    [1.0, 10**400], [[1.0], [1.0, 2.0]], np.array("5"), np.datetime64("2020"), len,
-    np.ma.masked_array([1.0], [True]), np.longdouble("1e4000"),
-]  # fmt: skip
+    "5",
+    b"5",
+    True,
+    np.True_,
+    1j,
+    {},
+    {1.0},
+    object(),
+    Decimal(1),
+    Fraction(1, 2),
+    10**400,
+    [1.0, 10**400],
+    [[1.0], [1.0, 2.0]],
+    np.array("5"),
+    np.datetime64("2020"),
+    len,
+    np.ma.masked_array([1.0], [True]),
+    np.longdouble("1e4000"),
+]
 
 
 @pytest.mark.parametrize("bad", ODD, ids=lambda bad: repr(bad)[:20])

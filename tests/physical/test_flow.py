@@ -66,10 +66,7 @@ def test_wrong_constants_are_refused(numbers, message):
 
 
 def test_hardness_scales_of_metals_imply_a_metal():
-    kinds = [
-        cl.Material("ball", 200e9, 0.3, 7850, hardness=text).kind
-        for text in ("62 HRC", "200 HB", "800 HV")
-    ]
+    kinds = [cl.Material("ball", 200e9, 0.3, 7850, hardness=text).kind for text in ("62 HRC", "200 HB", "800 HV")]
     assert kinds == ["metal", "metal", None]
 
 
@@ -77,8 +74,7 @@ def test_laws_without_hardening_take_the_flow_stress_of_the_hardness():
     known = dataclasses.replace(STEEL, yield_strength=None, hardness=600e6)
     hardening = dataclasses.replace(known, hardening=0.3)
     one, other = (
-        cl.ImpactModel(cl.Pair(body, "glass"), law="thornton").solve(3.0, 1e-3, 5e-3)
-        for body in (known, hardening)
+        cl.ImpactModel(cl.Pair(body, "glass"), law="thornton").solve(3.0, 1e-3, 5e-3) for body in (known, hardening)
     )
     assert one.restitution == other.restitution
     assert hardening.require_yield_strength("fem") < hardening.require_yield_strength("myc")

@@ -15,14 +15,26 @@ def ball(hardness):
 @pytest.mark.parametrize(
     ("text", "number"),
     [
-        ("800 HV", 800), ("640HV10", 640), ("200 HB", 200), (" 94 hbw 2.5/62.5 ", 94),
+        ("800 HV", 800),
+        ("640HV10", 640),
+        ("200 HB", 200),
+        (" 94 hbw 2.5/62.5 ", 94),
         # ASTM E140-12, Table 1: Rockwell C and Vickers
-        ("20 HRC", 238), ("25 HRC", 266), ("30 HRC", 302), ("35 HRC", 345), ("40 HRC", 392),
-        ("45 HRC", 446), ("50 HRC", 513), ("55 HRC", 595), ("60 HRC", 697), ("62 HRC", 746),
-        ("65 HRC", 832), ("68.0 HRC", 940),
+        ("20 HRC", 238),
+        ("25 HRC", 266),
+        ("30 HRC", 302),
+        ("35 HRC", 345),
+        ("40 HRC", 392),
+        ("45 HRC", 446),
+        ("50 HRC", 513),
+        ("55 HRC", 595),
+        ("60 HRC", 697),
+        ("62 HRC", 746),
+        ("65 HRC", 832),
+        ("68.0 HRC", 940),
         ("63.5 HRC", 786),  # halfway from 772 to 800
     ],
-)  # fmt: skip
+)
 def test_hardness_is_stored_in_pascals(text, number):
     assert ball(text).hardness == pytest.approx(number * KGF, rel=1e-12)
     assert isinstance(ball(text).hardness, float)
@@ -38,9 +50,7 @@ def test_rockwell_grows_evenly():
 
 @pytest.mark.parametrize("text", ["62 HRB", "7.3 GPa", "62", "HRC", "-62 HRC", "nan HV", "6 2 HV"])
 def test_other_units_are_refused_with_those_that_are_known(text):
-    with pytest.raises(
-        ValueError, match="^hardness: .* HV, HB, HBW, HRC.* .material 'ball'"
-    ) as caught:
+    with pytest.raises(ValueError, match="^hardness: .* HV, HB, HBW, HRC.* .material 'ball'") as caught:
         ball(text)
     assert repr(text) in str(caught.value)
 

@@ -47,9 +47,9 @@ def test_solver_follows_its_own_rebound(model):
     assert contact.time[:, -1] == pytest.approx(rebound.contact_time, rel=1e-12)
     assert contact.force.max(axis=1) == pytest.approx(rebound.peak_force, rel=1e-5)
     assert contact.compression.max(axis=1) == pytest.approx(rebound.peak_compression, rel=1e-5)
-    assert (
-        contact.compression[:, -1] - rebound.residual_compression
-    ) / rebound.peak_compression == (pytest.approx(0.0, abs=1e-9))
+    assert (contact.compression[:, -1] - rebound.residual_compression) / rebound.peak_compression == (
+        pytest.approx(0.0, abs=1e-9)
+    )
 
 
 @pytest.mark.parametrize(
@@ -68,8 +68,7 @@ def test_table_within_a_ten_thousandth_of_the_peak(model, case):
         thickness = radius / np.linspace(6.0, 8.3, speed.size)
         speed = np.minimum(speed, 5.0)
     table, solved = (
-        model.force_history(speed, radius, thickness, samples=101, method=method)
-        for method in ("table", "solve")
+        model.force_history(speed, radius, thickness, samples=101, method=method) for method in ("table", "solve")
     )
     for ours, exact in zip(table, solved, strict=True):
         scale = np.abs(exact).max(axis=1, keepdims=True)
@@ -86,8 +85,7 @@ def test_a_way_back_with_corners(model):
     speed = stronge.yield_speed(radius, thickness) * np.linspace(1.01, 3.5, 12)[:, None]
     inside = stronge.lookup(speed, radius, thickness).inelasticity < 4.9
     table, solved = (
-        stronge.force_history(speed, radius, thickness, 101, method).force[inside]
-        for method in ("table", "solve")
+        stronge.force_history(speed, radius, thickness, 101, method).force[inside] for method in ("table", "solve")
     )
     assert (np.abs(table - solved).max(axis=1) / solved.max(axis=1)).max() < 1e-4
 
@@ -130,9 +128,7 @@ def test_half_space_stays_where_it_is_and_elastic_contact_is_symmetric():
     # Johnson 1985, Eq. 11.24: largest force from the energy, and F = K d^1.5 on the way
     stiffness = 4 / 3 * glass.pair.effective_modulus * math.sqrt(1e-3)
     assert contact.force == pytest.approx(stiffness * contact.compression**1.5, abs=1e-9)
-    assert contact.compression.max() == pytest.approx(
-        (1.25 * mass(glass, 1e-3) * 3.0**2 / stiffness) ** 0.4, rel=1e-4
-    )
+    assert contact.compression.max() == pytest.approx((1.25 * mass(glass, 1e-3) * 3.0**2 / stiffness) ** 0.4, rel=1e-4)
 
 
 @pytest.mark.parametrize("method", ["table", "solve"])
@@ -141,9 +137,7 @@ def test_shapes_of_the_answer(model, method):
     assert {values.shape for values in one} == {(256,)}
     many = model.force_history([5.0, 20.0], R, [[1e-3], [2e-3], [3e-3]], 10, method)
     assert {values.shape for values in many} == {(3, 2, 10)}
-    assert many.force[0, 0] == pytest.approx(
-        np.interp(many.time[0, 0], one.time, one.force), rel=1e-3
-    )
+    assert many.force[0, 0] == pytest.approx(np.interp(many.time[0, 0], one.time, one.force), rel=1e-3)
     two = model.force_history(5.0, R, 1e-3, samples=2, method=method)
     assert two.force.tolist() == [0.0, 0.0]
     assert two.time.tolist() == [0.0, pytest.approx(one.time[-1], rel=1e-6)]
@@ -165,9 +159,7 @@ def test_outside_the_table(model):
         model.force_history(*beyond)
     both = [np.array(values) for values in zip(inside, beyond, strict=True)]
     solving = cl.ImpactModel(model.pair, law="myc", outside="solve").force_history(*both)
-    assert solving.force[1] == pytest.approx(
-        model.force_history(*beyond, method="solve").force, rel=1e-9
-    )
+    assert solving.force[1] == pytest.approx(model.force_history(*beyond, method="solve").force, rel=1e-9)
     assert (solving.force[0] == model.force_history(*inside).force).all()
     clamping = cl.ImpactModel(model.pair, law="myc", outside="clamp")
     assert np.isfinite(clamping.force_history(*both).force).all()

@@ -24,13 +24,9 @@ REQUIRED = set(
     "polycarbonate natural-rubber epdm".split()
 )
 RUBBERS = {"natural-rubber", "epdm"}  # neither yield nor break here
-BRITTLE = set(
-    "glass soda-lime-glass tungsten-carbide alumina zirconia silicon-nitride polystyrene".split()
-)
+BRITTLE = set("glass soda-lime-glass tungsten-carbide alumina zirconia silicon-nitride polystyrene".split())
 # Metals of which the hardness is known and no yield strength.
-BALLS = set(
-    "bearing-steel-52100-ball cast-steel-shot stainless-steel-304-ball stainless-steel-440c".split()
-)
+BALLS = set("bearing-steel-52100-ball cast-steel-shot stainless-steel-304-ball stainless-steel-440c".split())
 # Johnson & Cook 1983, Table 1: A, B [MPa], n and C, at 1 per second.
 JOHNSON_COOK = {
     "alloy-steel-4340": (792, 510, 0.26, 0.014),
@@ -41,25 +37,42 @@ JOHNSON_COOK = {
 }
 # From soft to hard, at 8 % of strain.
 ORDERS = [
-    ("stainless-steel-304", "stainless-steel-304-2b", "stainless-steel-304-ball",
-     "stainless-steel-420", "cast-steel-shot", "stainless-steel-440c", "bearing-steel-52100-ball"),
+    (
+        "stainless-steel-304",
+        "stainless-steel-304-2b",
+        "stainless-steel-304-ball",
+        "stainless-steel-420",
+        "cast-steel-shot",
+        "stainless-steel-440c",
+        "bearing-steel-52100-ball",
+    ),
     ("lead", "aluminium-5754-h111", "aluminium-6082-t6", "aluminium-2024-t351", "tungsten"),
     ("copper-ofhc-annealed", "copper-c11000"),
     ("brass-c26000-annealed", "brass-c26000"),
     ("steel-dc01", "steel-s235", "ductile-iron-80-55-06", "alloy-steel-4340"),
-]  # fmt: skip
+]
 # Those of the brittle ones whose hardness is citable.
 HARD = {"soda-lime-glass", "alumina", "zirconia", "silicon-nitride"}
 # Longitudinal sound speeds [m/s] of ASTM E494, Tables X3.1 and X3.2: measured by ultrasound, so
 # they know nothing of the tensile tests and handbooks behind the catalogue. Polymers are absent:
 # at ultrasonic rates they are much stiffer.
 ULTRASONIC = {
-    "carbon-steel-1020": 5900.0, "bearing-steel-52100": 5900.0, "stainless-steel-304": 5790.0,
-    "stainless-steel-316": 5790.0, "aluminium-6061-t6": 6300.0, "aluminium-2024-t3": 6300.0,
-    "titanium-ti-6al-4v": 6240.0, "copper-c11000": 4700.0, "brass-c26000": 4370.0, "lead": 2160.0,
-    "stainless-steel-440c": 5900.0, "tungsten": 5180.0, "alumina": 10200.0, "zirconia": 7040.0,
+    "carbon-steel-1020": 5900.0,
+    "bearing-steel-52100": 5900.0,
+    "stainless-steel-304": 5790.0,
+    "stainless-steel-316": 5790.0,
+    "aluminium-6061-t6": 6300.0,
+    "aluminium-2024-t3": 6300.0,
+    "titanium-ti-6al-4v": 6240.0,
+    "copper-c11000": 4700.0,
+    "brass-c26000": 4370.0,
+    "lead": 2160.0,
+    "stainless-steel-440c": 5900.0,
+    "tungsten": 5180.0,
+    "alumina": 10200.0,
+    "zirconia": 7040.0,
     "silicon-nitride": 10800.0,
-}  # fmt: skip
+}
 
 
 def raw_catalogue() -> dict[str, dict[str, object]]:
@@ -151,15 +164,10 @@ def test_every_error_has_a_reason_and_that_of_a_minimum_is_not_known(name: str) 
         ends = re.search(r"midpoint of ([\d.]+)(?: to |-)([\d.]+) (GPa|MPa|kg/m3)", text, re.I)
         if ends is None:
             continue
-        low, high = (
-            float(end) * {"GPa": 1e9, "MPa": 1e6, "kg/m3": 1.0}[ends[3]]
-            for end in ends.groups()[:2]
-        )
+        low, high = (float(end) * {"GPa": 1e9, "MPa": 1e6, "kg/m3": 1.0}[ends[3]] for end in ends.groups()[:2])
         assert getattr(entry, number) == pytest.approx((low + high) / 2, rel=2e-3)
         if number in own:
-            assert own[number][0] == pytest.approx(
-                (high - low) / math.sqrt(3) / (low + high), rel=0.08
-            )
+            assert own[number][0] == pytest.approx((high - low) / math.sqrt(3) / (low + high), rel=0.08)
 
 
 def test_an_error_is_that_of_the_metal_it_is_like() -> None:
@@ -263,16 +271,25 @@ def test_a_metal_in_another_temper_is_as_stiff_and_dense() -> None:
 @pytest.mark.parametrize(
     ("alias", "name"),
     [
-        ("304", "stainless-steel-304"), ("AISI 304", "stainless-steel-304"),
-        ("aisi_316", "stainless-steel-316"), ("gamma-Al2O3", "gamma-alumina"),
-        ("  Gamma Alumina ", "gamma-alumina"), ("100Cr6", "bearing-steel-52100"),
-        ("Ti-6Al-4V", "titanium-ti-6al-4v"), ("6061-T6", "aluminium-6061-t6"),
-        ("aluminum 2024 t3", "aluminium-2024-t3"), ("Y-TZP", "zirconia"), ("PTFE", "ptfe"),
-        ("Nylon 6,6", "nylon-66"), ("polyethylene", "hdpe"), ("GLASS", "glass"),
-        ("304 ball", "stainless-steel-304-ball"), ("S235JR", "steel-s235"),
+        ("304", "stainless-steel-304"),
+        ("AISI 304", "stainless-steel-304"),
+        ("aisi_316", "stainless-steel-316"),
+        ("gamma-Al2O3", "gamma-alumina"),
+        ("  Gamma Alumina ", "gamma-alumina"),
+        ("100Cr6", "bearing-steel-52100"),
+        ("Ti-6Al-4V", "titanium-ti-6al-4v"),
+        ("6061-T6", "aluminium-6061-t6"),
+        ("aluminum 2024 t3", "aluminium-2024-t3"),
+        ("Y-TZP", "zirconia"),
+        ("PTFE", "ptfe"),
+        ("Nylon 6,6", "nylon-66"),
+        ("polyethylene", "hdpe"),
+        ("GLASS", "glass"),
+        ("304 ball", "stainless-steel-304-ball"),
+        ("S235JR", "steel-s235"),
         ("cast iron", "ductile-iron-80-55-06"),
     ],
-)  # fmt: skip
+)
 def test_names_are_found_however_they_are_typed(alias: str, name: str) -> None:
     assert material(alias).name == name
 
@@ -314,8 +331,7 @@ def test_material_refuses_what_is_no_name(name: object) -> None:
 
 @pytest.mark.parametrize("field", NUMBERS)
 @pytest.mark.parametrize(
-    "value",
-    [math.nan, math.inf, -math.inf, 10**400, "207e9", True, np.True_, 1j, [1.0], Decimal(1)],
+    "value", [math.nan, math.inf, -math.inf, 10**400, "207e9", True, np.True_, 1j, [1.0], Decimal(1)]
 )
 def test_what_is_no_finite_number_is_refused(field: str, value: object) -> None:
     with pytest.raises(ValueError, match=f"^{field}: got .*material 'steel'") as caught:

@@ -24,9 +24,7 @@ def test_yield_speed_of_the_paper(pair):
     The definition, V_Y0^2 = (4/5) K dY^2.5/m, has sqrt(0.8) 0.68^1.25 = 0.55229 in its place.
     """
     alumina = pair.sphere
-    rest = math.sqrt(
-        math.pi**4 * alumina.yield_strength**5 / (alumina.density * pair.effective_modulus**4)
-    )
+    rest = math.sqrt(math.pi**4 * alumina.yield_strength**5 / (alumina.density * pair.effective_modulus**4))
     assert 0.552 * rest == pytest.approx(7.426, abs=5e-4)
     assert pair.yield_speed == pytest.approx(math.sqrt(0.8) * 0.68**1.25 * rest, rel=1e-14)
     assert pair.yield_speed == pytest.approx(7.426, rel=0.0005 / 0.552)  # the factor's rounding

@@ -10,9 +10,7 @@ import contactlaw as cl
 from contactlaw.physical import rate
 from contactlaw.physical.law import law_of
 
-IRON = cl.Material(
-    "iron", 207e9, 0.3, 7850, yield_strength=175e6, hardening=(380e6, 0.32), rate=(0.06, 1.0)
-)
+IRON = cl.Material("iron", 207e9, 0.3, 7850, yield_strength=175e6, hardening=(380e6, 0.32), rate=(0.06, 1.0))
 ALLOY = cl.Material("alloy", 72e9, 0.33, 2770, yield_strength=265e6, rate=(0.015, 10.0))
 GLASS = cl.Material("glass", 73e9, 0.21, 2500)
 
@@ -32,7 +30,5 @@ def test_each_body_has_its_own_strength_at_the_rate_of_the_impact(slope, rate0):
     stronger = rate.strengthened(pair, rate.factors(flow, speed, radius).item())
     assert stronger.plate.yield_strength == pytest.approx(175e6 * factor)
     assert stronger.plate.hardening == pytest.approx((380e6 * factor, 0.32))
-    assert stronger.sphere.yield_strength == pytest.approx(
-        265e6 * (1.0 + 0.015 * math.log(at / 10.0))
-    )
+    assert stronger.sphere.yield_strength == pytest.approx(265e6 * (1.0 + 0.015 * math.log(at / 10.0)))
     assert stronger.sphere.rate is None and flow_of(stronger) is None

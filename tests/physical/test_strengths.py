@@ -52,16 +52,21 @@ def metal(*known, **others):
 
 
 SOFT = metal(11e9, 0.45, 7310, hardness=9e6, hardening=0.5, rate=(0.02, 1.0))
-POM = cl.Material("POM", 2.9e9, 0.37, 1410, 41e6, kind="polymer", rate=(0.05, 1.0),
-                  loss_factor=(0.5, 1e4))  # fmt: skip
+POM = cl.Material("POM", 2.9e9, 0.37, 1410, 41e6, kind="polymer", rate=(0.05, 1.0), loss_factor=(0.5, 1e4))
 LATE = metal(70e9, 0.33, 2700, 150e6, rate=(0.2, 1e6))
 STEEL = metal(200e9, 0.3, 7800, 350e6, rate=(0.06, 1.0))
 BRITTLE = cl.Material("glass", 70e9, 0.21, 2500, kind="glass", hardness=4e9)
 # just below E*/sigma_Y = 2000, above which the law is not known
 WEAK = metal(200e9, 0.3, 7800, 27.2e6 * math.exp(-4e-3), rate=(0.05, 1.0))
 STEEP = metal(3e9, 0.4, 1200, 50e6, hardening=(1e9, 0.5), rate=(0.1, 1e-3))
-ODD = [(SOFT, "glass"), (POM, "glass"), (metal(70e9, 0.33, 2700, 200e6, rate=(0.02, 1.0)), LATE),
-       (STEEL, BRITTLE), (WEAK, "glass"), (STEEP, "glass")]  # fmt: skip
+ODD = [
+    (SOFT, "glass"),
+    (POM, "glass"),
+    (metal(70e9, 0.33, 2700, 200e6, rate=(0.02, 1.0)), LATE),
+    (STEEL, BRITTLE),
+    (WEAK, "glass"),
+    (STEEP, "glass"),
+]
 
 
 @pytest.mark.parametrize("bodies", ODD, ids=["long", "losses", "late", "brittle", "weak", "steep"])

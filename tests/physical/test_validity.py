@@ -82,8 +82,7 @@ def test_a_strength_from_hardness_is_flagged_where_such_a_body_yields(law):
     ball = cl.Material("ball", 207e9, 0.3, 7850, hardness=1.8e9, kind="metal")
     known = cl.Material("ball", 207e9, 0.3, 7850, hardness=1.8e9, kind="metal", hardening=0.2)
     plates = [
-        cl.Material("plate", 70e9, 0.33, 2700, yield_strength=share * ball.strength)
-        for share in (2.0, 0.37, 0.35)
+        cl.Material("plate", 70e9, 0.33, 2700, yield_strength=share * ball.strength) for share in (2.0, 0.37, 0.35)
     ]
     hardened = [(known, plates[0])] if law == "fem" else []  # other laws refuse hardening
     for bodies in [*((ball, plate) for plate in plates), *hardened]:

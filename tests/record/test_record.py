@@ -14,8 +14,9 @@ from contactlaw.engines.record import IMPACT
 
 MODELS = [
     cl.ImpactModel(cl.Pair(sphere, plate))
-    for sphere in ("gamma-alumina", "glass") for plate in ("glass", "carbon-steel-1020")
-]  # fmt: skip
+    for sphere in ("gamma-alumina", "glass")
+    for plate in ("glass", "carbon-steel-1020")
+]
 
 
 @pytest.fixture(scope="module")

@@ -30,9 +30,7 @@ def lost(rows):
 def run():
     """Beads that fall slantwise on three plates."""
     space = make_space()
-    models = [
-        cl.ImpactModel(cl.Pair("gamma-alumina", one)) for one in dict.fromkeys(PLATES.values())
-    ]
+    models = [cl.ImpactModel(cl.Pair("gamma-alumina", one)) for one in dict.fromkeys(PLATES.values())]
     impacts = attach(space, models)
     rng = np.random.default_rng(1)
     for n, (thickness, material) in enumerate(PLATES.items()):
@@ -64,8 +62,7 @@ def test_the_energies_of_walls_and_causes_are_those_of_the_record(run, folder):
     assert [name for name, _ in shown] == ["0", "1", "2", "all"]
     assert len(set(re.findall(r" ([nµm]?J)\b", "".join(cells for _, cells in shown)))) == 1
     units = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0}
-    for (name, cells), own in zip(shown, [rows["plate"] == n for n in range(3)] + [slice(None)],
-                                  strict=True):  # fmt: skip
+    for (name, cells), own in zip(shown, [rows["plate"] == n for n in range(3)] + [slice(None)], strict=True):
         found = [float(a) * units[b] for a, b in re.findall(r"([\d.e-]+) ([nµm]?)J", cells)]
         expected = [rows[own][f"{cause}_energy"].sum() for cause in CAUSES]
         assert found == pytest.approx([*expected, sum(expected)], rel=5e-3), name
@@ -157,13 +154,17 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
     with pytest.raises(ValueError, match="has no impact on a wall yet"):
         half.report(tmp_path / "out")
     with pytest.raises(ValueError, match="has no column mass, thickness: a report needs"):
-        names = [name for name in impacts.collisions().dtype.names
-                 if name not in ("mass", "thickness")]  # fmt: skip
+        names = [name for name in impacts.collisions().dtype.names if name not in ("mass", "thickness")]
         Run(cl.Record(impacts.collisions()[names]))
     rows = impacts.collisions()
     row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
-    for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan),
-                        ("restitution", 300.0), ("wave_energy", math.inf)):  # fmt: skip
+    for name, value in (
+        ("approach_speed", math.nan),
+        ("mass", 0.0),
+        ("thickness", math.nan),
+        ("restitution", 300.0),
+        ("wave_energy", math.inf),
+    ):
         wrong = rows.copy()
         wrong[name][row] = value
         with pytest.raises(ValueError, match=f"{name} of row {row} is {value}: leave the row out"):

@@ -10,9 +10,7 @@ from pathlib import Path
 
 from websockets.sync.client import connect
 
-CHROMIUM = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
-)
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 _PATIENCE = 60.0  # [s], for a machine that is busy
 
 # Elements that reach beyond the screen, and what would have to be scrolled sideways.
@@ -57,8 +55,9 @@ class Page:
         """Open a file in a window of a size; media: features, as in a media query."""
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
-                  deviceScaleFactor=2, mobile=width < 600)  # fmt: skip
+        self.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2, mobile=width < 600
+        )
         features = [{"name": name.replace("_", "-"), "value": media[name]} for name in media]
         self.call("Emulation.setEmulatedMedia", features=features)
         self.call("Page.navigate", url=path.absolute().as_uri())
@@ -87,9 +86,7 @@ class Page:
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
         clip = {**{k: size[k] for k in ("x", "y", "width", "height")}, "scale": 1}
         more = {"clip": clip, "captureBeyondViewport": True} if whole else {}
-        Path(file).write_bytes(
-            base64.b64decode(self.call("Page.captureScreenshot", **more)["data"])
-        )
+        Path(file).write_bytes(base64.b64decode(self.call("Page.captureScreenshot", **more)["data"]))
 
 
 @contextmanager
@@ -97,12 +94,18 @@ def browser(profile):
     """Start a browser with a profile in an empty folder; gives a blank page."""
     process = subprocess.Popen(
         [
-            CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-            "--remote-debugging-port=0", f"--user-data-dir={profile}", "about:blank",
+            CHROMIUM,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-dev-shm-usage",
+            "--remote-debugging-port=0",
+            f"--user-data-dir={profile}",
+            "about:blank",
         ],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-    )  # fmt: skip
+    )
     try:
         port, end = profile / "DevToolsActivePort", time.monotonic() + _PATIENCE
         while not (port.exists() and port.read_text().count("\n")) and time.monotonic() < end:
@@ -111,9 +114,7 @@ def browser(profile):
         with connect(f"ws://127.0.0.1:{number}{path}", max_size=None, proxy=None) as socket:
             root = Page(socket)
             target = root.call("Target.createTarget", url="about:blank")["targetId"]
-            with connect(
-                f"ws://127.0.0.1:{number}/devtools/page/{target}", max_size=None, proxy=None
-            ) as own:
+            with connect(f"ws://127.0.0.1:{number}/devtools/page/{target}", max_size=None, proxy=None) as own:
                 yield Page(own)
     finally:
         process.terminate()

@@ -102,9 +102,7 @@ class Library:
     """`SOURCE` as a library, beside the header in a folder."""
 
     def __init__(self, folder, *flags, out="out.so"):
-        self._compiled = ctypes.CDLL(
-            build(folder, SOURCE, "-O2", "-shared", "-fPIC", *WARNINGS, *flags, out=out)
-        )
+        self._compiled = ctypes.CDLL(build(folder, SOURCE, "-O2", "-shared", "-fPIC", *WARNINGS, *flags, out=out))
 
     def answers(self, rows):
         """All answers for impacts, which are rows as `uncompiled` has them."""

@@ -82,8 +82,7 @@ def above(gap=1e-4, x=0.0, y=0.0, radius=R):
 ABOVE = above()
 
 
-def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY,
-         processors="* * *"):  # fmt: skip
+def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *"):
     """Beads in a box that nothing leaves, by default of gamma-alumina."""
     lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
     position = np.atleast_2d(np.asarray(position, dtype=float))
@@ -100,9 +99,7 @@ def restarted(path, *, gravity=0.0, dt=DT):
     return quiet(f"read_restart {path}" + MOTION.format(dt=dt, gravity=gravity))
 
 
-def scene(
-    model, walls=None, position=ABOVE, velocity=(0, 0, -5), *, friction=0.0, records=1000, **box
-):
+def scene(model, walls=None, position=ABOVE, velocity=(0, 0, -5), *, friction=0.0, records=1000, **box):
     """Beads in a box with walls attached; by default one bead above a plate of 1 mm."""
     lmp = make(position, velocity, **box)
     walls = [flat(1e-3)] if walls is None else walls
@@ -148,9 +145,8 @@ def on_two_ranks(file, *arguments):
     command = [mpirun, "-np", "2", sys.executable, file, *arguments]
     path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, timeout=300,
-        env=os.environ | {"PYTHONPATH": path},
-    )  # fmt: skip
+        list(map(str, command)), capture_output=True, text=True, timeout=300, env=os.environ | {"PYTHONPATH": path}
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -225,9 +221,7 @@ def main(path, chunks):
     in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
     style.png = lambda figure: b""  # the other rank would wait, and take all of its core
     walls.report(Path(path).with_name("report"))
-    lmp, _ = scene(
-        cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1"
-    )
+    lmp, _ = scene(cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1")
     for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
         lmp.command("set group all z 0.001 vz -5")
         try:

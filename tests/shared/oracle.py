@@ -14,10 +14,13 @@ from contactlaw import laws
 MYC = laws.law("myc")
 # Numbers besides d_Y that laws take from the pair, for gamma-alumina on glass.
 NUMBERS = {
-    "modulus_ratio": 23.1922, "poissons_ratio": 0.21,
-    "sphere_ratio": 23.1922, "plate_ratio": 0.0, "modulus_share": 0.1435,
+    "modulus_ratio": 23.1922,
+    "poissons_ratio": 0.21,
+    "sphere_ratio": 23.1922,
+    "plate_ratio": 0.0,
+    "modulus_share": 0.1435,
     "plate_poissons_ratio": 0.21,
-}  # fmt: skip
+}
 # Laws that follow Hertz until yield, and the one that does not.
 ALL_LAWS = [laws.law(name, **NUMBERS) for name in laws.names() if name != "fem"]
 FEM = laws.law("fem", **NUMBERS)

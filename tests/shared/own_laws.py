@@ -43,6 +43,4 @@ def points(law, noise=0.0, count=30, deepest=40.0):
 
 def measured(**changes):
     compression, force = points(laws.law("myc"))
-    return cl.measured_law(
-        PAIR, **({"radius": R, "compression": compression, "force": force} | changes)
-    )
+    return cl.measured_law(PAIR, **({"radius": R, "compression": compression, "force": force} | changes))

@@ -34,18 +34,12 @@ class Branch:
 
 def power(start, factor, exponent):
     factor, exponent = mpf(factor), mpf(exponent)
-    return Branch(
-        start,
-        lambda d: factor * d**exponent,
-        lambda d: factor * d ** (exponent + 1) / (exponent + 1),
-    )
+    return Branch(start, lambda d: factor * d**exponent, lambda d: factor * d ** (exponent + 1) / (exponent + 1))
 
 
 def line(start, at, force, slope):
     """Straight line through a point."""
-    return Branch(
-        start, lambda d: force + slope * (d - at), lambda d: force * d + slope * (d - at) ** 2 / 2
-    )
+    return Branch(start, lambda d: force + slope * (d - at), lambda d: force * d + slope * (d - at) ** 2 / 2)
 
 
 HERTZ = power(mpf(0), 1, "1.5")
@@ -71,10 +65,7 @@ class Reference:
         if self.residual_at is None:
             return  # elastic at every compression
         last = self.branches[-1]
-        self.branches = [
-            *self.branches,
-            line(mpf(END), mpf(END), last.force(mpf(END)), diff(last.force, mpf(END))),
-        ]
+        self.branches = [*self.branches, line(mpf(END), mpf(END), last.force(mpf(END)), diff(last.force, mpf(END)))]
 
     @property
     def loading_kinks(self):
@@ -236,11 +227,7 @@ def etsion(coefficient, branches):
 
     kink = root(lambda dm: least(dm) - printed(dm), "1.1", 2)
     return Reference(
-        coefficient,
-        branches,
-        lambda dm: dm * share(dm),
-        lambda dm: least(dm) if dm < kink else printed(dm),
-        (1, kink),
+        coefficient, branches, lambda dm: dm * share(dm), lambda dm: least(dm) if dm < kink else printed(dm), (1, kink)
     )
 
 

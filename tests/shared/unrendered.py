@@ -8,11 +8,7 @@ import io
 import sys
 
 RUN = "import sys; from dem_demo import cli; sys.exit(cli.main())"  # takes what follows `dem-demo`
-COMMAND = [
-    sys.executable,
-    "-c",
-    f"from contactlaw import style; style.png = lambda figure: b''; {RUN}",
-]
+COMMAND = [sys.executable, "-c", f"from contactlaw import style; style.png = lambda figure: b''; {RUN}"]
 UNDRAWN = [  # leaves the record alone
     sys.executable,
     "-c",

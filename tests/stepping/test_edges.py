@@ -71,9 +71,7 @@ def test_sides_are_in_the_order_of_a_walk():
     for kind, point in zip(kinds, points, strict=True):
         (row,), _ = dropped(plate(kinds), *point)
         some = {"edge": kind, "edge_distance": near} if kind else {}
-        assert row["restitution"] == pytest.approx(
-            MODEL.solve(SPEED, R, H, **some).restitution, abs=1e-3
-        )
+        assert row["restitution"] == pytest.approx(MODEL.solve(SPEED, R, H, **some).restitution, abs=1e-3)
 
 
 def test_the_rim_of_a_hole_is_found_and_creases_are_none():
@@ -107,15 +105,11 @@ def test_a_mesh_takes_the_kind_of_each_edge():
 @pytest.mark.parametrize("edges", ["loose", ("free", "free"), ("free", None, "hinged", None), 3])
 @pytest.mark.parametrize("wall", [plate, lambda kind: sheet(edges=kind)], ids=["plate", "mesh"])
 def test_what_is_no_kind_of_edge_is_refused(wall, edges):
-    with pytest.raises(
-        ValueError, match="edges: got .*(must be one of free, supported, cl|expected one)"
-    ):
+    with pytest.raises(ValueError, match="edges: got .*(must be one of free, supported, cl|expected one)"):
         wall(edges)
 
 
-@pytest.mark.parametrize(
-    "walls", [(plate(None), plate("free")), (sheet(20), sheet(20, edges="clamped"))]
-)
+@pytest.mark.parametrize("walls", [(plate(None), plate("free")), (sheet(20), sheet(20, edges="clamped"))])
 def test_far_from_edges_all_bits_are_those_of_an_endless_plate(walls):
     found = [dropped(wall, 0.026, 0.024, friction=0.2, spin=(0, 300, 0)) for wall in walls]
     assert found[0][0].tobytes() == found[1][0].tobytes()
@@ -135,8 +129,9 @@ def test_an_edge_moves_with_its_plate():
 def test_a_bead_rests_and_rolls_near_edges(kind, x, speed):
     """It keeps its height, gains no energy, and rolls past the reach of the edge."""
     end = (0, -speed / R, 0)
-    rows, path = moved(plate(kind), (x, 0.02, R - 1e-9), (speed, 0, 0), spin=end, gravity=9.81,
-                       steps=50_000, friction=0.3)  # fmt: skip
+    rows, path = moved(
+        plate(kind), (x, 0.02, R - 1e-9), (speed, 0, 0), spin=end, gravity=9.81, steps=50_000, friction=0.3
+    )
     on = path[(path[:, 1] > 0.0) & (path[:, 1] < SIDE)]
     assert np.isfinite(path).all() and len(on) > 49_000 and not len(rows)
     assert on[:, 0].max() <= on[0, 0] + 1e-12 * abs(on[0, 0])

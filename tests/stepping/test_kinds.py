@@ -50,9 +50,14 @@ SHEET = Plate((-0.05, -0.05, 0.0), (0.05, 0.0, 0.0), (0.0, 0.1, 0.0), 0.3e-3)
 @pytest.mark.parametrize("speed", [1.0, 10.0])
 @pytest.mark.parametrize(
     ("wall", "x", "z"),
-    [(WIDE, 0.0, R), (WIDE, -0.05 - 0.2 * R, R), (STRIPS, 0.0, R), (DRUM, 0.0, 0.02 + 1.1 * R),
-     (DRUM, 0.0, -0.02 + 1.1 * R)],
-)  # fmt: skip
+    [
+        (WIDE, 0.0, R),
+        (WIDE, -0.05 - 0.2 * R, R),
+        (STRIPS, 0.0, R),
+        (DRUM, 0.0, 0.02 + 1.1 * R),
+        (DRUM, 0.0, -0.02 + 1.1 * R),
+    ],
+)
 def test_a_bead_that_hits_one_surface(wall, x, z, speed, slide, friction):
     """Plate, its edge, a sheet of narrow triangles, and a drum from outside and inside."""
     found, rows = kinds([wall], (x, 0.0, z + 1e-6), (slide, 0.0, -speed), friction=friction)
@@ -102,7 +107,5 @@ def test_a_bead_in_a_groove_presses_on_both_sides():
 
 def test_a_bead_that_rests_and_is_taken_away():
     start, lift = (-0.02, 0.0, R + 1e-9), (0.0, 0.0, 0.1)
-    found, rows = kinds(
-        [SHEET], start, (0, 0, -1e-3), slope=0.0, kick=lift, when=50_000, steps=60_000
-    )
+    found, rows = kinds([SHEET], start, (0, 0, -1e-3), slope=0.0, kick=lift, when=50_000, steps=60_000)
     assert found[-1] == "RESTING" and rows["restitution"][-1] > 100.0

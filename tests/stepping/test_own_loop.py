@@ -60,9 +60,7 @@ def test_it_stops_at_a_step_that_is_too_long(example):
     x, v = np.array([[0.0, 0.0, 1.01e-3]]), np.array([[0.0, 0.0, -3.0]])
     mass = 4 / 3 * np.pi * example.RADIUS**3 * example.PAIR.sphere.density
     example.run(walls.scene, *walls.memory(1), x, v, mass, example.RADIUS, 2e-6, 20)
-    with pytest.raises(
-        RuntimeError, match=r"STEP_TOO_LARGE on wall 0: got 3, the limit is 2\.3\de-07"
-    ):
+    with pytest.raises(RuntimeError, match=r"STEP_TOO_LARGE on wall 0: got 3, the limit is 2\.3\de-07"):
         walls.collisions()
 
 
@@ -78,9 +76,23 @@ def strike_in_dent(scene, contacts, friction, mass, radius, dt, steps):
         x += dt * v
         force[:] = torque[:] = 0.0
         clock = Clock(step * dt, dt, dt, True)
-        interact(scene, clock, Bead(0, 0, (x[0], x[1], x[2]), (v[0], v[1], v[2]),
-                                    (omega[0], omega[1], omega[2]), radius, mass, force, torque,
-                                    contacts, friction))  # fmt: skip
+        interact(
+            scene,
+            clock,
+            Bead(
+                0,
+                0,
+                (x[0], x[1], x[2]),
+                (v[0], v[1], v[2]),
+                (omega[0], omega[1], omega[2]),
+                radius,
+                mass,
+                force,
+                torque,
+                contacts,
+                friction,
+            ),
+        )
         v += dt / mass * force
         omega += dt / (0.4 * mass * radius**2) * torque
         if depth == 0.0 and v[2] > 0.0 and contacts[0].force == 0.0:
@@ -110,9 +122,23 @@ def test_a_bead_that_was_put_down_at_next_to_no_speed(example, speed):
     (contacts,), (friction,) = walls.memory(1)
     mass = 4 / 3 * math.pi * r**3 * example.PAIR.sphere.density
     force = np.zeros(3)
-    interact(walls.scene, Clock(0.0, 1e-8, 1e-8, True),
-             Bead(0, 0, (0.0, 0.0, r - 1e-8), (1e-3, 0.0, -speed), (0.0, 0.0, 0.0), r, mass,
-                  force, np.zeros(3), contacts, friction))  # fmt: skip
+    interact(
+        walls.scene,
+        Clock(0.0, 1e-8, 1e-8, True),
+        Bead(
+            0,
+            0,
+            (0.0, 0.0, r - 1e-8),
+            (1e-3, 0.0, -speed),
+            (0.0, 0.0, 0.0),
+            r,
+            mass,
+            force,
+            np.zeros(3),
+            contacts,
+            friction,
+        ),
+    )
     assert force[2] > 0.0
     assert -0.3 * force[2] * (1 + 1e-12) <= force[0] < 0.0
 

@@ -182,9 +182,17 @@ def hold_the_lock(place, path):
         (lose_home, "home", None),
         (functools.partial(lose_home, CONTACTLAW_CACHE_DIR="~nouser/x"), "home", None),
     ],
-    ids=["folder for file", "file for folder", "damaged and full", "full", "no rights",
-         "held for ever", "no home", "no user"],
-)  # fmt: skip
+    ids=[
+        "folder for file",
+        "file for folder",
+        "damaged and full",
+        "full",
+        "no rights",
+        "held for ever",
+        "no home",
+        "no user",
+    ],
+)
 def test_what_cannot_be_kept_is_said_once(place, path, expected, change, word, left):
     """Also where two things are wrong: the warning names the one that matters."""
 

@@ -108,14 +108,8 @@ HUGE = {"shape": (10**13,), "chunks": (1024,), "dtype": "f8"}
         (lambda f: f["axes/log_overload"].attrs.modify("stretch", 9.0), "axes are not those"),
         (put("fields/wave_rate", -0.5), "wave_rate holds -0.5"),
         (put("shapes/states", -1.0, 0, 0, 0, 5), "times that do not grow"),
-        (
-            store_anew("fields/restitution", **HUGE),
-            r"shape \(10000000000000,\), not float64 of shape",
-        ),
-        (
-            store_anew("law/loading_kinks", **HUGE),
-            "law/loading_kinks has 80000000000000 bytes, above",
-        ),
+        (store_anew("fields/restitution", **HUGE), r"shape \(10000000000000,\), not float64 of shape"),
+        (store_anew("law/loading_kinks", **HUGE), "law/loading_kinks has 80000000000000 bytes, above"),
         (store_anew("fields/restitution", dtype="c16"), "holds complex128 .* not float64"),
         (store_anew("shapes/states", dtype="f8"), "holds float64 .* not float32"),
         (put_group, "'Group' object has no attribute"),

@@ -41,13 +41,12 @@ def built_for(law):
 EVERY_LAW = pytest.mark.parametrize(
     "law",
     [
-        law if law.family in ("stronge", "jackson_green")
-        else pytest.param(law, marks=pytest.mark.long)
+        law if law.family in ("stronge", "jackson_green") else pytest.param(law, marks=pytest.mark.long)
         for law in ALL_LAWS
         if law.yields
     ],
     ids=lambda law: law.name,
-)  # fmt: skip
+)
 
 
 @EVERY_LAW

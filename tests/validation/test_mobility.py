@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 
 from contactlaw.equation import corrections
-from validation.derivations.mobility import (
-    MEAN,
-    SQUARE,
-    elastic,
-    energy,
-    half_space,
-    kirchhoff,
-    panels,
-    ratio,
-)
+from validation.derivations.mobility import MEAN, SQUARE, elastic, energy, half_space, kirchhoff, panels, ratio
 
 POISSON = [0.0, 0.2, 0.3, 0.35, 0.45]
 
@@ -102,8 +93,5 @@ def test_lambda_falls_with_the_thickness(poisson: float, far: float) -> None:
     one = corrections.plate_corrections(poisson)
     h = np.geomspace(0.02, 30.0, 1000)
     thin = far / one.bulk_factor / h**2
-    lam = [
-        corrections.with_corrections(one, t, each, t * each**2, 0.0)
-        for t, each in zip(thin, h, strict=True)
-    ]
+    lam = [corrections.with_corrections(one, t, each, t * each**2, 0.0) for t, each in zip(thin, h, strict=True)]
     assert (np.diff(lam) <= 1e-12 * np.array(lam[1:])).all()

@@ -124,8 +124,9 @@ def test_a_verdict_can_be_another():
 
 
 def test_a_note_quotes_the_numbers_of_its_row():
-    row = Row("", "", "", None, within(1.0), lambda: {"ours": 1, "printed": 1.1, "off": 0.1},
-              "{off:.0%} off; 5 % is allowed")  # fmt: skip
+    row = Row(
+        "", "", "", None, within(1.0), lambda: {"ours": 1, "printed": 1.1, "off": 0.1}, "{off:.0%} off; 5 % is allowed"
+    )
     assert (judge(row).printed, judge(row).note) == (1.1, "10 % off; 5 % is allowed")
 
 
@@ -146,11 +147,7 @@ def test_the_parts_of_the_report_come_in_order(drawn):
     parts = re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL)
     assert [name for name, _ in parts] == ["practice", "finite-elements", "paper", "derivations"]
     for name, part in parts[:3]:
-        expected = [
-            one
-            for one, drawing in figures.drawings().items()
-            if drawing.part == name.replace("-", " ")
-        ]
+        expected = [one for one, drawing in figures.drawings().items() if drawing.part == name.replace("-", " ")]
         assert re.findall(r"<figure id='(\w*)'", part) == expected
         words = re.findall(r"<img [^>]*alt='([^']*)'", part)
         assert len(words) == len(expected) and all(len(alt) > 40 for alt in words)

@@ -64,11 +64,7 @@ TARGETS = {
         speed_ratio=7.0,
     ),
     "kept out": Target(
-        "everyday impacts that no fit has seen",
-        ("kept_out",),
-        Errors(0.02, 0.03, 0.04, 0.03),
-        rms=0.008,
-        least=0.3,
+        "everyday impacts that no fit has seen", ("kept_out",), Errors(0.02, 0.03, 0.04, 0.03), rms=0.008, least=0.3
     ),
     "metals": Target(
         "metals with published hardening and rate, that no fit has seen",
@@ -212,8 +208,7 @@ def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
     return tuple(
         one
         for one in found
-        if one.slenderness <= target.slenderness * (1.0 + 1e-9)
-        and one.speed_ratio <= target.speed_ratio * (1.0 + 1e-9)
+        if one.slenderness <= target.slenderness * (1.0 + 1e-9) and one.speed_ratio <= target.speed_ratio * (1.0 + 1e-9)
     )
 
 
@@ -251,9 +246,7 @@ def _of_study(study: str, law: str, least: float) -> tuple[Member, ...]:
     return tuple(found[n] for n in sorted(found))
 
 
-def _member(
-    study: str, pair: cl.Pair, fem: dict[str, float], hit: Rebound, k: int, least: float
-) -> Member:
+def _member(study: str, pair: cl.Pair, fem: dict[str, float], hit: Rebound, k: int, least: float) -> Member:
     model = {
         name: float(np.asarray(getattr(hit, name))[k])
         for name in ("restitution", "contact_time", "peak_force", "plastic_fraction")
@@ -367,9 +360,7 @@ def _row(row: Row) -> list[str]:
         f"  {len(row.members)} impacts, {len(row.members) - len(row.counted)} with a flag of "
         f"accuracy; beyond a bound {len(row.beyond)}, of them without a flag {len(row.silent)}",
     ]
-    for name, bound, share, largest in zip(
-        Errors._fields, target.bounds, row.shares, row.largest, strict=True
-    ):
+    for name, bound, share, largest in zip(Errors._fields, target.bounds, row.shares, row.largest, strict=True):
         lines.append(
             f"    {name.replace('_', ' '):14s} within {100 * bound:g} %: {100 * share:5.1f} % "
             f"(at least {100 * target.enough:g}); largest without a flag {100 * largest:+.2f} %"

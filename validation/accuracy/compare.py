@@ -70,8 +70,7 @@ def by_law() -> dict[str, Array]:
     at_yield = setting.ETA * case.slenderness**2
     impacts = list(zip(case.speed_ratio, at_yield, strict=True))
     return {
-        name: np.array([setting.restitution(*one, law) for one in impacts])
-        for name, law in setting.all_laws().items()
+        name: np.array([setting.restitution(*one, law) for one in impacts]) for name, law in setting.all_laws().items()
     }
 
 
@@ -91,9 +90,7 @@ def by_fem(name: str) -> Array:
     return cor
 
 
-def _solved(
-    fem: dict[str, Array], law: str
-) -> Iterator[tuple[cl.Pair, NDArray[np.bool_], cl.Rebound]]:
+def _solved(fem: dict[str, Array], law: str) -> Iterator[tuple[cl.Pair, NDArray[np.bool_], cl.Rebound]]:
     """Integrate the impacts of a study by a law: each pair, its rows in the study, rebounds."""
     for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
         rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
@@ -130,17 +127,14 @@ def by_strain(speed_ratio: float) -> list[Yielded]:
             pair = elastic_plate(case.fem["sphere"][n], case.fem["plate"][n])
             ratio = pair.sphere.youngs_modulus / pair.sphere.require_yield_strength("by_strain")
             cor = {
-                name: setting.restitution(speed_ratio, setting.ETA, law)
-                for name, law in setting.all_laws(pair).items()
+                name: setting.restitution(speed_ratio, setting.ETA, law) for name, law in setting.all_laws(pair).items()
             }
             cor["fem"] = float(by_fem(study)[n])
             found.append(Yielded(ratio, pair.plate.name, float(case.fem["restitution"][n]), cor))
     return sorted(found, key=lambda one: one.ratio)
 
 
-def deviation(
-    cor: Array, case: Comparison, where: NDArray[np.bool_] | slice = slice(None)
-) -> Array:
+def deviation(cor: Array, case: Comparison, where: NDArray[np.bool_] | slice = slice(None)) -> Array:
     """Largest and rms error of predicted COR, relative to the finite elements [-]."""
     off = (cor / case.fem["restitution"] - 1.0)[where]
     return np.array([np.abs(off).max(), np.sqrt(np.mean(off**2))])

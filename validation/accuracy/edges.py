@@ -44,9 +44,13 @@ OVERLOADS = {"hertz": (0.0,), "myc": (10.0, 100.0), "fem": (1.0, 10.0, 100.0)}
 SPANS = 8.0, 32.0  # times for which the plate is followed [T_H]: the second for long contacts
 # Gamma-alumina on glass, where only the sphere yields, in the numbers that the law "fem" takes.
 FEM = {
-    "modulus_ratio": 23.2, "poissons_ratio": 0.21, "sphere_ratio": 23.2, "plate_ratio": 0.0,
-    "modulus_share": 0.1435, "plate_poissons_ratio": 0.21,
-}  # fmt: skip
+    "modulus_ratio": 23.2,
+    "poissons_ratio": 0.21,
+    "sphere_ratio": 23.2,
+    "plate_ratio": 0.0,
+    "modulus_share": 0.1435,
+    "plate_poissons_ratio": 0.21,
+}
 _TRUSTED = 0.75  # share of that time in which no wave has come back from the far boundary
 _HELD = {"free": 0, "supported": 1, "clamped": 2}  # of deflection and slope at the edge
 
@@ -153,16 +157,9 @@ def _beams(nodes: Array, nu: float, held: int) -> tuple[Array, Array, Array]:
     t, weight = 0.5 * (at + 1.0), 0.5 * weight
     bending, mixed, slopes, mass = np.zeros((4, 2 * nodes.size, 2 * nodes.size))
     for n, h in enumerate(np.diff(nodes)):
-        shape = np.array([
-            1 - 3 * t**2 + 2 * t**3, h * (t - 2 * t**2 + t**3),
-            3 * t**2 - 2 * t**3, h * (t**3 - t**2),
-        ])  # fmt: skip
-        slope = np.array([
-            6 * (t**2 - t) / h, 1 - 4 * t + 3 * t**2, 6 * (t - t**2) / h, 3 * t**2 - 2 * t,
-        ])  # fmt: skip
-        bend = np.array([
-            (12 * t - 6) / h**2, (6 * t - 4) / h, (6 - 12 * t) / h**2, (6 * t - 2) / h,
-        ])  # fmt: skip
+        shape = np.array([1 - 3 * t**2 + 2 * t**3, h * (t - 2 * t**2 + t**3), 3 * t**2 - 2 * t**3, h * (t**3 - t**2)])
+        slope = np.array([6 * (t**2 - t) / h, 1 - 4 * t + 3 * t**2, 6 * (t - t**2) / h, 3 * t**2 - 2 * t])
+        bend = np.array([(12 * t - 6) / h**2, (6 * t - 4) / h, (6 - 12 * t) / h**2, (6 * t - 2) / h])
         here, dy = slice(2 * n, 2 * n + 4), weight * h
         bending[here, here] += (bend * dy) @ bend.T
         mixed[here, here] += (bend * dy) @ shape.T + (shape * dy) @ bend.T
@@ -225,9 +222,7 @@ class Law:
         self.largest, over = w, w / self.y
         if self._fem:
             law, curve, left = self._fem, self._fem.unloading_curve(over), self._fem.residual(over)
-            self._unload = lambda w: (
-                self.y**1.5 * law.unloading(math.sqrt(max(w / self.y - left, 0.0)), curve)
-            )
+            self._unload = lambda w: self.y**1.5 * law.unloading(math.sqrt(max(w / self.y - left, 0.0)), curve)
         else:  # Eqs. 17 and 18
             left = over - math.sqrt(2.0 * over - 1.0) if self._myc and over > 1.0 else 0.0
             top, rest = self.loading(w), left * self.y if left else 0.0
@@ -336,10 +331,7 @@ def on_large_plate(law: str, inelasticity: float, yield_compression: float, span
 
 def rows() -> Iterator[dict[str, Any]]:
     """Compute all cases; `error` is the change of the restitution from `COARSE` to `FINE`."""
-    scales = [
-        (lam, on_large_plate("hertz", lam, math.inf, 8.0).peak_compression)
-        for lam in INELASTICITIES
-    ]
+    scales = [(lam, on_large_plate("hertz", lam, math.inf, 8.0).peak_compression) for lam in INELASTICITIES]
     for (edge, nu), distance in ((edge, distance) for edge in EDGES for distance in DISTANCES):
         for lam, scale in scales:
             for law, overload in ((name, chi) for name in OVERLOADS for chi in OVERLOADS[name]):
@@ -348,14 +340,18 @@ def rows() -> Iterator[dict[str, Any]]:
                 coarse, fine = (cor_near_edge(*case, each) for each in (COARSE, FINE))
                 error = abs(fine.restitution - coarse.restitution)
                 yield {
-                    "edge": edge, "poissons_ratio": nu, "distance": distance,
-                    "inelasticity": lam, "law": law, "yield_compression": y,
+                    "edge": edge,
+                    "poissons_ratio": nu,
+                    "distance": distance,
+                    "inelasticity": lam,
+                    "law": law,
+                    "yield_compression": y,
                     **{
                         name: int(value) if name == "struck_again" else f"{value:.5f}"
                         for name, value in fine._asdict().items()
                     },
                     "error": f"{error:.1e}",
-                }  # fmt: skip
+                }
 
 
 def main() -> int:

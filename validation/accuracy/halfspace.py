@@ -86,12 +86,11 @@ def _bodies(yielding: str, ratio: float) -> cl.Pair:
     return cl.Pair(
         *(
             cl.Material(
-                name, modulus, nu, 7850.0,
-                yield_strength=effective / ratio if yielding in (name, "both") else None,
+                name, modulus, nu, 7850.0, yield_strength=effective / ratio if yielding in (name, "both") else None
             )
             for name in ("sphere", "plate")
         )
-    )  # fmt: skip
+    )
 
 
 def _fallen(pair: cl.Pair, speed: Array) -> Rebound:

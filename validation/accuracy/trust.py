@@ -156,9 +156,7 @@ def misses() -> list[Miss]:
     for one in row.beyond:
         numbers = zip(Errors._fields, one.errors, row.target.bounds, strict=True)
         beyond = {
-            _WORDS.get(name, name.replace("_", " ")): error
-            for name, error, bound in numbers
-            if abs(error) > bound
+            _WORDS.get(name, name.replace("_", " ")): error for name, error, bound in numbers if abs(error) > bound
         }
         thickness = 1e3 * census.RADIUS / one.slenderness  # [mm]
         what = f"{one.sphere} on {thickness:.2g} mm of {one.plate} at {one.speed:.2g} m/s"

@@ -10,10 +10,7 @@ from tqdm import tqdm
 
 from contactlaw.parser import Parser
 
-SUBJECTS = (
-    "lookups", "solver", "fits", "processes", "rain", "c_header", "lammps", "meshes", "liggghts",
-    "census",
-)  # fmt: skip
+SUBJECTS = ("lookups", "solver", "fits", "processes", "rain", "c_header", "lammps", "meshes", "liggghts", "census")
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -96,9 +96,14 @@ def _lookups(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
     inside = ~np.isnan(theirs)
     assert np.abs(ours - theirs)[inside].max() < 1e-5
     return Row(
-        f"C header, {model.force_law.family}: lookup", in_c / N * 1e9, "ns",
-        peer="model.kernel", ratio=in_numba / in_c, least_ratio=1.0, note="gcc -O3, one by one",
-    )  # fmt: skip
+        f"C header, {model.force_law.family}: lookup",
+        in_c / N * 1e9,
+        "ns",
+        peer="model.kernel",
+        ratio=in_numba / in_c,
+        least_ratio=1.0,
+        note="gcc -O3, one by one",
+    )
 
 
 @kernel(entry=True)
@@ -119,13 +124,23 @@ def _steps(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
     spring = resized(unit_spring(model, thickness), radius)
     ours, theirs, walks = np.empty(WALK), np.empty(WALK), N // WALK
     law, double = model.force_law.data, ctypes.c_double
-    arguments = (ctypes.c_int(WALK), _pointer(x), ctypes.c_int(walks), double(radius),
-                 double(thickness), double(dt), _pointer(ours))  # fmt: skip
-    in_c, in_numba = _in_turns(
-        lambda: library.steps(*arguments), lambda: _walk(law, spring, x, walks, dt, theirs)
+    arguments = (
+        ctypes.c_int(WALK),
+        _pointer(x),
+        ctypes.c_int(walks),
+        double(radius),
+        double(thickness),
+        double(dt),
+        _pointer(ours),
     )
+    in_c, in_numba = _in_turns(lambda: library.steps(*arguments), lambda: _walk(law, spring, x, walks, dt, theirs))
     assert np.abs(ours - theirs).max() < 1e-10 * theirs.max()
     return Row(
-        f"C header, {model.force_law.family}: step", in_c / N * 1e9, "ns",
-        peer="softsphere.advance", ratio=in_numba / in_c, least_ratio=1.0, note="gcc -O3",
-    )  # fmt: skip
+        f"C header, {model.force_law.family}: step",
+        in_c / N * 1e9,
+        "ns",
+        peer="softsphere.advance",
+        ratio=in_numba / in_c,
+        least_ratio=1.0,
+        note="gcc -O3",
+    )

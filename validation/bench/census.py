@@ -77,9 +77,7 @@ def count(law: str, each: int = _EACH, tables: bool = True) -> Census:
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         drawn = zip(census.pairs(), *draw(each), strict=True)
-        for (sphere, plate), speed, thickness in tqdm(
-            drawn, law, len(census.pairs()), disable=None, leave=False
-        ):
+        for (sphere, plate), speed, thickness in tqdm(drawn, law, len(census.pairs()), disable=None, leave=False):
             pair = cl.Pair(sphere, plate)
             try:
                 answer = _looked_up if tables else _integrated
@@ -137,9 +135,12 @@ def rows() -> Iterator[Row]:
         none = 0.0 if made else None
         flags = ", ".join(f"{flag.name} {100 * share:.2g}" for flag, share in found.flags.items())
         yield Row(
-            f"{name}: everyday impacts refused", 100 * found.refused, "%", none,
+            f"{name}: everyday impacts refused",
+            100 * found.refused,
+            "%",
+            none,
             note=f"of {found.impacts}; {found.warned} tables too coarse; {taken:.0f} s",
-        )  # fmt: skip
+        )
         yield Row(f"{name}: outside the table", 100 * found.outside, "%", none)
         most = _MOST_FLAGGED if made else None
         yield Row(f"{name}: flagged on accuracy", 100 * found.inaccurate, "%", most, note=flags)

@@ -26,12 +26,14 @@ _QUESTIONS = (  # pair, law, unknowns, target [s]
     (STEEL, "fem", ("plate_yield_strength",), 0.3),
     (STEEL, "fem", ("plate_yield_strength", "thickness"), 0.3),
     (STEEL, "fem", ("plate_yield_strength", "youngs_modulus", "thickness"), 0.3),
-    (cl.Pair("copper-ofhc-annealed", "aluminium-6061-t6"), "fem",
-     ("yield_strength", "plate_yield_strength"), 3.0),
-    *((cl.Pair("gamma-alumina", "glass"), law, unknown, 0.3)
-      for law in laws.names() if law != "fem"
-      for unknown in (_ONE, ("yield_strength",), _TWO)[: 1 if law == "hertz" else None]),
-)  # fmt: skip
+    (cl.Pair("copper-ofhc-annealed", "aluminium-6061-t6"), "fem", ("yield_strength", "plate_yield_strength"), 3.0),
+    *(
+        (cl.Pair("gamma-alumina", "glass"), law, unknown, 0.3)
+        for law in laws.names()
+        if law != "fem"
+        for unknown in (_ONE, ("yield_strength",), _TWO)[: 1 if law == "hertz" else None]
+    ),
+)
 
 
 def rows() -> Iterator[Row]:

@@ -28,10 +28,7 @@ RADIUS, THICKNESS = 0.9e-3, 1e-3  # [m]
 LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the beads at the start
 OVERLAP = 1e-7  # [m] of the lowest layer and the wall
 STEPS, ROUNDS = 50, 15
-OWN_WALL = (
-    "granular hertz/material {modulus} 0.9 0.21 "
-    "tangential linear_nohistory 0 0 damping coeff_restitution"
-)
+OWN_WALL = "granular hertz/material {modulus} 0.9 0.21 tangential linear_nohistory 0 0 damping coeff_restitution"
 
 
 def rows() -> Iterator[Row]:
@@ -40,17 +37,31 @@ def rows() -> Iterator[Row]:
     two, weak = (on_ranks(__name__, 2, beads) for beads in (BEADS, 2 * BEADS))
     for ranks, found in ((1, one), (2, two)):
         yield Row(
-            f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks", found["plate"], "us", None,
-            "fix wall/gran", found["wall"] / found["plate"], 1.0,
+            f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks",
+            found["plate"],
+            "us",
+            None,
+            "fix wall/gran",
+            found["wall"] / found["plate"],
+            1.0,
             f"without a wall {found['none']:.0f} us; {found['impacts']:.0f} impacts",
-        )  # fmt: skip
+        )
     yield Row(
-        f"LAMMPS step, friction, {BEADS:.0e} beads", one["sliding"], "us", None,
-        "without friction", one["frictionless"] / one["sliding"], 1 / 1.3,
+        f"LAMMPS step, friction, {BEADS:.0e} beads",
+        one["sliding"],
+        "us",
+        None,
+        "without friction",
+        one["frictionless"] / one["sliding"],
+        1 / 1.3,
         f"{one['touching']:.0f} slide on the plate",
-    )  # fmt: skip
-    yield Row("weak scaling, 2 ranks over 1", weak["plate"] / one["plate"], "x",
-              note=f"without a wall {weak['none'] / one['none']:.3g}x")  # fmt: skip
+    )
+    yield Row(
+        "weak scaling, 2 ranks over 1",
+        weak["plate"] / one["plate"],
+        "x",
+        note=f"without a wall {weak['none'] / one['none']:.3g}x",
+    )
 
 
 @functools.cache
@@ -79,9 +90,7 @@ def box(width: float, low: float, high: float, places: np.ndarray) -> lammps:
         """
     )
     count = len(places)
-    lmp.create_atoms(
-        count, np.arange(1, count + 1), [1] * count, places.ravel(), np.zeros(3 * count)
-    )
+    lmp.create_atoms(count, np.arange(1, count + 1), [1] * count, places.ravel(), np.zeros(3 * count))
     lmp.command(f"set group all diameter {2 * RADIUS} density 879")
     return lmp
 
@@ -166,16 +175,13 @@ def main(beads: int) -> dict[str, float]:
     plate = [floor(width(beads))]
     simulations = {name: falling(beads) for name in ("none", "wall", "plate")}
     modulus = paper().pair.sphere.youngs_modulus
-    simulations["wall"].command(
-        f"fix wall all wall/gran {OWN_WALL.format(modulus=modulus)} zplane 0 NULL"
-    )
+    simulations["wall"].command(f"fix wall all wall/gran {OWN_WALL.format(modulus=modulus)} zplane 0 NULL")
     walls = attach(simulations["plate"], paper(), plate)
     found = times(simulations, 1000)  # so that some beads are in contact
     impacts = walls.gather()
     found["impacts"] = 0 if impacts is None else len(impacts)
     slides = {name: pressed(beads) for name in ("frictionless", "sliding")}
-    held = [attach(lmp, paper(), plate, friction=mu)
-            for lmp, mu in zip(slides.values(), (0.0, 0.2), strict=True)]  # fmt: skip
+    held = [attach(lmp, paper(), plate, friction=mu) for lmp, mu in zip(slides.values(), (0.0, 0.2), strict=True)]
     found |= times(slides, 10)
     assert not any(len(one.collisions()) for one in held)
     return found | {"touching": touching(slides["sliding"])}

@@ -80,27 +80,39 @@ def rows() -> Iterator[Row]:
             for friction, least in (("history", 0.75), ("springs", 0.6)):
                 own = min(times[friction])
                 yield Row(
-                    f"LIGGGHTS step, {friction}, {BEADS:.0e} beads, {ranks} ranks", own, "us",
-                    peer="wall/gran hertz", least_ratio=least,
+                    f"LIGGGHTS step, {friction}, {BEADS:.0e} beads, {ranks} ranks",
+                    own,
+                    "us",
+                    peer="wall/gran hertz",
+                    least_ratio=least,
                     ratio=built_in / own,
                     note=f"{built_in:.0f} us; without a wall {none:.0f} us",
-                )  # fmt: skip
+                )
 
 
 def _measure(folder: Path, wall: str, ranks: int) -> float:
     """Least microseconds per step of one simulation, by LIGGGHTS's own clock."""
     width = math.ceil(math.sqrt(BEADS)) * PITCH
     script = SCRIPT.format(
-        width=width, pitch=PITCH, height=HEIGHT / PITCH, speed=SPEED,
-        diameter=2.0 * RADIUS, thickness=THICKNESS, wall=WALLS[wall],
-    )  # fmt: skip
+        width=width,
+        pitch=PITCH,
+        height=HEIGHT / PITCH,
+        speed=SPEED,
+        diameter=2.0 * RADIUS,
+        thickness=THICKNESS,
+        wall=WALLS[wall],
+    )
     (folder / "in.bench").write_text(script + f"run {STEPS} pre no\n" * PARTS)
     load = f"LD_PRELOAD={folder / 'wall_contactlaw.so'}"
     command = ["mpirun.openmpi", "--oversubscribe", "-np", str(ranks), "-x", load, "liggghts"]
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     done = subprocess.run(
         [*command, "-in", "in.bench", "-log", "none"],
-        cwd=folder, env=os.environ | root, capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        cwd=folder,
+        env=os.environ | root,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     seconds = [float(time) for time in re.findall(r"Loop time of ([0-9.e+-]+)", done.stdout)]
     return min(seconds[-PARTS:]) / STEPS * 1e6

@@ -35,9 +35,15 @@ def rows() -> Iterator[Row]:
     batch = seconds(lambda: model.restitution(v, r, h)) / N
     spline = by_scipy(model, v, r, h)
     yield Row(
-        "batch, SI in, COR out", batch * 1e9, "ns", 20, "RectBivariateSpline.ev", spline / batch,
-        8, "which is given table coordinates: it converts no SI units",
-    )  # fmt: skip
+        "batch, SI in, COR out",
+        batch * 1e9,
+        "ns",
+        20,
+        "RectBivariateSpline.ev",
+        spline / batch,
+        8,
+        "which is given table coordinates: it converts no SI units",
+    )
     thick = np.maximum(h, r / 1.5)  # inelasticities in the tables
     rated, metal, lossy, polymer = (
         of(body, r, thick)
@@ -49,14 +55,23 @@ def rows() -> Iterator[Row]:
     scalar = per_call(lambda: model.restitution(5.0, 0.9e-3, 1e-3))
     full = seconds(lambda: model.lookup(v, r, h)) / N
     for name, took in {
-        "myc": batch, "all fields, myc": full, "fem": metal, "fem, a rate": rated,
+        "myc": batch,
+        "all fields, myc": full,
+        "fem": metal,
+        "fem, a rate": rated,
         "scalar, myc": scalar,
-    }.items():  # fmt: skip
+    }.items():
         before = RELEASED["ratios"][name]
         yield Row(
-            f"as released: {name}", took * 1e9, "ns", None, "scipy", spline / took,
-            _WORST * before, f"{before:.3g}x in {RELEASED['version']}",
-        )  # fmt: skip
+            f"as released: {name}",
+            took * 1e9,
+            "ns",
+            None,
+            "scipy",
+            spline / took,
+            _WORST * before,
+            f"{before:.3g}x in {RELEASED['version']}",
+        )
     yield Row("batch, all fields of Rebound", full * 1e9, "ns", 60)
     yield Row("scalar, from Python", scalar * 1e6, "us", 2)
     curve = model.curve(0.9e-3, 1e-3)

@@ -38,23 +38,35 @@ def rows() -> Iterator[Row]:
     for cells in CELLS:
         triangles = 2 * cells * cells
         yield Row(
-            f"LAMMPS mesh, {triangles:.0e} triangles", flat[str(cells)] / flat["plate"], "x",
+            f"LAMMPS mesh, {triangles:.0e} triangles",
+            flat[str(cells)] / flat["plate"],
+            "x",
             1.5 if triangles < 2e4 else None,
             note=f"{flat[str(cells)]:.0f} us a step of {BEADS:.0e} beads; one plate "
             f"{flat['plate']:.0f}, no wall {flat['none']:.0f}; {flat['touching']:.0f} touch",
-        )  # fmt: skip
+        )
     for name in ("72 facets", "5000 facets", "72 facets that turn"):
-        yield Row(f"LAMMPS drum, {name}", drum[name], "us", None, "wall/gran/region",
-                  drum["own"] / drum[name], note=f"no wall {drum['none']:.0f} us")  # fmt: skip
+        yield Row(
+            f"LAMMPS drum, {name}",
+            drum[name],
+            "us",
+            None,
+            "wall/gran/region",
+            drum["own"] / drum[name],
+            note=f"no wall {drum['none']:.0f} us",
+        )
     for count in PLATES:
-        yield Row(f"{FEW} beads, {count} plates", plates[str(count)], "us",
-                  note=f"no wall {plates['none']:.0f} us")  # fmt: skip
+        yield Row(f"{FEW} beads, {count} plates", plates[str(count)], "us", note=f"no wall {plates['none']:.0f} us")
     near, none = plates["all near edges"], plates["none"]
     yield Row("walls near edges, over endless ones", (near - none) / (plates["8"] - none), "x", 3.0)
     mesh = str(CELLS[2])
     for name, more in (("strong", two), ("weak", weak)):
-        yield Row(f"{name} scaling, mesh, 2 ranks over 1", more[mesh] / flat[mesh], "x",
-                  note=f"no wall {more['none'] / flat['none']:.3g}x")  # fmt: skip
+        yield Row(
+            f"{name} scaling, mesh, 2 ranks over 1",
+            more[mesh] / flat[mesh],
+            "x",
+            note=f"no wall {more['none'] / flat['none']:.3g}x",
+        )
 
 
 def figure(found: dict[str, Any]) -> None:
@@ -62,12 +74,15 @@ def figure(found: dict[str, Any]) -> None:
     flat, clouds = found["flat"], found["clouds"]
     with style.applied():
         drawing = style.figure(
-            10.0, 5.0, "A step hardly depends on the number of triangles",
+            10.0,
+            5.0,
+            "A step hardly depends on the number of triangles",
             "LAMMPS, beads above a square wall, a tenth of them on it; one rank; beads do not meet",
-        )  # fmt: skip
+        )
         left, right = drawing.subplots(1, 2)
-        left.semilogx([2 * n * n for n in CELLS], [flat[str(n)] / 1e3 for n in CELLS], "o-",
-                      color=style.BLUE, label="mesh")  # fmt: skip
+        left.semilogx(
+            [2 * n * n for n in CELLS], [flat[str(n)] / 1e3 for n in CELLS], "o-", color=style.BLUE, label="mesh"
+        )
         left.axhline(flat["plate"] / 1e3, color=style.VERMILION, ls="--", label="one plate")
         left.axhline(flat["none"] / 1e3, color=style.MUTED, ls=":", label="no wall")
         left.set(xlabel="triangles", ylabel="time per step [ms]", ylim=(0, None))
@@ -77,8 +92,7 @@ def figure(found: dict[str, Any]) -> None:
             ("plate", "one plate", "s--", style.VERMILION),
             ("none", "no wall", "^:", style.MUTED),
         ):
-            right.loglog(CLOUDS, [clouds[str(n)][name] / 1e3 for n in CLOUDS], mark,
-                         color=colour, label=label)  # fmt: skip
+            right.loglog(CLOUDS, [clouds[str(n)][name] / 1e3 for n in CLOUDS], mark, color=colour, label=label)
         right.set(xlabel="beads", ylabel="time per step [ms]")
         right.set_title("1 000 to 100 000 beads")
         for axes in (left, right):
@@ -151,8 +165,11 @@ def tiles(count: int, **edges: Any) -> list[Plate]:
     """Plates that lie beside each other below some beads."""
     along = 2 ** math.ceil(math.log2(math.sqrt(count)))
     a, b = plane.width(FEW) / along, plane.width(FEW) / (count // along)
-    return [Plate((i * a, j * b, 0), (a, 0, 0), (0, b, 0), THICKNESS, **edges)
-            for i in range(along) for j in range(count // along)]  # fmt: skip
+    return [
+        Plate((i * a, j * b, 0), (a, 0, 0), (0, b, 0), THICKNESS, **edges)
+        for i in range(along)
+        for j in range(count // along)
+    ]
 
 
 def main(beads: int, flat_only: bool) -> dict[str, Any]:

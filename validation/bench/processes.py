@@ -89,10 +89,7 @@ FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 -
 ROOT = Path(__file__).parent.parent.parent
 LAMMPS = "docs/examples/plates_lammps.py"
 # Without these, byte code is kept on disk as for users, and caches lie in the empty home folder.
-_UNSET = (
-    "PYTHONDONTWRITEBYTECODE", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR",
-    "MPLCONFIGDIR",
-)  # fmt: skip
+_UNSET = ("PYTHONDONTWRITEBYTECODE", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR", "MPLCONFIGDIR")
 
 
 def rows() -> Iterator[Row]:
@@ -126,20 +123,21 @@ def cpu_time(command: Sequence[str], home: Path, folder: Path, **variables: str)
 
 def first_answers(folder: Path) -> Iterator[Row]:
     """Measure first and later processes of common tasks, each task in a home folder of its own."""
-    rebounds = fits.measured(
-        cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), "fem", ("thickness",)
-    )
+    rebounds = fits.measured(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), "fem", ("thickness",))
     np.savetxt(
-        folder / "rebounds.csv", np.column_stack([rebounds["speed"], rebounds["restitution"]]),
-        delimiter=",", header="speed_m/s,COR", comments="",
-    )  # fmt: skip
+        folder / "rebounds.csv",
+        np.column_stack([rebounds["speed"], rebounds["restitution"]]),
+        delimiter=",",
+        header="speed_m/s,COR",
+        comments="",
+    )
     python, module = [sys.executable, "-c"], [sys.executable, "-m", "contactlaw"]
     commands = (
         ("contactlaw cor", [*module, *COR.split()], 8, None),
         ("every method of ImpactModel", [*python, EVERY_METHOD], 16, 1.2),
         ("plates_lammps.py", [sys.executable, str(ROOT / LAMMPS)], 20, None),
         ("contactlaw fit, 50 rows", [*module, *FIT.split(), "--unknown", "thickness"], 10, 1.5),
-    )  # fmt: skip
+    )
     for n, (name, command, first, second) in enumerate(commands):
         home = folder / f"home-{n}"
         home.mkdir()

@@ -64,6 +64,9 @@ def rows() -> Iterator[Row]:
     least = {name: float(taken.min()) for name, taken in in_turns(tasks, 2).items()}
     for peer, target in (("adapter", 1.25), ("plain", None)):
         yield Row(
-            f"rain, {BEADS} beads, over one COR, {peer}", least["model"] / least[peer], "x", target,
+            f"rain, {BEADS} beads, over one COR, {peer}",
+            least["model"] / least[peer],
+            "x",
+            target,
             note=f"{least['model']:.2f} s; with one COR {least[peer]:.2f} s",
-        )  # fmt: skip
+        )

@@ -46,9 +46,7 @@ class Row:
 
 
 def in_turns(
-    tasks: Mapping[str, Callable[[], object]],
-    rounds: int = 7,
-    clock: Callable[[], float] = time.perf_counter,
+    tasks: Mapping[str, Callable[[], object]], rounds: int = 7, clock: Callable[[], float] = time.perf_counter
 ) -> dict[str, NDArray[np.float64]]:
     """Take the times of each task in every round [s], after a first one, which may compile.
 

@@ -37,18 +37,21 @@ def rows() -> Iterator[Row]:
     one = seconds(solve) / N
     peer = seconds(lambda: [by_scipy(a) for a in lam[:50]], 2) / 50
     yield Row(
-        "direct solve at 1e-8, one core", one * 1e6, "us", 5, "solve_ivp(DOP853)", peer / one, 500,
+        "direct solve at 1e-8, one core",
+        one * 1e6,
+        "us",
+        5,
+        "solve_ivp(DOP853)",
+        peer / one,
+        500,
         "lambda 0 to 1, v 0.1 to 4; the peer's impacts are elastic",
-    )  # fmt: skip
+    )
     yield from by_model()
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     hits = rng.uniform(0.5, 30.0, N), rng.uniform(0.3e-3, 1e-3, N), rng.uniform(0.5e-3, 3e-3, N)
     history = seconds(lambda: model.force_history(*hits, SAMPLES)) / N
     peer = seconds(lambda: by_scipy(0.3, np.linspace(0.0, 3.0, SAMPLES)), 5)
-    yield Row(
-        "force history, 256 samples, table", history * 1e6, "us", 10, "solve_ivp(DOP853)",
-        peer / history,
-    )  # fmt: skip
+    yield Row("force history, 256 samples, table", history * 1e6, "us", 10, "solve_ivp(DOP853)", peer / history)
     steel, aluminium = map(cl.material, ("stainless-steel-304", "aluminium-6061-t6"))
     pair = cl.Pair(*(dataclasses.replace(one, uncertainty=_ERRORS) for one in (steel, aluminium)))
     real = cl.ImpactModel(pair)
@@ -90,6 +93,4 @@ def by_scipy(lam: float, samples: np.ndarray | None = None) -> object:
 
     parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
     end = 1000.0 if samples is None else samples[-1]
-    return solve_ivp(
-        rates, [0, end], [0, 1], "DOP853", samples, rtol=RTOL, atol=RTOL, events=parted
-    )
+    return solve_ivp(rates, [0, end], [0, 1], "DOP853", samples, rtol=RTOL, atol=RTOL, events=parted)

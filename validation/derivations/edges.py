@@ -27,9 +27,31 @@ DURATIONS = np.geomspace(0.02, 2e3, 40)  # of the forces of the fit, over tau
 FILE = Path(contactlaw.__file__).parent / "physical/responses.json"
 # Radii of holes, over the distance from their rims; a straight edge has the first.
 RADII = (
-    math.inf, 200.0, 100.0, 60.0, 40.0, 28.0, 20.0, 15.0, 11.0, 8.0, 6.3, 5.0, 3.9, 3.0, 2.5, 2.0,
-    1.6, 1.3, 1.0, 0.8, 0.6, 0.4, 0.25, 0.15,
-)  # fmt: skip
+    math.inf,
+    200.0,
+    100.0,
+    60.0,
+    40.0,
+    28.0,
+    20.0,
+    15.0,
+    11.0,
+    8.0,
+    6.3,
+    5.0,
+    3.9,
+    3.0,
+    2.5,
+    2.0,
+    1.6,
+    1.3,
+    1.0,
+    0.8,
+    0.6,
+    0.4,
+    0.25,
+    0.15,
+)
 _TIMES = np.linspace(0.02, 1.0, 50)  # over the duration
 _FORCE = np.sin(math.pi * _TIMES) ** 2
 RATIOS = 0.0, 0.25, 0.5  # Poisson's ratios of the fit; between them weights are parabolas
@@ -49,10 +71,7 @@ def reflected(p: Complex, kind: str, poisson: float, distance: float = 1.0) -> C
     reach = 20.0 * root + 40.0 / max(distance, 1e-9) if distance else 1e4 * root
     inner = root * (1.0 - x**2), 2.0 * root * x
     outer = root + reach * x**3, 3.0 * reach * x**2
-    total = sum(
-        (_along(xi, p, kind, poisson, distance) * slope * weight).sum(axis=1)
-        for xi, slope in (inner, outer)
-    )
+    total = sum((_along(xi, p, kind, poisson, distance) * slope * weight).sum(axis=1) for xi, slope in (inner, outer))
     return np.asarray(8.0 / math.pi * p[:, 0] * total)
 
 
@@ -97,9 +116,7 @@ def around_hole(p: Complex, poisson: float, radius: float) -> Complex:
         outgoing = kve(0, source) / kve(0, at) * np.exp(at - source)
         came = ive(0, at) * kve(0, source) * np.exp(abs(at.real) - source)
         ratios = kve(1, at) / kve(0, at), kve(1, source) / kve(0, source)
-        parts.append(
-            [root, at, source, inner, outgoing, came * -sign / (4j * math.pi * p), *ratios]
-        )
+        parts.append([root, at, source, inner, outgoing, came * -sign / (4j * math.pi * p), *ratios])
     total = np.zeros(p.size, complex)
     for n in range(orders + 1):
         rows = []
@@ -116,9 +133,7 @@ def around_hole(p: Complex, poisson: float, radius: float) -> Complex:
         for part in parts:
             _, at, source, inner, outgoing, came, ratio, other = part
             part[4], part[5] = outgoing * other / ratio, came * inner[n] * other
-            part[6], part[7] = (
-                1.0 / r + 2.0 * (n + 1) / x for r, x in ((ratio, at), (other, source))
-            )
+            part[6], part[7] = (1.0 / r + 2.0 * (n + 1) / x for r, x in ((ratio, at), (other, source)))
     return np.asarray(8.0 * p * total)
 
 

@@ -57,10 +57,7 @@ def elastic(k: Complex, omega: complex, poisson: float, thickness: float) -> tup
     rayleigh = y * cubic / (4.0 * x * a * b + square)
     ta, tb = np.tanh(a * thickness / 2.0), np.tanh(b * thickness / 2.0)
     gap = np.tanh((r - 1.0) * y / (a + b) * thickness / 2.0) * (1.0 - ta * tb)  # tb - ta
-    return (
-        0.5 * a * y / (rayleigh * tb + square * gap),
-        0.5 * a * y * ta * tb / (rayleigh * ta - square * gap),
-    )
+    return (0.5 * a * y / (rayleigh * tb + square * gap), 0.5 * a * y * ta * tb / (rayleigh * ta - square * gap))
 
 
 def regular(omega: complex, poisson: float, thickness: float) -> complex:
@@ -69,9 +66,7 @@ def regular(omega: complex, poisson: float, thickness: float) -> complex:
     u, weight = panels(np.linspace(0.0, 1.0, 41))
     k = (scale * u / (1.0 - u)).astype(complex)
     both = np.sum(elastic(k, omega, poisson, thickness), axis=0) - (1.0 - poisson) / k
-    return complex(
-        1j * omega / (2.0 * math.pi) * np.sum(weight * scale / (1.0 - u) ** 2 * k * both)
-    )
+    return complex(1j * omega / (2.0 * math.pi) * np.sum(weight * scale / (1.0 - u) ** 2 * k * both))
 
 
 def half_space(poisson: float) -> float:
@@ -151,16 +146,17 @@ def coefficients() -> Array:
         right += [left, -left]
     places = np.linspace(0.0, 1.0, 101)
     for poisson in np.linspace(0.0, 0.45, 46):
-        falls = [
-            3.0 * places ** (j + 1) + (1.0 - places) * (2 - j) * places**j for j in range(2 + free)
-        ]
+        falls = [3.0 * places ** (j + 1) + (1.0 - places) * (2 - j) * places**j for j in range(2 + free)]
         basis = _row(poisson, np.array(falls[2:]))
         rows.append(np.hstack([-basis, np.zeros((places.size, _RATIOS.size))]))
         right.append(falls[0] + slope(poisson) * falls[1] - 0.01)
     found = linprog(
-        weights, np.vstack(rows), np.concatenate(right),
-        bounds=[(None, None)] * count + [(0.0, _WORST)] * _RATIOS.size, method="highs",
-    )  # fmt: skip
+        weights,
+        np.vstack(rows),
+        np.concatenate(right),
+        bounds=[(None, None)] * count + [(0.0, _WORST)] * _RATIOS.size,
+        method="highs",
+    )
     return np.asarray(found.x[:count]).reshape(free, powers + 1)
 
 

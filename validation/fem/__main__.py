@@ -23,12 +23,7 @@ from validation.fem.studies import STUDIES
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the named studies, or all; 0: done, 1: failed, 2: wrong usage, 130: Ctrl-C."""
-    steps: dict[str, Callable[[int], None]] = {
-        **STUDIES,
-        "fit": fit.run,
-        "report": _report,
-        "acceptance": _acceptance,
-    }
+    steps: dict[str, Callable[[int], None]] = {**STUDIES, "fit": fit.run, "report": _report, "acceptance": _acceptance}
     parser = Parser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)

@@ -111,9 +111,7 @@ def elements(text: str) -> int:
     return len(re.findall(r"^\d+(?:, \d+){4}$", text, re.M))
 
 
-def deck(
-    pair: cl.Pair, radius: float, depth: float, size: float, friction: float = FRICTION
-) -> str:
+def deck(pair: cl.Pair, radius: float, depth: float, size: float, friction: float = FRICTION) -> str:
     """Input of ``ccx`` for a hemisphere that is pressed into a block and drawn back.
 
     Parameters
@@ -207,9 +205,7 @@ def impact_deck(fall: Fall) -> str:
     )
 
 
-def run(
-    pair: cl.Pair, radius: float, depth: float, size: float, friction: float = FRICTION
-) -> tuple[Array, Array]:
+def run(pair: cl.Pair, radius: float, depth: float, size: float, friction: float = FRICTION) -> tuple[Array, Array]:
     """Compression [m] and force [N], loading then unloading, by ``ccx``.
 
     Parameters
@@ -274,11 +270,7 @@ def _printed(text: str) -> str:
         job = Path(folder) / "job"
         job.with_suffix(".inp").write_text(text)
         done = subprocess.run(
-            ["ccx", job.name],
-            cwd=folder,
-            env={**os.environ, "OMP_NUM_THREADS": "1"},
-            capture_output=True,
-            text=True,
+            ["ccx", job.name], cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"}, capture_output=True, text=True
         )
         if "Job finished" not in done.stdout:
             raise RuntimeError(f"ccx did not finish: {done.stdout[-500:]}")
@@ -339,16 +331,17 @@ def _surface(name: str, body: Mesh, first: int, reach: float) -> str:
 def _material(name: str, material: cl.Material) -> str:
     modulus, ratio = material.youngs_modulus * _MPA, material.poissons_ratio
     lines = [
-        f"*SOLID SECTION, ELSET={name}, MATERIAL={name}", f"*MATERIAL, NAME={name}",
-        f"*ELASTIC\n{modulus:.6e}, {ratio:g}", f"*DENSITY\n{material.density:.6e}",
-    ]  # fmt: skip
+        f"*SOLID SECTION, ELSET={name}, MATERIAL={name}",
+        f"*MATERIAL, NAME={name}",
+        f"*ELASTIC\n{modulus:.6e}, {ratio:g}",
+        f"*DENSITY\n{material.density:.6e}",
+    ]
     flow = material.flow
     if flow is not None:  # a body that has none is elastic
         strains = (0.0, *_STRAINS) if flow.hardening else (0.0, 1.0)
         lines.append("*PLASTIC")
         lines += [
-            f"{flow.stress(strain) * _MPA + _HARDENING * modulus * strain:.6e}, {strain:#.6g}"
-            for strain in strains
+            f"{flow.stress(strain) * _MPA + _HARDENING * modulus * strain:.6e}, {strain:#.6g}" for strain in strains
         ]
     return "\n".join(lines) + "\n"
 

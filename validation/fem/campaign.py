@@ -84,9 +84,7 @@ class Press:
                 _DENSITY,
                 yield_strength=_MODULUS / ratio if ratio < math.inf else None,
             )
-            for name, modulus, ratio in zip(
-                ("sphere", "plate"), moduli, (self.sphere, self.plate), strict=True
-            )
+            for name, modulus, ratio in zip(("sphere", "plate"), moduli, (self.sphere, self.plate), strict=True)
         ]
         return cl.Pair(*bodies)
 
@@ -98,9 +96,7 @@ def yield_depth(ratio: float) -> float:
 
 def _pressed(ratio: float, yielding: str, depth: float, **others: float) -> Press:
     """Indentation to a depth [d_Y]."""
-    sphere, plate = (
-        ratio if yielding in (body, "both") else math.inf for body in ("sphere", "plate")
-    )
+    sphere, plate = (ratio if yielding in (body, "both") else math.inf for body in ("sphere", "plate"))
     return Press(sphere, plate, depth * yield_depth(ratio), **others)
 
 
@@ -142,9 +138,12 @@ def presses() -> list[Press]:
     ]
     # finer meshes and slower presses, for the estimated error
     for yielding, ratio, depth in (
-        ("sphere", 23.0, 5.0), ("plate", 23.0, 5.0), ("sphere", 100.0, 25.0),
-        ("plate", 100.0, 25.0), ("both", 400.0, 2380.0),
-    ):  # fmt: skip
+        ("sphere", 23.0, 5.0),
+        ("plate", 23.0, 5.0),
+        ("sphere", 100.0, 25.0),
+        ("plate", 100.0, 25.0),
+        ("both", 400.0, 2380.0),
+    ):
         listed.append(_pressed(ratio, yielding, depth, across=2.0 * _ACROSS))
         listed.append(_pressed(ratio, yielding, depth, slowness=2.0))
     return list(dict.fromkeys(listed))
@@ -154,17 +153,21 @@ def press(job: Press) -> dict[str, Any]:
     """Compute an indentation; forces over K R^1.5, compressions over R."""
     size = math.sqrt(job.depth) / job.across
     found = indent(
-        job.pair, _RADIUS, job.depth * _RADIUS, size=min(size, 0.1), friction=job.friction,
-        yields=job.sphere < math.inf, plate_yields=job.plate < math.inf, slowness=job.slowness,
-    )  # fmt: skip
+        job.pair,
+        _RADIUS,
+        job.depth * _RADIUS,
+        size=min(size, 0.1),
+        friction=job.friction,
+        yields=job.sphere < math.inf,
+        plate_yields=job.plate < math.inf,
+        slowness=job.slowness,
+    )
     d = found.compression / _RADIUS
     f = found.force / (4.0 / 3.0 * _MODULUS * _RADIUS**2)
     top = int(d.argmax())
     end = top + int(np.argmax(np.append(f[top:] <= 1e-4 * f[top], True)))
     loading = float(np.trapezoid(np.append(0.0, f[: top + 1]), np.append(0.0, d[: top + 1])))
-    left = (
-        float(np.interp(0.0, [f[end], f[end - 1]], [d[end], d[end - 1]])) if end < d.size else 0.0
-    )
+    left = float(np.interp(0.0, [f[end], f[end - 1]], [d[end], d[end - 1]])) if end < d.size else 0.0
     down = np.append(f[top:end], 0.0), np.append(d[top:end], left)
     share = np.linspace(0.0, 1.0, SAMPLES)
     return {
@@ -179,9 +182,7 @@ def press(job: Press) -> dict[str, Any]:
         "elements": len(found.system.sphere.elements) + len(found.system.plate.elements),
         # at even steps of the root of compression, then of the compression while unloading
         "loading": np.interp(share**2 * d[top], d[: top + 1], f[: top + 1]).tolist(),
-        "unloading": np.interp(
-            left + share * (d[top] - left), down[1][::-1], down[0][::-1]
-        ).tolist(),
+        "unloading": np.interp(left + share * (d[top] - left), down[1][::-1], down[0][::-1]).tolist(),
     }
 
 
@@ -265,10 +266,7 @@ def impacts() -> list[Case]:
         for slenderness in (0.25, 1.1)
         for speed in (0.5, 40.0)
     ]
-    for depths, thicknesses in (
-        (IMPACT_DEPTHS, (_THICK,)),
-        (THIN, (1e-3 / 0.6, 1e-3 / 1.67)),
-    ):
+    for depths, thicknesses in ((IMPACT_DEPTHS, (_THICK,)), (THIN, (1e-3 / 0.6, 1e-3 / 1.67))):
         for ratio, some in depths.items():
             for yielding in YIELDING:
                 for depth in some:
@@ -294,10 +292,7 @@ def _other_impact(sphere: str, plate: str, yielding: str, ratio: float, depth: f
         sphere = _scaled(pair, sphere, ratio)
     else:
         plate = _scaled(pair, plate, ratio)
-    case = Case(
-        1.0, _THICK, 1e-3, sphere, plate,
-        yields=yielding == "sphere", plate_yields=yielding == "plate",
-    )  # fmt: skip
+    case = Case(1.0, _THICK, 1e-3, sphere, plate, yields=yielding == "sphere", plate_yields=yielding == "plate")
     return dataclasses.replace(case, speed=_speed(case.pair, depth))
 
 
@@ -305,9 +300,8 @@ def _impact(ratio: float, yielding: str, depth: float, thickness: float) -> Case
     body = _scaled(cl.Pair(_STEEL, _STEEL), _STEEL, ratio)
     pair = Case(1.0, thickness, 1e-3, body, body).pair
     return Case(
-        _speed(pair, depth), thickness, 1e-3, body, body,
-        yields=yielding != "plate", plate_yields=yielding != "sphere",
-    )  # fmt: skip
+        _speed(pair, depth), thickness, 1e-3, body, body, yields=yielding != "plate", plate_yields=yielding != "sphere"
+    )
 
 
 def blows(processes: int) -> None:

@@ -23,16 +23,34 @@ from validation.fem.solver import SETTINGS
 from validation.paper.setting import PAIR, RADIUS
 
 _UNITS = {
-    "speed": "m/s", "radius": "m", "thickness": "m", "width": "m", "size": "sphere radius",
-    "contact_time": "s", "peak_force": "N", "peak_compression": "m", "residual_compression": "m",
+    "speed": "m/s",
+    "radius": "m",
+    "thickness": "m",
+    "width": "m",
+    "size": "sphere radius",
+    "contact_time": "s",
+    "peak_force": "N",
+    "peak_compression": "m",
+    "residual_compression": "m",
     "step": "s",
-}  # fmt: skip
+}
 _DEFAULTED = "size", "width", "hourglass_stiffness"  # by `impact`, where a case has NaN
 _MEASURED = (
-    "restitution", "contact_time", "peak_force", "peak_compression", "residual_compression",
-    "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "viscous",
-    "balance", "plastic_strain",
-)  # fmt: skip
+    "restitution",
+    "contact_time",
+    "peak_force",
+    "peak_compression",
+    "residual_compression",
+    "plastic",
+    "wave",
+    "vibration",
+    "friction_loss",
+    "hourglass",
+    "touching_loss",
+    "viscous",
+    "balance",
+    "plastic_strain",
+)
 OUTCOMES = *_MEASURED, "steps", "step", "elements"
 _HALF = 1.027  # element sizes of two meshes whose contacts differ by half an element
 
@@ -84,9 +102,7 @@ def material(name: str) -> cl.Material:
     name, flowing, numbers = name.partition(", flow ")
     if flowing:
         a, b, n, c, rate0 = map(float, numbers.split())
-        return replace(
-            cl.material(name), yield_strength=a, hardening=(b, n), rate=(c, rate0), hardness=None
-        )
+        return replace(cl.material(name), yield_strength=a, hardening=(b, n), rate=(c, rate0), hardness=None)
     name, weaker, factor = name.partition(", yield strength x ")
     found = cl.material(name)
     if not weaker:
@@ -126,14 +142,18 @@ def solve(case: Case) -> dict[str, Any]:
 def _on_mesh(case: Case) -> dict[str, Any]:
     given = {name: value for name in _DEFAULTED if not math.isnan(value := getattr(case, name))}
     hit = impact(
-        case.pair, case.speed, case.radius, case.thickness,
-        friction=case.friction, yields=case.yields, plate_yields=case.plate_yields, far=case.far,
-        core=case.core, **given,
-    )  # fmt: skip
-    named = {
-        "friction_loss": hit.friction,
-        "touching_loss": hit.contact,
-    }
+        case.pair,
+        case.speed,
+        case.radius,
+        case.thickness,
+        friction=case.friction,
+        yields=case.yields,
+        plate_yields=case.plate_yields,
+        far=case.far,
+        core=case.core,
+        **given,
+    )
+    named = {"friction_loss": hit.friction, "touching_loss": hit.contact}
     outcome = {key: named[key] if key in named else getattr(hit, key) for key in OUTCOMES}
     width = float(hit.system.x[:, 0].max())
     stiffness = float(hit.system.sphere.bending[0]) / case.pair.sphere.plane_modulus
@@ -188,7 +208,10 @@ def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:
     """Keep computed cases as a file."""
     units = {name: _UNITS.get(name, "-") for name in data}
     store.write(
-        name, about, data, units,
+        name,
+        about,
+        data,
+        units,
         mesh="conformal half disc, plate graded by 1.1; element size [R] in column size",
         **SETTINGS,
-    )  # fmt: skip
+    )

@@ -23,11 +23,23 @@ SPEED = (0.5, 10.0)  # [m/s], drawn by its logarithm
 THICKNESS = (0.6e-3, 10e-3)  # [m], likewise
 # What the catalogue had when the first impacts were drawn; with more, each seed would draw others.
 LISTED = (
-    "alumina", "aluminium-2024-t3", "aluminium-6061-t6", "bearing-steel-52100", "brass-c26000",
-    "carbon-steel-1020", "copper-c11000", "gamma-alumina", "glass", "silicon-nitride",
-    "soda-lime-glass", "stainless-steel-304", "stainless-steel-316", "titanium-ti-6al-4v",
-    "tungsten-carbide", "zirconia",
-)  # fmt: skip
+    "alumina",
+    "aluminium-2024-t3",
+    "aluminium-6061-t6",
+    "bearing-steel-52100",
+    "brass-c26000",
+    "carbon-steel-1020",
+    "copper-c11000",
+    "gamma-alumina",
+    "glass",
+    "silicon-nitride",
+    "soda-lime-glass",
+    "stainless-steel-304",
+    "stainless-steel-316",
+    "titanium-ti-6al-4v",
+    "tungsten-carbide",
+    "zirconia",
+)
 # The impacts of the first four seeds were kept out of the first four fits of the law, and judged
 # them; later fits have seen them. Those of the fifth judged the last fit and moved no number of it;
 # the last were drawn later.
@@ -62,10 +74,7 @@ def draw(seed: int, count: int) -> list[Case]:
     listed = []
     for _ in range(count):
         sphere, plate = known[generator.integers(len(known))]
-        speed, thickness = (
-            float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}")
-            for limits in (SPEED, THICKNESS)
-        )
+        speed, thickness = (float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}") for limits in (SPEED, THICKNESS))
         listed.append(_case(sphere, plate, speed, thickness))
     return listed
 
@@ -80,8 +89,7 @@ def draw_thin(seed: int) -> list[Case]:
         while any(wanted.values()):
             sphere, plate = known[generator.integers(len(known))]
             speed, slenderness = (
-                float(np.exp(generator.uniform(*np.log(limits))))
-                for limits in (THIN_SPEED, (thinnest, thickest))
+                float(np.exp(generator.uniform(*np.log(limits)))) for limits in (THIN_SPEED, (thinnest, thickest))
             )
             thickness = float(f"{RADIUS / slenderness:.4g}")
             case = _case(sphere, plate, float(f"{speed:.4g}"), thickness)
@@ -105,20 +113,21 @@ def _weaker(case: Case) -> str:
 
 def _case(sphere: str, plate: str, speed: float, thickness: float) -> Case:
     return Case(
-        speed, thickness, RADIUS, sphere, plate,
+        speed,
+        thickness,
+        RADIUS,
+        sphere,
+        plate,
         yields=cl.material(sphere).yield_strength is not None,
         plate_yields=cl.material(plate).yield_strength is not None,
-    )  # fmt: skip
+    )
 
 
 def drawn(name: str) -> list[Case]:
     """Read the impacts of one of `SEEDS`, or of `THIN`."""
     with Path(__file__).with_name(f"{name}.csv").open() as file:
         rows = list(csv.DictReader(file))
-    return [
-        _case(row["sphere"], row["plate"], float(row["speed_m_s"]), float(row["thickness_m"]))
-        for row in rows
-    ]
+    return [_case(row["sphere"], row["plate"], float(row["speed_m_s"]), float(row["thickness_m"])) for row in rows]
 
 
 def compute(name: str, processes: int) -> None:

@@ -64,9 +64,7 @@ def approach(pair: Surfaces, x: Array, v: Array) -> int:
 
 
 @kernel(entry=True)
-def resolve(
-    pair: Surfaces, x: Array, v: Array, inverse_mass: Array, dt: float, count: int
-) -> float:
+def resolve(pair: Surfaces, x: Array, v: Array, inverse_mass: Array, dt: float, count: int) -> float:
     """Correct the new velocities for contact; return the force that lifts the slaves [N/rad]."""
     for _ in range(SWEEPS):
         for i in range(count):

@@ -102,9 +102,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
 
         # Jaumann rate
         spin = dt * (u_z - w_r)  # twice the rotation of this step
-        s_rr, s_zz, s_tt, s_rz = (
-            body.stress[e, 0], body.stress[e, 1], body.stress[e, 2], body.stress[e, 3],
-        )  # fmt: skip
+        s_rr, s_zz, s_tt, s_rz = (body.stress[e, 0], body.stress[e, 1], body.stress[e, 2], body.stress[e, 3])
         swap = spin * s_rz
         turn = 0.5 * spin * (s_zz - s_rr)
         stiff = body.relative[e, 1]
@@ -117,9 +115,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         s_tt += strain_t
         s_rz += turn + slip
         if body.shares.size:
-            f_rr, f_zz, f_tt, f_rz, lost = _relaxed(
-                body, e, fading, spin, (strain_r, strain_z, strain_t, slip)
-            )
+            f_rr, f_zz, f_tt, f_rz, lost = _relaxed(body, e, fading, spin, (strain_r, strain_z, strain_t, slip))
             s_rr, s_zz, s_tt, s_rz = s_rr - f_rr, s_zz - f_zz, s_tt - f_tt, s_rz - f_rz
             viscous += lost / stiff * area * r
 
@@ -138,12 +134,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
                 body.branches[e, k, 1] -= back * d_z
                 body.branches[e, k, 2] -= back * d_t
                 body.branches[e, k, 3] -= back * s_rz
-            s_rr, s_zz, s_tt, s_rz = (
-                mean + keep * d_r,
-                mean + keep * d_z,
-                mean + keep * d_t,
-                keep * s_rz,
-            )
+            s_rr, s_zz, s_tt, s_rz = (mean + keep * d_r, mean + keep * d_z, mean + keep * d_t, keep * s_rz)
             body.plastic_strain[e] += strain
             plastic += strength * strain * area * r
         body.stress[e, 0], body.stress[e, 1] = s_rr, s_zz

@@ -135,9 +135,7 @@ def stiffening(data: dict[str, Array]) -> tuple[list[float], float]:
     return found.tolist(), float(means[1] - means[0])
 
 
-def case(
-    data: dict[str, Array], yielding: str, stiff: list[float], friction: float
-) -> dict[str, Any]:
+def case(data: dict[str, Array], yielding: str, stiff: list[float], friction: float) -> dict[str, Any]:
     """Fit the functions of one case: g, h, k and the plastic share."""
     chosen, moduli, ratios = [], [], []
     for n, ratio in presses(data):
@@ -151,8 +149,7 @@ def case(
             ratios.append(float(data["poissons_ratio"][n]))
     share, nu = np.array(moduli), np.array(ratios)
     q, w, recovery, plastic, residual = (
-        np.array([getattr(one, name) for one in chosen])
-        for name in ("q", "w", "recovery", "plastic", "residual")
+        np.array([getattr(one, name) for one in chosen]) for name in ("q", "w", "recovery", "plastic", "residual")
     )
     own = share if yielding != "plate" else 1.0 - share  # share of the body that yields
     path = np.concatenate([one.path for one in chosen])
@@ -163,9 +160,7 @@ def case(
     loss = 1.0 - recovery / (1.0 - friction)
     moved = yielding != "both"
     return {
-        "loading": _fit(
-            path[used, 0], path[used, 1], on[used], nus[used], (elastic / path[:, 2])[used], moved
-        ),
+        "loading": _fit(path[used, 0], path[used, 1], on[used], nus[used], (elastic / path[:, 2])[used], moved),
         "recovery": _fit(q, w, own, nu, (1.0 - friction) / recovery, moved),
         "residual": _fit(q, w, own, nu, 1.0 / (1.0 - residual), moved),
         "plastic": _least_squares(
@@ -178,10 +173,7 @@ def case(
 
 
 def _strains(yielding: str, ratio: float) -> tuple[float, float]:
-    return (
-        1.0 / ratio if yielding != "plate" else 0.0,
-        1.0 / ratio if yielding != "sphere" else 0.0,
-    )
+    return (1.0 / ratio if yielding != "plate" else 0.0, 1.0 / ratio if yielding != "sphere" else 0.0)
 
 
 def _blocks(moved: bool, *sizes: Size) -> Blocks:
@@ -193,15 +185,10 @@ def _blocks(moved: bool, *sizes: Size) -> Blocks:
 def _basis(q: Array, w: Array, share: Array, nu: Array, blocks: Blocks) -> Array:
     """Powers of t and w; those again times what the moduli and Poisson's ratio differ by."""
     t = (q - 1.0) / (q + fem.SHIFT)
-    factors = {
-        "usual": np.ones_like(q),
-        "share": (1.0 - t) * (share - 0.5),
-        "poissons_ratio": nu - 0.3,
-    }
+    factors = {"usual": np.ones_like(q), "share": (1.0 - t) * (share - 0.5), "poissons_ratio": nu - 0.3}
     return np.concatenate(
         [
-            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1])
-            * factors[name][:, None]
+            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factors[name][:, None]
             for name, (n, m) in blocks
         ],
         axis=1,
@@ -268,11 +255,17 @@ def blows() -> list[Blow]:
             row = {name: values[n] for name, values in data.items()}
             pair = pair_of(row)
             blow = Blow(
-                pair, numbers_of(pair), float(row["speed"]), float(row["radius"]),
-                float(row["thickness"]), float(row["restitution"]), float(row["contact_time"]),
-                float(row["peak_force"]), float(row["plastic"]),
+                pair,
+                numbers_of(pair),
+                float(row["speed"]),
+                float(row["radius"]),
+                float(row["thickness"]),
+                float(row["restitution"]),
+                float(row["contact_time"]),
+                float(row["peak_force"]),
+                float(row["plastic"]),
                 _WEIGHTS_OF.get(study, 1.0),
-            )  # fmt: skip
+            )
             if blow.radius <= _THINNEST * blow.thickness:
                 listed.append(blow)
     return listed
@@ -349,15 +342,11 @@ def in_impacts(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
     Each impact is a row of a linear system: the error of its COR by the law, and the derivatives of
     its COR with respect to the powers in v and to b_p. Errors of COR count as in `acceptance`.
     """
-    tables: Tables = [
-        ((name, part), size) for name in YIELDING for part, size in _blocks(name != "both", *IMPACT)
-    ]
+    tables: Tables = [((name, part), size) for name in YIELDING for part, size in _blocks(name != "both", *IMPACT)]
     tables += [(("any", "vibration"), (1, 1)), (("plate", "beyond"), (1, 1))]
     for _ in range(2):
         moved = {**found, "curves": {**found["curves"], "impact": _raised(found)}}
-        law_of, other = (
-            functools.cache(functools.partial(fem.law_of, found=one)) for one in (found, moved)
-        )
+        law_of, other = (functools.cache(functools.partial(fem.law_of, found=one)) for one in (found, moved))
         rows, missing = [], []
         for blow in measured:
             if not blow.given.ratio or blow.speed > _FAST or blow.restitution < _LEAST:
@@ -374,10 +363,7 @@ def in_impacts(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
             t = (q - 1.0) / (q + fem.SHIFT)  # v is raised by t^2, and slope is per t^2
             row = slope * _powers(blow.given, q, float(found["blend"]), tables)
             less = zener.solve(law.data, lam + _RAISED, y, 1e-8).restitution - one.restitution
-            x, most = (
-                math.sqrt(units.compression / blow.radius),
-                SATURATION * math.sqrt(law.scale or 0.0),
-            )
+            x, most = (math.sqrt(units.compression / blow.radius), SATURATION * math.sqrt(law.scale or 0.0))
             wide = blow.radius / blow.thickness * blow.given.modulus_share * max(x - most, 0.0)
             row[-1] = wide * less / _RAISED
             already = slope * v / t**2 + row[-1] * found["plate"][-1]
@@ -388,11 +374,7 @@ def in_impacts(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
         for (name, part), table in solution.items():
             parts.setdefault(name, {})[part] = table
         (beyond,) = parts["plate"].pop("beyond")
-        found = {
-            **found,
-            "plate": found["plate"][:-1] + beyond,
-            "curves": {**found["curves"], "impact": parts},
-        }
+        found = {**found, "plate": found["plate"][:-1] + beyond, "curves": {**found["curves"], "impact": parts}}
     return found
 
 

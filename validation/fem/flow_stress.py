@@ -49,9 +49,7 @@ def slow_stress(flow: FlowStress, strain: float) -> float:
 
 
 @kernel
-def returned(
-    flow: FlowStress, trial: float, strain: float, shear: float, dt: float
-) -> tuple[float, float]:
+def returned(flow: FlowStress, trial: float, strain: float, shear: float, dt: float) -> tuple[float, float]:
     """Plastic strain of a step and the stress after it; the trial is above the slow flow stress."""
     stress = slow_stress(flow, strain)
     low, high = 0.0, (trial - stress) / (3.0 * shear)

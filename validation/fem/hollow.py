@@ -21,9 +21,14 @@ RADIUS = 1e-3  # [m]
 SHELLS = 0.7, 0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.1  # thickness [R]
 # A light and a dense core as stiff as the shell; a foam; ones as stiff as carbides, or as lead
 CORES = (
-    Core(0.7, 0.3, 1.0), Core(0.7, 3.0, 1.0), Core(0.8, 0.2, 0.02), Core(0.7, 0.4, 3.0),
-    Core(0.7, 2.0, 3.0), Core(0.7, 1.4, 0.1), Core(0.8, 5.0, 1.0),
-)  # fmt: skip
+    Core(0.7, 0.3, 1.0),
+    Core(0.7, 3.0, 1.0),
+    Core(0.8, 0.2, 0.02),
+    Core(0.7, 0.4, 3.0),
+    Core(0.7, 2.0, 3.0),
+    Core(0.7, 1.4, 0.1),
+    Core(0.8, 5.0, 1.0),
+)
 _USUAL = SOLID, Core(0.5), Core(0.6), Core(0.7), Core(0.75), CORES[1]
 _ALL = "bearing-steel-52100", "glass"  # plates of the series with more spheres than these
 # sphere, plate, speed [m/s], whether the sphere flows, and the plate; R/H
@@ -38,15 +43,12 @@ SERIES = (
 def listed() -> list[Case]:
     """List the impacts: those of `SERIES`, and one of them again on elements half as large."""
     cases = [
-        Case(
-            speed, RADIUS / slenderness, RADIUS, sphere, plate,
-            yields=yields, plate_yields=plate_yields, core=core,
-        )
+        Case(speed, RADIUS / slenderness, RADIUS, sphere, plate, yields=yields, plate_yields=plate_yields, core=core)
         for sphere, plate, speed, yields, plate_yields, slendernesses in SERIES
         for slenderness in slendernesses
         for core in (SOLID, *(Core(1.0 - share) for share in SHELLS), *CORES)
         if core in _USUAL or plate in _ALL
-    ]  # fmt: skip
+    ]
     finer = next(one for one in cases if one.yields and one.core == Core(0.7))
     return [*cases, replace(finer, size=0.0034, far=0.5)]
 

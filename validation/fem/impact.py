@@ -164,16 +164,16 @@ def impact(
     size = min(_FINEST, guess.contact / radius / _ACROSS) if size is None else size
     stiffness = hourglass_stiffness or 0.0
     checked(
-        size=(size, 1e-3, 0.1, "sphere radii"), friction=(friction, 0.0, 1.0, ""),
-        width=(width, radius, math.inf, "metres, from the radius on"), far=(far, 0.1, 2.0, ""),
+        size=(size, 1e-3, 0.1, "sphere radii"),
+        friction=(friction, 0.0, 1.0, ""),
+        width=(width, radius, math.inf, "metres, from the radius on"),
+        far=(far, 0.1, 2.0, ""),
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
-    )  # fmt: skip
+    )
     meshes = meshed(guess, radius, thickness, size, width, far, core)
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
-    system = solver.assemble(
-        meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time
-    )
+    system = solver.assemble(meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time)
     step = solver.time_step(system, materials)
     system.v[: _sphere_nodes(system), 1] = -speed
     every = max(1, round(guess.time / _SAMPLES / step))
@@ -218,12 +218,7 @@ class Expected(NamedTuple):
 
 
 def expect(
-    pair: cl.Pair,
-    speed: float,
-    radius: float,
-    thickness: float,
-    yields: bool = True,
-    plate_yields: bool = False,
+    pair: cl.Pair, speed: float, radius: float, thickness: float, yields: bool = True, plate_yields: bool = False
 ) -> Expected:
     """Estimate an impact by the model, whose sphere has the lower of the flow stresses."""
     strengths = []
@@ -247,13 +242,7 @@ def with_mass(pair: cl.Pair, core: Core) -> cl.Pair:
 
 
 def meshed(
-    guess: Expected,
-    radius: float,
-    thickness: float,
-    size: float,
-    width: float,
-    far: float = 1.0,
-    core: Core = SOLID,
+    guess: Expected, radius: float, thickness: float, size: float, width: float, far: float = 1.0, core: Core = SOLID
 ) -> tuple[Mesh, Mesh]:
     """Sphere and plate for an expected impact; lengths [m], `size` over the radius."""
     fine = size * radius, mesh.CORE * guess.contact
@@ -340,9 +329,7 @@ def _outcome(
         contact=share[8],
         viscous=share[10],
         balance=float(np.abs(np.sum(energies, axis=1) / first - 1.0).max()),
-        plastic_strain=float(
-            max(body.plastic_strain.max() for body in (system.sphere, system.plate))
-        ),
+        plastic_strain=float(max(body.plastic_strain.max() for body in (system.sphere, system.plate))),
         time=time,
         force=force,
         speed=speed,

@@ -95,15 +95,13 @@ def indent(
     """
     checked(
         depth=(depth, 1e-6 * radius, 0.5 * radius, "metres, to half of the radius"),
-        size=(size, 1e-3, 0.1, "sphere radii"), friction=(friction, 0.0, 1.0, ""),
+        size=(size, 1e-3, 0.1, "sphere radii"),
+        friction=(friction, 0.0, 1.0, ""),
         slowness=(slowness, 0.1, 10.0, ""),
-    )  # fmt: skip
+    )
     width = core(radius, depth)
     fine, block = size * radius, BLOCK * radius
-    meshes = (
-        mesh.sphere(radius, fine, width, hemisphere=True),
-        mesh.plate(radius, fine, width, block, block),
-    )
+    meshes = (mesh.sphere(radius, fine, width, hemisphere=True), mesh.plate(radius, fine, width, block, block))
     materials = pair.sphere, pair.plate
     system = solver.assemble(meshes, materials, friction, yields, plate_yields)
     first = len(meshes[0].nodes)
@@ -122,8 +120,7 @@ def indent(
         stable = solver.time_step(system, materials)  # elements get thinner
         if not (stable > 0.0 and np.isfinite(system.v).all()):
             raise RuntimeError(
-                f"elements collapsed before depth {depth:g} m: take a smaller depth, or coarser "
-                f"elements than {size:g}"
+                f"elements collapsed before depth {depth:g} m: take a smaller depth, or coarser elements than {size:g}"
             )
         every = math.ceil(interval / stable)
         target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n / _SAMPLES))
@@ -138,6 +135,4 @@ def indent(
     compression, force_, edge_, kinetic_ = np.array(rows).T
     top = int(compression.argmax())
     work = float(np.trapezoid(force_[: top + 1], compression[: top + 1])) / (2.0 * math.pi)
-    return Indentation(
-        compression, force_, edge_, float(kinetic_.max()) / work, plastic[-1] / work, system
-    )
+    return Indentation(compression, force_, edge_, float(kinetic_.max()) / work, plastic[-1] / work, system)

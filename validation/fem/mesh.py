@@ -104,9 +104,7 @@ def sphere(radius: float, size: float, core: float, hemisphere: bool = False) ->
     return Mesh(_points(nodes), np.concatenate(elements), surface)
 
 
-def plate(
-    radius: float, size: float, core: float, thickness: float, width: float, far: float = 1.0
-) -> Mesh:
+def plate(radius: float, size: float, core: float, thickness: float, width: float, far: float = 1.0) -> Mesh:
     """Rectangle of a plate's thickness, with elements of one size at the contact.
 
     Parameters

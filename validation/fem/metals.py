@@ -26,12 +26,7 @@ Array = NDArray[np.float64]
 # The first impacts kept out showed that bodies of like strength, which share the flow, harden less
 # than those that flow alone; "metals_alike" are for the fit of how much, and the last set was drawn
 # then, to judge it.
-SEEDS = {
-    "metals": 20261128,
-    "metals_alike": 20261130,
-    "metals_kept_out": 20261129,
-    "metals_kept_out_2": 20261201,
-}
+SEEDS = {"metals": 20261128, "metals_alike": 20261130, "metals_kept_out": 20261129, "metals_kept_out_2": 20261201}
 FITTED = {"metals": 56, "metals_alike": 14}
 # The catalogue's metal of like modulus and density, and A [Pa], B [Pa], n, C, rate0 [1/s].
 PUBLISHED = {
@@ -73,9 +68,7 @@ def _log_uniform(generator: np.random.Generator, limits: tuple[float, float]) ->
     return float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}")
 
 
-def _sizes(
-    generator: np.random.Generator, speeds: tuple[float, float]
-) -> tuple[float, float, float]:
+def _sizes(generator: np.random.Generator, speeds: tuple[float, float]) -> tuple[float, float, float]:
     """Speed, thickness and radius, in the order of `Case`."""
     speed, radius = _log_uniform(generator, speeds), _log_uniform(generator, _RADII)
     thickness = float(f"{radius / _log_uniform(generator, _SLENDERNESS):.4g}")
@@ -101,10 +94,7 @@ def _of_fit(generator: np.random.Generator, *, with_rate: bool, alike: bool) -> 
         if flows:
             bodies[n] += f", flow {flow}"
     sphere, plate = bodies
-    return Case(
-        *_sizes(generator, _SPEEDS[0]), sphere, plate,
-        yields=yields, plate_yields=plate_yields, meshes=1,
-    )  # fmt: skip
+    return Case(*_sizes(generator, _SPEEDS[0]), sphere, plate, yields=yields, plate_yields=plate_yields, meshes=1)
 
 
 def ideal(case: Case) -> cl.Pair:
@@ -138,9 +128,8 @@ def _published(generator: np.random.Generator) -> Case:
     elif which == 2:
         sphere = str(generator.choice(_RIGID))
     return Case(
-        *_sizes(generator, _SPEEDS[1]), sphere, plate,
-        yields=", flow " in sphere, plate_yields=", flow " in plate,
-    )  # fmt: skip
+        *_sizes(generator, _SPEEDS[1]), sphere, plate, yields=", flow " in sphere, plate_yields=", flow " in plate
+    )
 
 
 class Constants(NamedTuple):

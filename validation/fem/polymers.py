@@ -81,9 +81,13 @@ def _case(generator: np.random.Generator, n: int, *, thick: bool, meshes: int) -
     return Case(
         _log(generator, _SPEEDS),
         float(f"{radius / (_THICK if thick else slenderness):.4g}"),
-        radius, sphere, plate,
-        yields=flows and sphere_is, plate_yields=flows and plate_is, meshes=meshes,
-    )  # fmt: skip
+        radius,
+        sphere,
+        plate,
+        yields=flows and sphere_is,
+        plate_yields=flows and plate_is,
+        meshes=meshes,
+    )
 
 
 def _polymer(generator: np.random.Generator, *, flows: bool) -> str:

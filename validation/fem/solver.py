@@ -76,12 +76,7 @@ def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, 
 
 
 def body(
-    mesh: Mesh,
-    material: Material,
-    first: int,
-    bending: float | Array,
-    yields: bool,
-    contact_time: float = math.inf,
+    mesh: Mesh, material: Material, first: int, bending: float | Array, yields: bool, contact_time: float = math.inf
 ) -> Body:
     """Elements of a mesh, at rest; `first` is the number of the mesh's first node.
 
@@ -161,11 +156,8 @@ def assemble(
     x = np.concatenate([above.nodes, below.nodes])
     bodies = (
         body(above, materials[0], 0, hourglass, yields, contact_time),
-        body(
-            below, materials[1], first, _plate_hourglass(below, soft, plate_yields), plate_yields,
-            contact_time,
-        ),
-    )  # fmt: skip
+        body(below, materials[1], first, _plate_hourglass(below, soft, plate_yields), plate_yields, contact_time),
+    )
     mass = np.zeros(len(x))
     for one, material in zip(bodies, materials, strict=True):
         mass += elements.lumped_mass(one.elements, x, material.density * one.relative[:, 0])

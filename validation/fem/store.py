@@ -28,9 +28,7 @@ def path(name: str) -> Path:
     return FOLDER / f"fem_{name}.h5"
 
 
-def write(
-    name: str, about: str, data: dict[str, NDArray[Any]], units: dict[str, str], **settings: Any
-) -> None:
+def write(name: str, about: str, data: dict[str, NDArray[Any]], units: dict[str, str], **settings: Any) -> None:
     """Keep a result; it replaces an older one when all of it is on disk.
 
     Parameters
@@ -101,7 +99,6 @@ def read(name: str) -> Result:
         raise FileNotFoundError(f"{path(name)}: run python -m validation.fem {name}")
     with h5py.File(path(name)) as file:
         data = {
-            key: item.asstr()[()] if h5py.check_string_dtype(item.dtype) else item[()]
-            for key, item in file.items()
+            key: item.asstr()[()] if h5py.check_string_dtype(item.dtype) else item[()] for key, item in file.items()
         }
         return Result(data, dict(file.attrs))

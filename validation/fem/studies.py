@@ -36,10 +36,7 @@ Pressed = dict[str, tuple[NDArray[Any], str]]  # values and unit by name, of one
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
 SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
-OTHER_PAIRS = (
-    ("bearing-steel-52100", "soda-lime-glass"),
-    ("bearing-steel-52100", "aluminium-6061-t6"),
-)
+OTHER_PAIRS = (("bearing-steel-52100", "soda-lime-glass"), ("bearing-steel-52100", "aluminium-6061-t6"))
 DEPTHS = (2.0, 5.0, 10.0, 30.0)  # largest compressions of the indentations [d_Y]
 CALCULIX_SIZE, CALCULIX_DEPTH = 0.03, 10.0  # [R], [d_Y]
 _SPEED, _THICKNESS = 26.0, 0.5e-3  # impact of the paper's Figs 11 to 13 [m/s, m]
@@ -129,10 +126,7 @@ def _indented(job: dict[str, Any]) -> Pressed:
 def _yielded(name: str) -> Pressed:
     found = press(name)
     bodies = {"sphere": found.system.sphere, "block": found.system.plate}
-    works = {
-        f"work_{role}": (np.array(2.0 * math.pi * body.work[0]), "J")
-        for role, body in bodies.items()
-    }
+    works = {f"work_{role}": (np.array(2.0 * math.pi * body.work[0]), "J") for role, body in bodies.items()}
     return {**_measured(found), **works}
 
 
@@ -183,12 +177,7 @@ def calculix_hardening(_: int) -> None:
 
 
 def _by_calculix(
-    name: str,
-    what: str,
-    pair: cl.Pair,
-    depth: float,
-    size: float,
-    own: dict[str, NDArray[Any]] | None = None,
+    name: str, what: str, pair: cl.Pair, depth: float, size: float, own: dict[str, NDArray[Any]] | None = None
 ) -> None:
     own = own or {}
     compression, force = calculix.run(pair, RADIUS, depth, size)
@@ -231,18 +220,23 @@ def calculix_impact(_: int) -> None:
             "speed": finest.speed,
         },
         {
-            "size": "sphere radius", "damping": "-", "restitution": "-", "contact_time": "s",
-            "peak_force": "N", "time": "s", "force": "N", "speed": "m/s",
+            "size": "sphere radius",
+            "damping": "-",
+            "restitution": "-",
+            "contact_time": "s",
+            "peak_force": "N",
+            "time": "s",
+            "force": "N",
+            "speed": "m/s",
         },
         mesh="of `impact.impact`; element size [R] in column size",
-        columns="damping: -alpha of Hilber, Hughes and Taylor; increments: in the contact time "
-        "that the model expects",
+        columns="damping: -alpha of Hilber, Hughes and Taylor; increments: in the contact time that the model expects",
         speed=_SPEED,
         radius=RADIUS,
         thickness=_THICKNESS,
         **calculix.IMPACT_SETTINGS,
         **calculix.facts(PAIR),
-    )  # fmt: skip
+    )
 
 
 def matrix(processes: int) -> None:
@@ -284,10 +278,21 @@ def paper(_: int) -> None:
             "vibration": np.array(hit.vibration),
         },
         {
-            "time": "s", "force": "N", "speed": "m/s", "compression": "m", "corners": "m",
-            "snapshot_time": "s", "r": "m", "deflection": "m", "plastic_strain": "-",
-            "largest_plastic_strain": "-", "yielded_share": "-", "restitution": "-",
-            "plastic": "-", "wave": "-", "vibration": "-",
+            "time": "s",
+            "force": "N",
+            "speed": "m/s",
+            "compression": "m",
+            "corners": "m",
+            "snapshot_time": "s",
+            "r": "m",
+            "deflection": "m",
+            "plastic_strain": "-",
+            "largest_plastic_strain": "-",
+            "yielded_share": "-",
+            "restitution": "-",
+            "plastic": "-",
+            "wave": "-",
+            "vibration": "-",
         },
         mesh=f"element size {hit.size:g} R",
         elements=hit.elements,
@@ -299,7 +304,7 @@ def paper(_: int) -> None:
         step=hit.step,
         steps=hit.steps,
         **SETTINGS,
-    )  # fmt: skip
+    )
 
 
 def pairs(processes: int) -> None:
@@ -331,9 +336,7 @@ def strengths(processes: int) -> None:
 def limits(processes: int) -> None:
     """Beyond the paper: thinner and faster."""
     listed = [
-        Case(v * PAIR.yield_speed, RADIUS / s)
-        for s in (0.5, 1.0, 1.8, 2.5)
-        for v in (0.5, 1.5, 3.5, 7.0, 10.0, 14.0)
+        Case(v * PAIR.yield_speed, RADIUS / s) for s in (0.5, 1.0, 1.8, 2.5) for v in (0.5, 1.5, 3.5, 7.0, 10.0, 14.0)
     ]
     about = "gamma-alumina on glass, R/H to 2.5, V0/V_Y0 to 14"
     cases.compute("limits", about, listed, processes)

@@ -47,9 +47,7 @@ def wave(mobility: float, loss: float = 0.0) -> Callable[[Array], Array]:
 
 
 def rebound(
-    relaxed: Callable[[Array], Array],
-    steps: int = 4000,
-    plate: Callable[[Array], Array] = np.zeros_like,
+    relaxed: Callable[[Array], Array], steps: int = 4000, plate: Callable[[Array], Array] = np.zeros_like
 ) -> Rebound:
     """Let a unit mass hit at unit speed; the force is F = d^1.5 if the relaxation modulus is 1.
 

@@ -39,19 +39,22 @@ HARDENING_DEPTH, HARDENING_SIZE = 0.03 * RADIUS, 0.03  # [m], [R]
 FULLY_PLASTIC = 0.15  # a/R from which the flow is full: E* a/(sigma_Y R) is 66, on the mirror more
 _SMALL = 2e-3 * RADIUS  # depth of a small contact: a/R is 0.045 [m]
 _BLOCK: dict[str, Any] = {
-    "pair": EQUAL, "depth": 0.03 * RADIUS, "yields": False, "plate_yields": True,
-    "friction": 0.0, "slowness": 2.0,
-}  # fmt: skip
-_FLAT: dict[str, Any] = {
-    "pair": MIRRORED, "depth": 0.08 * RADIUS, "friction": 0.0, "slowness": 2.0,
-}  # fmt: skip
-_PAIR: dict[str, Any] = {
-    "pair": EQUAL, "depth": _SMALL, "plate_yields": True, "size": 0.004, "friction": 0.0,
-}  # fmt: skip
-_MIRROR: dict[str, Any] = {
-    "pair": MIRRORED, "radius": 2.0 * RADIUS, "depth": 0.5 * _SMALL, "size": 0.002,
+    "pair": EQUAL,
+    "depth": 0.03 * RADIUS,
+    "yields": False,
+    "plate_yields": True,
     "friction": 0.0,
-}  # fmt: skip
+    "slowness": 2.0,
+}
+_FLAT: dict[str, Any] = {"pair": MIRRORED, "depth": 0.08 * RADIUS, "friction": 0.0, "slowness": 2.0}
+_PAIR: dict[str, Any] = {"pair": EQUAL, "depth": _SMALL, "plate_yields": True, "size": 0.004, "friction": 0.0}
+_MIRROR: dict[str, Any] = {
+    "pair": MIRRORED,
+    "radius": 2.0 * RADIUS,
+    "depth": 0.5 * _SMALL,
+    "size": 0.002,
+    "friction": 0.0,
+}
 _NARROW = {"pair": cl.Pair(_WEAK, _WEAK), "depth": 0.25 * _SMALL, "size": 0.002}
 _ELASTIC = {"yields": False, "plate_yields": False}
 JOBS: dict[str, dict[str, Any]] = {

@@ -15,9 +15,20 @@ from contactlaw.parser import Parser
 from validation.fem3d import cases, edges
 
 _COLUMNS = (
-    "kind", "R/H", "mu", "psi", "psi'", "J_t/J_n", "e", "e normal", "mu p/sY", "slide/a",
-    "psi' of the model", "less that of elements", "flag",
-)  # fmt: skip
+    "kind",
+    "R/H",
+    "mu",
+    "psi",
+    "psi'",
+    "J_t/J_n",
+    "e",
+    "e normal",
+    "mu p/sY",
+    "slide/a",
+    "psi' of the model",
+    "less that of elements",
+    "flag",
+)
 _EDGE_COLUMNS = "kind", "R/H", "s/H", "hole/s", "across", "e", "wave", "plastic", "balance"
 _NAMES = *cases.SEEDS, edges.NAME
 
@@ -44,11 +55,19 @@ def _print_oblique(name: str) -> None:
         pressure, model = hit["pressure"] / case.strength, cases.model(case)
         psi = float(model.sliding_speed / (case.friction * case.speed))
         values = (
-            case.slimness, case.friction, case.psi, hit["psi_after"], hit["impulse_ratio"],
-            hit["restitution"], hit["normal_restitution"], case.friction * pressure,
-            hit["slide"] / hit["contact_radius"], psi, psi - hit["psi_after"],
+            case.slimness,
+            case.friction,
+            case.psi,
+            hit["psi_after"],
+            hit["impulse_ratio"],
+            hit["restitution"],
+            hit["normal_restitution"],
+            case.friction * pressure,
+            hit["slide"] / hit["contact_radius"],
+            psi,
+            psi - hit["psi_after"],
             bool(model.flags & cl.Validity.SLIDING_FLOW),
-        )  # fmt: skip
+        )
         _print_row(case.kind, values)
 
 
@@ -56,10 +75,12 @@ def _print_edges() -> None:
     print(edges.NAME, *_EDGE_COLUMNS, sep="\t")
     for case, hit in edges.compute():
         values = (
-            case.radius / case.thickness, case.distance / case.thickness,
-            case.hole / (case.distance or math.inf), case.across,
+            case.radius / case.thickness,
+            case.distance / case.thickness,
+            case.hole / (case.distance or math.inf),
+            case.across,
             *(hit[key] for key in ("restitution", "wave", "plastic", "balance")),
-        )  # fmt: skip
+        )
         _print_row(case.kind, values)
 
 

@@ -103,10 +103,14 @@ def draw(seed: int) -> list[Case]:
         speed = math.sqrt(0.8 / math.pi * _MODULUS / _DENSITY * compression**2.5)
         slimness = float(generator.uniform(0.0, _STEEPEST))
         drawn = (
-            generator.uniform(0.3, 0.7), generator.uniform(0.2, 0.35), by_logarithm(_STRENGTH),
-            speed, slimness if slimness > _THICKEST else 0.0, generator.uniform(*_FRICTION),
+            generator.uniform(0.3, 0.7),
+            generator.uniform(0.2, 0.35),
+            by_logarithm(_STRENGTH),
+            speed,
+            slimness if slimness > _THICKEST else 0.0,
+            generator.uniform(*_FRICTION),
             by_logarithm(_PSI),
-        )  # fmt: skip
+        )
         listed.append(Case(KINDS[n % len(KINDS)], *(float(f"{value:.3g}") for value in drawn)))
     return listed
 
@@ -132,8 +136,7 @@ def solve(case: Case) -> dict[str, Any]:
     given = case.pair, case.speed, RADIUS, case.thickness, case.friction
     flows = {"yields": case.kind == "sphere", "plate_yields": case.kind == "plate"}
     hit, normal = (
-        oblique_impact(given[0], given[1], along, *given[2:], **flows)
-        for along in (case.sliding_speed, 0.0)
+        oblique_impact(given[0], given[1], along, *given[2:], **flows) for along in (case.sliding_speed, 0.0)
     )
     outcome = {key: value for key, value in vars(hit).items() if key != "history"}
     return {
@@ -166,9 +169,7 @@ def compute(name: str) -> Iterator[tuple[Case, dict[str, Any]]]:
     return kept(name, drawn(name), solve)
 
 
-def kept(
-    name: str, listed: list[Any], solve: Callable[[Any], dict[str, Any]]
-) -> Iterator[tuple[Any, dict[str, Any]]]:
+def kept(name: str, listed: list[Any], solve: Callable[[Any], dict[str, Any]]) -> Iterator[tuple[Any, dict[str, Any]]]:
     """Compute what is missing of these impacts, and store each as soon as it is done."""
     done = results(name, type(listed[0]))
     for case in listed:

@@ -120,9 +120,7 @@ def approach(pair: Surfaces, x: Array, v: Array, inverse_mass: Array) -> int:
         across = cross(normal, along, 1.0)
         before = _relative(pair, v, i)
         for k in range(3):
-            pair.base[i, 0, k], pair.base[i, 1, k], pair.base[i, 2, k] = (
-                normal[k], along[k], across[k],
-            )  # fmt: skip
+            pair.base[i, 0, k], pair.base[i, 1, k], pair.base[i, 2, k] = (normal[k], along[k], across[k])
             pair.before[i, k] = before[k]
             pair.impulse[i, k] = 0.0
         for k in range(3):
@@ -142,9 +140,7 @@ def approach(pair: Surfaces, x: Array, v: Array, inverse_mass: Array) -> int:
 
 
 @kernel(entry=True)
-def resolve(
-    pair: Surfaces, v: Array, inverse_mass: Array, dt: float, count: int, total: Array
-) -> bool:
+def resolve(pair: Surfaces, v: Array, inverse_mass: Array, dt: float, count: int, total: Array) -> bool:
     """Correct the new velocities for contact, and add the impulse upon the sphere to `total`."""
     for _ in range(SWEEPS):
         for k in range(count):
@@ -200,7 +196,18 @@ def pair_up(slave: Indices, faces: Indices, x: Array, friction: float, reach: fl
     apart = ((x[slave, None, :2] - centres) ** 2).sum(axis=2)
     s = slave.size
     return Surfaces(
-        slave, faces, beside, apart.argmin(axis=1), np.zeros((s, 4)), np.zeros((s, 3, 3)),
-        np.zeros((s, 3)), np.zeros(s), np.zeros((s, 3)), np.zeros((s, 3)),
-        np.zeros(s, dtype=np.int64), np.zeros(2), friction, reach,
-    )  # fmt: skip
+        slave,
+        faces,
+        beside,
+        apart.argmin(axis=1),
+        np.zeros((s, 4)),
+        np.zeros((s, 3, 3)),
+        np.zeros((s, 3)),
+        np.zeros(s),
+        np.zeros((s, 3)),
+        np.zeros((s, 3)),
+        np.zeros(s, dtype=np.int64),
+        np.zeros(2),
+        friction,
+        reach,
+    )

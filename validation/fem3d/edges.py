@@ -60,10 +60,18 @@ def listed() -> list[Case]:
 def solve(case: Case) -> dict[str, Any]:
     """Compute an impact."""
     hit = oblique_impact(
-        case.pair, case.speed, 0.0, case.radius, case.thickness, 0.0,
-        yields=case.kind == "sphere", plate_yields=case.kind == "plate", across=int(case.across),
-        distance=case.distance or math.inf, hole=case.hole or math.inf,
-    )  # fmt: skip
+        case.pair,
+        case.speed,
+        0.0,
+        case.radius,
+        case.thickness,
+        0.0,
+        yields=case.kind == "sphere",
+        plate_yields=case.kind == "plate",
+        across=int(case.across),
+        distance=case.distance or math.inf,
+        hole=case.hole or math.inf,
+    )
     return {key: value for key, value in vars(hit).items() if key != "history"}
 
 

@@ -82,9 +82,14 @@ def _component(x: Array, n: Indices, j: int) -> tuple[float, ...]:
 def _modes(x: Array, n: Indices) -> Modes:
     p, q, r = _component(x, n, 0), _component(x, n, 1), _component(x, n, 2)
     return (
-        (p[0], q[0], r[0]), (p[1], q[1], r[1]), (p[2], q[2], r[2]), (p[3], q[3], r[3]),
-        (p[4], q[4], r[4]), (p[5], q[5], r[5]), (p[6], q[6], r[6]),
-    )  # fmt: skip
+        (p[0], q[0], r[0]),
+        (p[1], q[1], r[1]),
+        (p[2], q[2], r[2]),
+        (p[3], q[3], r[3]),
+        (p[4], q[4], r[4]),
+        (p[5], q[5], r[5]),
+        (p[6], q[6], r[6]),
+    )
 
 
 @kernel(inline=True)
@@ -180,14 +185,34 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         m, k = shear * third, bending * third
         k_1, k_2, k_3 = k * i1 * i1, k * i2 * i2, k * i3 * i3
         stiffness = (
-            k_1, k_1, k_2, k_2, k_3, k_3, k_1 / 3.0, k_2 / 3.0, k_3 / 3.0,
-            m * i1 * i2, m * i2 * i3, m * i3 * i1,
-        )  # fmt: skip
+            k_1,
+            k_1,
+            k_2,
+            k_2,
+            k_3,
+            k_3,
+            k_1 / 3.0,
+            k_2 / 3.0,
+            k_3 / 3.0,
+            m * i1 * i2,
+            m * i2 * i3,
+            m * i3 * i1,
+        )
         t_1, t_2, t_3 = dot(g1, q_b), dot(g2, q_c), dot(g3, q_a)
         rate = (
-            dot(g1, q_a), dot(g1, q_c), dot(g2, q_a), dot(g2, q_b), dot(g3, q_b), dot(g3, q_c),
-            dot(g1, q_d), dot(g2, q_d), dot(g3, q_d), t_1 + t_2, t_2 + t_3, t_3 + t_1,
-        )  # fmt: skip
+            dot(g1, q_a),
+            dot(g1, q_c),
+            dot(g2, q_a),
+            dot(g2, q_b),
+            dot(g3, q_b),
+            dot(g3, q_c),
+            dot(g1, q_d),
+            dot(g2, q_d),
+            dot(g3, q_d),
+            t_1 + t_2,
+            t_2 + t_3,
+            t_3 + t_1,
+        )
         h = body.hourglass[e]
         for i in range(HOURGLASSES):
             added = stiffness[i] * rate[i]

@@ -191,9 +191,7 @@ def oblique_impact(
     system = assemble(bodies, pair, radius, friction, yields, plate_yields, core, touch)
     step = _COURANT * min(
         hexahedra.stable_step(body, system.x, material.density)
-        for body, material in zip(
-            (system.sphere, system.plate), (pair.sphere, pair.plate), strict=True
-        )
+        for body, material in zip((system.sphere, system.plate), (pair.sphere, pair.plate), strict=True)
     )
     count = len(bodies[0].nodes)
     system.v[:count, 0], system.v[:count, 2] = sliding_speed, -speed
@@ -292,9 +290,7 @@ def assemble(
     return System(x, still[0], still[1], mass, inverse_mass, *bodies, surfaces)
 
 
-def _body(
-    of: Mesh, material: cl.Material, first: int, soft: NDArray[np.bool_], yields: bool
-) -> Body:
+def _body(of: Mesh, material: cl.Material, first: int, soft: NDArray[np.bool_], yields: bool) -> Body:
     """Elements at rest; `first` is the number of the mesh's first node."""
     m = len(of.elements)
     ratio = material.poissons_ratio
@@ -336,9 +332,14 @@ def energy(system: System, count: int) -> tuple[float, ...]:
     translation, rotation = 0.5 * mass.sum() * (mean @ mean), 0.5 * moment * spin**2
     kinetic = 0.5 * system.mass * (system.v**2).sum(axis=1)
     return (
-        translation, rotation, kinetic[:count].sum() - translation - rotation,
-        hexahedra.strain_energy(system.sphere, system.x), float(system.sphere.work[1]),
-        kinetic[count:].sum(), hexahedra.strain_energy(system.plate, system.x),
-        float(system.plate.work[1]), float(system.sphere.work[0] + system.plate.work[0]),
+        translation,
+        rotation,
+        kinetic[:count].sum() - translation - rotation,
+        hexahedra.strain_energy(system.sphere, system.x),
+        float(system.sphere.work[1]),
+        kinetic[count:].sum(),
+        hexahedra.strain_energy(system.plate, system.x),
+        float(system.plate.work[1]),
+        float(system.sphere.work[0] + system.plate.work[0]),
         *map(float, system.surfaces.work),
-    )  # fmt: skip
+    )

@@ -57,10 +57,7 @@ def sphere(radius: float, core: float, n: int) -> Mesh:
     True
     """
     far = 4.0 * radius / _FAR_BOX
-    box, shells = (
-        _box(n),
-        _shells(n, _SPHERE_GROWTH / n, lambda s: core * s, lambda s: far * s / _squared(s)),
-    )
+    box, shells = (_box(n), _shells(n, _SPHERE_GROWTH / n, lambda s: core * s, lambda s: far * s / _squared(s)))
     near = [_inverted(block, radius) for block in (core * box, *shells)]
     cap = _inverted(_FAR_BOX * radius * box, radius)[::-1]
     cap[..., 2] = 2.0 * radius - cap[..., 2]
@@ -77,9 +74,7 @@ def half_space(core: float, n: int, width: float) -> Mesh:
     >>> [round(float(v), 6) for v in (*mesh.nodes.min(axis=0), *mesh.nodes.max(axis=0))]
     [-10.0, 0.0, -10.0, 10.0, 10.0, 0.0]
     """
-    shells = _shells(
-        n, _PLATE_GROWTH, lambda s: core * s, lambda s: width * s / np.sqrt(_squared(s))
-    )
+    shells = _shells(n, _PLATE_GROWTH, lambda s: core * s, lambda s: width * s / np.sqrt(_squared(s)))
     blocks = [core * _box(n), *shells]
     surface = [block[..., 2] == 0.0 for block in blocks]
     for block in blocks:
@@ -97,9 +92,7 @@ def plate(core: float, n: int, thickness: float, width: float) -> Mesh:
     [-10.0, 0.0, -1.0, 10.0, 10.0, 0.0]
     """
     depth = _depths(core, n, thickness)
-    shells = _shells(
-        n, _PLATE_GROWTH, lambda s: core * s, lambda s: width * s / np.sqrt(_squared(s))
-    )
+    shells = _shells(n, _PLATE_GROWTH, lambda s: core * s, lambda s: width * s / np.sqrt(_squared(s)))
     faces = [block[:, :, :1] for block in (core * _box(n), *shells[:3])]  # those at z = 0
     blocks, surface = [], []
     for face in faces:
@@ -110,9 +103,7 @@ def plate(core: float, n: int, thickness: float, width: float) -> Mesh:
     return _joined(blocks, surface)
 
 
-def edged_plate(
-    core: float, n: int, thickness: float, width: float, distance: float, hole: float = math.inf
-) -> Mesh:
+def edged_plate(core: float, n: int, thickness: float, width: float, distance: float, hole: float = math.inf) -> Mesh:
     """Half of a plate whose free edge runs across the x axis at `distance`, more than `core`.
 
     The edge is straight, or the rim of a circular hole of the radius `hole`; the other edges are
@@ -207,9 +198,7 @@ def _depths(core: float, n: int, thickness: float) -> Array:
     return _steps(thickness, size, 0.6 * core, _LAYER_GROWTH, max(thickness / _LAYERS, size))[::-1]
 
 
-def _steps(
-    length: float, size: float, fine: float, growth: float, largest: float = math.inf
-) -> Array:
+def _steps(length: float, size: float, fine: float, growth: float, largest: float = math.inf) -> Array:
     """Places from 0 to length: steps of one size up to `fine`, which then grow to the largest."""
     steps = [size] * math.ceil(fine / size)
     while sum(steps) < length:

@@ -124,14 +124,19 @@ def key(axes: Axes, label: str, line: str, **look: Any) -> None:
     axes.plot([], [], line, label=label, **{"color": INK, **look})
 
 
-def cross(
-    axes: Axes, x: ArrayLike, y: ArrayLike, colour: Colour = PALE, label: str | None = None
-) -> None:
+def cross(axes: Axes, x: ArrayLike, y: ArrayLike, colour: Colour = PALE, label: str | None = None) -> None:
     """Draw marks that stand out from lines of their colour."""
     axes.plot(
-        x, y, "X", color=colour, label=label, markersize=9, markeredgecolor=INK, zorder=3,
+        x,
+        y,
+        "X",
+        color=colour,
+        label=label,
+        markersize=9,
+        markeredgecolor=INK,
+        zorder=3,
         clip_on=np.size(x) == 0,  # unclipped, an empty mark takes room in the layout
-    )  # fmt: skip
+    )
 
 
 def law(name: str) -> tuple[Colour, str, str]:
@@ -158,9 +163,7 @@ def shades(count: int) -> list[Colour]:
     return [tuple(colormaps["viridis"](0.82 * n / (count - 1))) for n in range(count)]
 
 
-def contours(
-    axes: Axes, x: ArrayLike, y: ArrayLike, values: ArrayLike, label: str, **look: Any
-) -> None:
+def contours(axes: Axes, x: ArrayLike, y: ArrayLike, values: ArrayLike, label: str, **look: Any) -> None:
     """Draw filled contours over two quantities, with a labelled colour bar."""
     drawn = axes.contourf(x, y, values, **{"cmap": "cividis", **look})
     figure = axes.get_figure(root=True)
@@ -175,11 +178,7 @@ def note(axes: Axes, x: float, y: float, text: str, colour: Colour = INK, **plac
 
 
 def error_maps(
-    size: tuple[float, float],
-    title: str,
-    subtitle: str,
-    maps: Mapping[str, np.ndarray],
-    widest: float,
+    size: tuple[float, float], title: str, subtitle: str, maps: Mapping[str, np.ndarray], widest: float
 ) -> Figure:
     """Make a figure of maps of the matrix, in percent; colours end at `widest`."""
     case = compare.comparison("matrix")

@@ -17,28 +17,9 @@ from validation.accuracy import compare
 from validation.fem import store
 from validation.fem.studies import SLENDERNESS
 from validation.figures import chart
-from validation.figures.chart import (
-    COMPRESSION,
-    FORCE,
-    INELASTICITY,
-    RATIO,
-    RESTITUTION,
-    SPEED,
-    Axis,
-    Panel,
-)
+from validation.figures.chart import COMPRESSION, FORCE, INELASTICITY, RATIO, RESTITUTION, SPEED, Axis, Panel
 from validation.paper.closed_form import zener
-from validation.paper.setting import (
-    PAIR,
-    RADIUS,
-    all_laws,
-    extreme,
-    force,
-    impacts,
-    largest,
-    model,
-    unloading,
-)
+from validation.paper.setting import PAIR, RADIUS, all_laws, extreme, force, impacts, largest, model, unloading
 
 PART = figures.FINITE_ELEMENTS
 
@@ -87,9 +68,14 @@ def fig14_unloading() -> chart.Drawn:
     compression, load, top = compare.indentation("30_elastic")
     numbers["elastic finite elements over Hertz at 30 d_Y"] = load[top] / compression[top] ** 1.5
     left.plot(
-        compression[:top:8], load[:top:8], "o", color=INK, markersize=4, markerfacecolor="white",
+        compression[:top:8],
+        load[:top:8],
+        "o",
+        color=INK,
+        markersize=4,
+        markerfacecolor="white",
         label="finite elements, elastic",
-    )  # fmt: skip
+    )
     curve = compare.indentation("calculix")
     square: chart.Look = {"color": INK, "markerfacecolor": "none"}
     left.plot(*_points(curve, 4), "s", markersize=7, label="CalculiX", **square)
@@ -142,9 +128,7 @@ def fig15_restitution() -> chart.Drawn:
             axes.plot(x[~elastic], e[~elastic], "o", color=colour)
             axes.plot(x[elastic], e[elastic], "o", color=colour, markerfacecolor="white")
         lift = _LIFT.get(slenderness, -4)
-        left.annotate(
-            f"{slenderness:g}", (7.0, e[-1]), (14, lift), textcoords="offset points", color=colour
-        )
+        left.annotate(f"{slenderness:g}", (7.0, e[-1]), (14, lift), textcoords="offset points", color=colour)
         if slenderness == SLENDERNESS[0]:
             left.annotate("R/H", (7.0, e[-1]), (14, 20), textcoords="offset points")
     right.plot(lam, zener(lam), ":", color=INK)
@@ -217,10 +201,12 @@ def fig17_losses() -> chart.Drawn:
         rows = np.isclose(case.slenderness, ratio)
         v = case.speed_ratio[rows]
         axes.stackplot(
-            v, *(case.fem[name][rows] for name in _SHARES), alpha=0.55,
+            v,
+            *(case.fem[name][rows] for name in _SHARES),
+            alpha=0.55,
             colors=[colour for colour, _ in _SHARES.values()],
             labels=[label for _, label in _SHARES.values()],
-        )  # fmt: skip
+        )
         wave, plastic = case.model["wave_fraction"][rows], case.model["plastic_fraction"][rows]
         axes.plot(v, wave, color=INK)
         axes.plot(v, wave + plastic, color=INK, label="model: plate; with plastic work")
@@ -248,17 +234,13 @@ def fig18_impact() -> chart.Drawn:
     figure, (a, b, c, d) = chart.sheet(
         (13.0, 9.0),
         "One impact in full: 26 m/s on 0.5 mm of glass",
-        f"gamma-alumina sphere, R = 0.9 mm; largest plastic strain {strain:.4f} (paper: about "
-        "0.039)",
+        f"gamma-alumina sphere, R = 0.9 mm; largest plastic strain {strain:.4f} (paper: about 0.039)",
         Panel(Axis("time  [µs]"), Axis("contact force  [N]")),
         Panel(_DISTANCE.between(0.0, 6.0), Axis("deflection of the plate  [µm]")),
         Panel(_DISTANCE.between(0.0, 1.4), _HEIGHT.between(-0.02, 1.82), "mesh of the sphere"),
-        Panel(
-            _DISTANCE.between(0.0, 0.45), _HEIGHT.between(0.0, 0.3),
-            "plastic strain after separation",
-        ),
+        Panel(_DISTANCE.between(0.0, 0.45), _HEIGHT.between(0.0, 0.3), "plastic strain after separation"),
         rows=2,
-    )  # fmt: skip
+    )
     contact = model().force_history(made["speed"], RADIUS, made["thickness"])
     other = store.read("calculix_impact").data
     at, load = other["time"][::8] * 1e6, other["force"][::8]
@@ -517,9 +499,7 @@ def fig23_regions() -> chart.Drawn:
         if law not in ("myc", "hertz"):  # the modified Zener model, and Zener's
             cors[f"{chart.law(law)[-1]}'s law"] = cor
     cors["law fem"] = compare.by_fem("matrix")
-    errors = np.array(
-        [[compare.deviation(cor, case, where) for where in parts.values()] for cor in cors.values()]
-    )
+    errors = np.array([[compare.deviation(cor, case, where) for where in parts.values()] for cor in cors.values()])
     figure = style.figure(
         13.0,
         8.0,
@@ -534,9 +514,7 @@ def fig23_regions() -> chart.Drawn:
         big, rms = 100.0 * errors[i, j]
         ink = "white" if big > 30.0 else INK
         axes.text(j, i, f"{big:.1f}  ({rms:.1f})", ha="center", va="center", color=ink)
-    counts = [
-        f"{part.replace('<=', _AT_MOST)}\n{where.sum()} impacts" for part, where in parts.items()
-    ]
+    counts = [f"{part.replace('<=', _AT_MOST)}\n{where.sum()} impacts" for part, where in parts.items()]
     axes.set_xticks(range(len(parts)), counts)
     axes.set_yticks(range(len(cors)), list(cors))
     axes.xaxis.tick_top()
@@ -556,14 +534,18 @@ _KINDS = {"13": (0, 20), "26": (20, 40), "52": (40, 60), "100 and more": (60, 1e
 _MARKS: dict[str, chart.Look] = {  # the marks of the pairs overlap; by plate
     "glass": {"marker": "o", "markersize": 9, "label": "alumina on glass"},
     "soda-lime-glass": {
-        "marker": "s", "markersize": 12, "markerfacecolor": "none",
+        "marker": "s",
+        "markersize": 12,
+        "markerfacecolor": "none",
         "label": "steel on soda-lime-glass",
     },
     "aluminium-6061-t6": {
-        "marker": "^", "markersize": 7, "markerfacecolor": "white",
+        "marker": "^",
+        "markersize": 7,
+        "markerfacecolor": "white",
         "label": "steel on aluminium-6061-t6",
     },
-}  # fmt: skip
+}
 
 
 def fig24_strain() -> chart.Drawn:

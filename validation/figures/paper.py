@@ -24,13 +24,7 @@ from validation.figures.chart import (
     Panel,
 )
 from validation.paper import closed_form, setting, turning_point
-from validation.paper.closed_form import (
-    elastic_compression,
-    mueller,
-    peng,
-    yield_speed_ratio,
-    zener,
-)
+from validation.paper.closed_form import elastic_compression, mueller, peng, yield_speed_ratio, zener
 from validation.paper.elements import FASTEST_COMPRESSION, contact_time_errors
 from validation.paper.evidence import eq_10, fitted_border, slope
 from validation.paper.formulas import border, eq_6, eq_14, eq_22, raman, thornton_asymptote
@@ -130,8 +124,7 @@ def fig04_compression() -> chart.Drawn:
     figure, (left, right) = chart.sheet(
         (11.0, 5.6),
         "The slope of Eq. 6 is 0.91 to 0.93, not 1.00",
-        "largest compression of an elastic impact on Hertz's scale; right: error of the two "
-        "formulas for $w_m$",
+        "largest compression of an elastic impact on Hertz's scale; right: error of the two formulas for $w_m$",
         Panel(INELASTICITY.between(0, 2), Axis(r"largest compression  $w_m^{-1.5}$")),
         Panel(INELASTICITY.between(0, 2), Axis(r"error of $w_m$  [%]")),
     )
@@ -140,9 +133,7 @@ def fig04_compression() -> chart.Drawn:
     quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
     printed, mended = eq_6(lam) / exact - 1, quadratic ** (-2 / 3) / exact - 1
     some = slice(None, None, 5)
-    left.plot(
-        lam[some], exact[some] ** -1.5, "s", color=BLUE, markersize=7, label="solver", clip_on=False
-    )
+    left.plot(lam[some], exact[some] ** -1.5, "s", color=BLUE, markersize=7, label="solver", clip_on=False)
     left.plot(lam, lam + INTERCEPT, color=VERMILION, label="Eq. 6, slope 1.00")
     left.plot(lam, quadratic, color=GREEN, label="derived slope + quadratic")
     left.legend(loc="upper left")
@@ -263,9 +254,7 @@ def fig07_inelasticity() -> chart.Drawn:
     axes.legend(ncols=3, loc="upper right")
     thick, near = impacts(FASTEST, 0.2), lam[lam <= 0.5]
     numbers = {
-        f"{name} over the model at 7 V_Y0, R/H = 0.2, less 1": form(thick.inelasticity)
-        / thick.restitution
-        - 1
+        f"{name} over the model at 7 V_Y0, R/H = 0.2, less 1": form(thick.inelasticity) / thick.restitution - 1
         for name, form in (("Zener", zener), ("Mueller", mueller), ("Raman's form", raman))
     }
     return figure, {
@@ -309,9 +298,14 @@ def fig08_speed() -> chart.Drawn:
         axes.plot(v[::16], e[::16], "o", color=BLUE, markersize=4.5, label="solver")
         here = np.isclose(case.slenderness, ratio)
         axes.plot(
-            case.speed_ratio[here], case.fem["restitution"][here], "x", color=INK,
-            markersize=8, markeredgewidth=2, label="finite elements",
-        )  # fmt: skip
+            case.speed_ratio[here],
+            case.fem["restitution"][here],
+            "x",
+            color=INK,
+            markersize=8,
+            markeredgewidth=2,
+            label="finite elements",
+        )
     figure.axes[0].legend(loc="lower left")
     return figure, {f"largest error, {name}": error for name, error in errors.items()}
 
@@ -388,9 +382,13 @@ def fig09b_energy() -> chart.Drawn:
         kept, wave = np.asarray(one.restitution) ** 2, np.asarray(one.wave_fraction)
         plastic = np.asarray(one.plastic_fraction)
         axes.stackplot(
-            v, kept, wave, plastic, colors=(PALE, BLUE, ORANGE),
+            v,
+            kept,
+            wave,
+            plastic,
+            colors=(PALE, BLUE, ORANGE),
             labels=("kept by the sphere", "bending wave", "plastic flow"),
-        )  # fmt: skip
+        )
         if borderline(ratio) < FASTEST:
             words = "more plastic than wave beyond"
             axes.axvline(borderline(ratio), color=INK, linestyle=":", label=words)
@@ -468,11 +466,7 @@ def fig11_turning_point() -> chart.Drawn:
     chart.note(axes, 4.1, 0.02, "loads along\nHertz's curve", ha="right")
     chart.note(axes, 4.7, 0.02, "and\nbeyond it", ha="left")
     other = axes.secondary_yaxis(
-        "right",
-        functions=(
-            lambda lam: np.sqrt(np.maximum(lam, 0.0) / ETA),
-            lambda ratio: ETA * np.square(ratio),
-        ),
+        "right", functions=(lambda lam: np.sqrt(np.maximum(lam, 0.0) / ETA), lambda ratio: ETA * np.square(ratio))
     )
     other.set_ylabel(SLENDERNESS.label)
     other.set_yticks([0.5, 1.0, 1.4, 1.8])

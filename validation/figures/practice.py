@@ -101,10 +101,7 @@ _LOOK = {  # by the body that yields: marker, colour and words
     "plate": ("s", VERMILION, "the plate yields"),
     "both": ("^", GREEN, "both yield"),
 }
-_TITLES = {
-    "paper": "impacts of the paper's kind",
-    "kept out": "everyday impacts, kept out of the fit",
-}
+_TITLES = {"paper": "impacts of the paper's kind", "kept out": "everyday impacts, kept out of the fit"}
 _FEM = Axis("COR by finite elements").between(0.0, 1.005)
 _WIDEST = 5.0  # [%]; a larger error is drawn here, with its value
 
@@ -127,9 +124,7 @@ def fig25_fem() -> chart.Drawn:
         "left: the coefficient of restitution (COR) of each impact, coloured: law fem, crosses: "
         "law myc, in which the sphere alone yields; right: errors of law fem, band: their bound",
     )
-    panels = figure.subplot_mosaic(
-        [["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15)
-    )
+    panels = figure.subplot_mosaic([["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15))
     Panel(_FEM, _FEM._replace(label="COR by law")).set_up(panels["cor"])
     _parity(panels["cor"], rows, others)
     for name, row in rows.items():
@@ -143,9 +138,15 @@ def _parity(axes: Axes, rows: dict[str, Row], others: dict[str, tuple[Member, ..
     axes.plot([0.0, 1.0], [0.0, 1.0], color=INK, linewidth=1)
     every = [one for listed in others.values() for one in listed]
     axes.plot(
-        [one.fem for one in every], [one.law for one in every], "x", color=MUTED,
-        markersize=6, alpha=0.7, label="law myc", zorder=1,
-    )  # fmt: skip
+        [one.fem for one in every],
+        [one.law for one in every],
+        "x",
+        color=MUTED,
+        markersize=6,
+        alpha=0.7,
+        label="law myc",
+        zorder=1,
+    )
     for row in rows.values():
         _marks(axes, row, lambda one: one.law, 8.0)
     chart.key(axes, "open: with a flag", "o", markerfacecolor="white", color=BLUE)
@@ -157,17 +158,22 @@ def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) 
     """Mark impacts by the body that yields; those that carry a flag of accuracy are open."""
     for yielding, (marker, colour, words) in _LOOK.items():
         for flagged in (False, True):
-            some = [
-                one for one in row.members if (one.yielding, one.flagged) == (yielding, flagged)
-            ]
+            some = [one for one in row.members if (one.yielding, one.flagged) == (yielding, flagged)]
             if not some:  # an empty mark takes room in the layout
                 continue
             axes.plot(
-                [one.fem for one in some], [value(one) for one in some], marker, color=colour,
-                markersize=size, markerfacecolor="white" if flagged else colour,
-                markeredgecolor=colour if flagged else "white", markeredgewidth=0.8,
-                label=None if flagged else words, clip_on=False, zorder=2,
-            )  # fmt: skip
+                [one.fem for one in some],
+                [value(one) for one in some],
+                marker,
+                color=colour,
+                markersize=size,
+                markerfacecolor="white" if flagged else colour,
+                markeredgecolor=colour if flagged else "white",
+                markeredgewidth=0.8,
+                label=None if flagged else words,
+                clip_on=False,
+                zorder=2,
+            )
 
 
 def _errors(axes: Axes, title: str, row: Row) -> None:
@@ -188,9 +194,14 @@ def _errors(axes: Axes, title: str, row: Row) -> None:
         percent = 100.0 * one.errors.restitution
         lift = 9 + 12 * (n % 2)  # apart from its neighbours
         axes.annotate(
-            f"{percent:+.1f}", (one.fem, error(one)), (0, -lift if percent > 0.0 else lift),
-            textcoords="offset points", ha="center", va="center_baseline", fontsize=10,
-        )  # fmt: skip
+            f"{percent:+.1f}",
+            (one.fem, error(one)),
+            (0, -lift if percent > 0.0 else lift),
+            textcoords="offset points",
+            ha="center",
+            va="center_baseline",
+            fontsize=10,
+        )
 
 
 def _numbers(rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> dict[str, float]:
@@ -199,9 +210,7 @@ def _numbers(rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> dic
         numbers[f"{name}: impacts"] = len(row.members)
         numbers[f"{name}: with a flag of accuracy"] = len(row.members) - len(row.counted)
         numbers[f"{name}: beyond a bound without one"] = len(row.silent)
-        for field, share, error in zip(
-            acceptance.Errors._fields, row.shares, row.largest, strict=True
-        ):
+        for field, share, error in zip(acceptance.Errors._fields, row.shares, row.largest, strict=True):
             words = field.replace("_", " ")
             numbers[f"{name}: share within, {words}"] = share
             numbers[f"{name}: largest error, {words}"] = error
@@ -225,10 +234,7 @@ _SPIN = Axis("spin after the impact  [rad/s]").between(0.0, 700.0)
 def _oblique(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Tangential restitution and spin [rad/s] of the model at angles of incidence [deg]."""
     model = cl.ImpactModel(cl.Pair("alumina", "glass"))
-    normal, along = (
-        _OBLIQUE_SPEED * np.cos(np.radians(angle)),
-        _OBLIQUE_SPEED * np.sin(np.radians(angle)),
-    )
+    normal, along = (_OBLIQUE_SPEED * np.cos(np.radians(angle)), _OBLIQUE_SPEED * np.sin(np.radians(angle)))
     hit = model.oblique(normal, along, _OBLIQUE_RADIUS, math.inf, _FRICTION, method="solve")
     restitution = np.asarray(hit.tangential_restitution)
     return restitution, 2.5 * along * (1.0 - restitution) / _OBLIQUE_RADIUS
@@ -316,13 +322,18 @@ def fig27_measured() -> chart.Drawn:
         _model(right, 1e3 * thickness, model, one.speed, one.radius, thickness)
         for rebound in source.rebounds:
             left.errorbar(
-                rebound.speed, rebound.restitution, rebound.reading_error, fmt="o", color=INK,
-                markersize=8, markerfacecolor=ORANGE, capsize=5, label="measured",
-            )  # fmt: skip
+                rebound.speed,
+                rebound.restitution,
+                rebound.reading_error,
+                fmt="o",
+                color=INK,
+                markersize=8,
+                markerfacecolor=ORANGE,
+                capsize=5,
+                label="measured",
+            )
         least, most = (one.restitution + sign * one.reading_error for sign in (-1.0, 1.0))
-        right.axhspan(
-            least, most, color=ORANGE, alpha=0.5, linewidth=0.0, label="measured, thickness unknown"
-        )
+        right.axhspan(least, most, color=ORANGE, alpha=0.5, linewidth=0.0, label="measured, thickness unknown")
         for axes in (left, right):
             axes.legend(loc="lower right")
         band = model.uncertainty(one.speed, one.radius, one.thickness).restitution
@@ -341,9 +352,7 @@ def fig27_measured() -> chart.Drawn:
 def _panels(source: Source) -> tuple[Panel, Panel]:
     one = source.rebounds[0]
     cor = chart.RESTITUTION.between(one.restitution - 0.08, 1.0)
-    return Panel(_OVER_SPEED, cor, source.title), Panel(
-        _OVER_THICKNESS, cor, f"at {one.speed:g} m/s"
-    )
+    return Panel(_OVER_SPEED, cor, source.title), Panel(_OVER_THICKNESS, cor, f"at {one.speed:g} m/s")
 
 
 def _model(axes: Axes, x: NDArray[np.float64], model: cl.ImpactModel, *impact: Any) -> None:
@@ -361,11 +370,7 @@ _KINDS: tuple[tuple[Edge, str, tuple[float, float]], ...] = (
     ("clamped", BLUE, (2.75, 0.85)),
 )
 # radius [mm], name and its place
-_HOLES = (
-    (1.0, "hole, 1 mm", (0.28, 0.578)),
-    (3.0, "3 mm", (0.28, 0.476)),
-    (10.0, "10 mm", (0.15, 0.338)),
-)
+_HOLES = ((1.0, "hole, 1 mm", (0.28, 0.578)), (3.0, "3 mm", (0.28, 0.476)), (10.0, "10 mm", (0.15, 0.338)))
 _LEAST = 0.3  # distance from a hole [mm]; nearer ones are of no use
 
 
@@ -375,9 +380,11 @@ def _edge_elements(kind: Edge) -> np.ndarray:
         rows = [
             (float(row["distance"]), float(row["restitution"]))
             for row in csv.DictReader(file)
-            if row["edge"] == kind and row["law"] == "hertz" and row["inelasticity"] == "0.3"
+            if row["edge"] == kind
+            and row["law"] == "hertz"
+            and row["inelasticity"] == "0.3"
             and row["poissons_ratio"] == ("0.2" if kind == "free" else "0.3")
-        ]  # fmt: skip
+        ]
     return np.array(rows).T
 
 
@@ -419,10 +426,7 @@ def fig28_edges() -> chart.Drawn:
         at, found = _edge_elements(kind)
         here = model.solve(*impact, edge=kind, edge_distance=1e-3 * unit * at).restitution
         axes.plot(s, near, color=colour, linewidth=2.6)
-        axes.plot(
-            unit * at, found, "o", color=colour, markersize=8, markerfacecolor="white",
-            markeredgewidth=1.8,
-        )  # fmt: skip
+        axes.plot(unit * at, found, "o", color=colour, markersize=8, markerfacecolor="white", markeredgewidth=1.8)
         axes.text(*place, kind, color=colour, fontsize=14, fontweight="bold", ha="left")
         numbers[f"COR 2 mm from a {kind} edge"] = np.interp(2.0, s, near)
         off.append(np.abs(here - found).max())

@@ -11,9 +11,7 @@ import validation.hostile
 from contactlaw.parser import Parser
 
 CAMPAIGNS = tuple(
-    module.name
-    for module in pkgutil.iter_modules(validation.hostile.__path__)
-    if not module.name.startswith("_")
+    module.name for module in pkgutil.iter_modules(validation.hostile.__path__) if not module.name.startswith("_")
 )
 
 

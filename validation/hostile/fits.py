@@ -70,11 +70,13 @@ def cases(draw: st.DrawFn) -> Case:
     radius, slowest = draw(log(0.1e-3, 5e-3)), draw(log(0.05, 5.0))
     fastest = min(slowest * draw(st.floats(3.0, 30.0)), 30.0)
     case = Case(
-        cl.Pair(*bodies), radius, radius / draw(log(0.1, 1.8)),
+        cl.Pair(*bodies),
+        radius,
+        radius / draw(log(0.1, 1.8)),
         np.geomspace(slowest, fastest, draw(st.integers(6, 16))),
         tuple(draw(st.lists(st.sampled_from(list(NORMAL)), min_size=1, max_size=3, unique=True))),
         unknown,
-    )  # fmt: skip
+    )
     assume(np.min(rebounds(case, "fem").restitution) > _LEAST_COR)
     return case
 
@@ -90,8 +92,6 @@ def check(case: Case) -> Iterator[str]:
         found = cl.fit(case.pair, case.data(), case.unknown)
     except cl.UnidentifiedError:
         return
-    off = {
-        name: (found.values[name] - true(case, name)) / found.errors[name] for name in case.unknown
-    }
+    off = {name: (found.values[name] - true(case, name)) / found.errors[name] for name in case.unknown}
     if not found.alternatives and max(map(abs, off.values())) > _LARGEST:
         yield f"{case}: {found.values} +- {found.errors}, off by {off} errors"

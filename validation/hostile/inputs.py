@@ -180,9 +180,7 @@ def _calls(model: cl.ImpactModel, v: float, r: float, h: float) -> dict[str, Cal
     }
 
 
-def _refused(
-    models: dict[Outside, cl.ImpactModel], v: float, r: float, h: float, foil: bool
-) -> Iterator[str]:
+def _refused(models: dict[Outside, cl.ImpactModel], v: float, r: float, h: float, foil: bool) -> Iterator[str]:
     where = _where(v, r, h)
     for how, model in models.items():
         for name, call in _calls(model, v, r, h).items():

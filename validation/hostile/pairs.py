@@ -72,11 +72,14 @@ def cases(draw: st.DrawFn) -> Case:
         strengths = strengths[::-1]
     bodies = [
         cl.Material(
-            name, e, n, max(e / 4e8, 500.0) * draw(log(1.0, 40.0)),  # waves below 20 km/s
+            name,
+            e,
+            n,
+            max(e / 4e8, 500.0) * draw(log(1.0, 40.0)),  # waves below 20 km/s
             yield_strength=None if s is None or s >= 0.99 * e else s,
         )
         for name, e, n, s in zip("ab", modulus, nu, strengths, strict=True)
-    ]  # fmt: skip
+    ]
     pair = cl.Pair(*bodies)
     # kinetic energy equal to the work of Hertz's contact at yield, or at a tenth of the radius
     law = law_of(pair, "fem")
@@ -150,22 +153,22 @@ def steps(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
 def inputs(pair: cl.Pair) -> Iterator[tuple[str, list[cl.Pair]]]:
     """Yield four pairs along each input, and four across equal strengths."""
     at = _NEAR * np.array([-1.5, -0.5, 0.5, 1.5])
-    for body, field in itertools.product(
-        ("sphere", "plate"), ("youngs_modulus", "poissons_ratio", "yield_strength")
-    ):
+    for body, field in itertools.product(("sphere", "plate"), ("youngs_modulus", "poissons_ratio", "yield_strength")):
         value = getattr(getattr(pair, body), field)
         if value is not None and not (field == "poissons_ratio" and not 1e-3 < value < 0.489):
             yield f"{field} of the {body}", [_with(pair, body, field, value * (1 + d)) for d in at]
     strengths = [body.yield_strength for body in (pair.sphere, pair.plate)]
     if None not in strengths:
         equal = min(s for s in strengths if s is not None)
-        yield "ratio of the strengths", [
-            _with(
-                _with(pair, "sphere", "yield_strength", equal * (1 + d)),
-                "plate", "yield_strength", equal * (1 - d),
-            )
-            for d in at
-        ]  # fmt: skip
+        yield (
+            "ratio of the strengths",
+            [
+                _with(
+                    _with(pair, "sphere", "yield_strength", equal * (1 + d)), "plate", "yield_strength", equal * (1 - d)
+                )
+                for d in at
+            ],
+        )
 
 
 def _with(pair: cl.Pair, body: str, field: str, value: float) -> cl.Pair:
@@ -181,9 +184,7 @@ def thicker(pair: cl.Pair, speed: Array) -> Iterator[str]:
     The COR rises, except by friction: with less lost to waves a contact is deeper, and slips more.
     """
     thickness = _RADIUS * np.geomspace(0.3, 100.0, 60)
-    elastic = cl.Pair(
-        *(dataclasses.replace(body, yield_strength=None) for body in (pair.sphere, pair.plate))
-    )
+    elastic = cl.Pair(*(dataclasses.replace(body, yield_strength=None) for body in (pair.sphere, pair.plate)))
     hit = solve(elastic, speed[:1], thickness)
     lam, waves = np.asarray(hit.inelasticity), np.asarray(hit.wave_fraction)
     if (np.diff(lam) > 1e-9 * lam[1:]).any():

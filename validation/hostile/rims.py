@@ -97,8 +97,7 @@ def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
     """Make rims, holes, and bodies of triangles, convex and not."""
     ends = (0, 0, -0.02), (0, 0, 0)
     found = {
-        f"cylinder of {facets}": Mesh.cylinder(*ends, 0.01, math.inf, facets=facets)
-        for facets in (7, 24, 72, 360)
+        f"cylinder of {facets}": Mesh.cylinder(*ends, 0.01, math.inf, facets=facets) for facets in (7, 24, 72, 360)
     }
     found["cone"] = Mesh.cone(*ends, 0.012, 0.004, math.inf, facets=48)
     found["spike"] = Mesh.cone(*ends, 0.006, 0.0, math.inf, facets=24)
@@ -106,9 +105,9 @@ def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
         for width in (0.6, 1.2, 3.0):
             found[f"hole of {corners}, {width} R"] = _hole(corners, width * RADIUS)
     for size in (3.0, 12.0):
-        found[f"cube of {size} R"] = _hull(np.array(
-            [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size * RADIUS,
-            np.zeros(8))  # fmt: skip
+        found[f"cube of {size} R"] = _hull(
+            np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size * RADIUS, np.zeros(8)
+        )
         for count in (12, 60):
             points = rng.normal(size=(count, 3))
             points *= size * RADIUS / np.linalg.norm(points, axis=1)[:, None]
@@ -155,9 +154,7 @@ def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Flo
         gap = _distance(corners, places) - radii
         good = (gap > 0.3 * _FLIGHT) & (gap < 3 * _FLIGHT)
         parts.append((places[good], -(speeds[:, None] * direction)[good], radii[good]))
-    places, velocities, radii = (
-        np.concatenate(arrays)[:count] for arrays in zip(*parts, strict=True)
-    )
+    places, velocities, radii = (np.concatenate(arrays)[:count] for arrays in zip(*parts, strict=True))
     return places, velocities, radii
 
 

@@ -30,8 +30,11 @@ from validation.inverse.model import rebounds, true
 
 Array = NDArray[np.float64]
 
-QUESTIONS = (*((name,) for name in UNKNOWNS if name != "friction"), ("yield_strength", "thickness"),
-             ("radius", "thickness", "plate_yield_strength"))  # fmt: skip
+QUESTIONS = (
+    *((name,) for name in UNKNOWNS if name != "friction"),
+    ("yield_strength", "thickness"),
+    ("radius", "thickness", "plate_yield_strength"),
+)
 REGIMES = {"below": (0.02, 0.7), "across": (0.2, 8.0), "above": (3.0, 60.0)}  # V0/V_Y0
 _LEAST = 0.05  # smallest COR of a measurement
 _SWIFTEST = 40.0  # [m/s]
@@ -91,9 +94,7 @@ def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Co
         least = 2 if len(question) > 1 else 1
         kinds = tuple(random.permutation(list(NORMAL))[: random.integers(least, 4)].tolist())
         noise = tuple(np.exp(random.uniform(math.log(0.003), math.log(0.03), len(kinds))).tolist())
-        one = Configuration(
-            pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime
-        )
+        one = Configuration(pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime)
         if np.min(rebounds(one, law).restitution) > _LEAST:
             return one
 
@@ -126,10 +127,7 @@ def measured(
 def _model_error(
     random: np.random.Generator, one: Configuration, exact: dict[str, Array], law: str
 ) -> dict[str, Array]:
-    data = cl.Measurements(
-        speed=one.speed, radius=one.radius, thickness=one.thickness,
-        **exact,
-    )  # fmt: skip
+    data = cl.Measurements(speed=one.speed, radius=one.radius, thickness=one.thickness, **exact)
     moved = parameters(one.pair, data, "density", {})
     values = Values.of(data)
     predictor = Predictor(one.pair, law_of(one.pair, law), data, moved, values)
@@ -138,16 +136,12 @@ def _model_error(
     if covariance is None:
         return {}
     correlation = covariance.correlation[np.ix_(covariance.cell, covariance.cell)]
-    drawn = covariance.size * random.multivariate_normal(
-        np.zeros(len(correlation)), correlation, method="cholesky"
-    )
+    drawn = covariance.size * random.multivariate_normal(np.zeros(len(correlation)), correlation, method="cholesky")
     names = list(KINDS)
     return {name: drawn[values.kind == names.index(name)] for name in exact}
 
 
-def outcomes(
-    question: tuple[str, ...], sets: int, seed: int, law: str = "fem"
-) -> Iterator[list[Outcome]]:
+def outcomes(question: tuple[str, ...], sets: int, seed: int, law: str = "fem") -> Iterator[list[Outcome]]:
     """Fit synthetic data sets; the outcomes of each, none where the fit is refused."""
     random = np.random.default_rng([seed, QUESTIONS.index(question)])
     for n in range(sets):
@@ -161,10 +155,9 @@ def outcomes(
             continue
         stated = found.errors if errs else found.statistical_errors
         yield [
-            Outcome(name, one.regime, errs, found.values[name] / true(one, name) - 1.0,
-                    stated[name] / true(one, name))
+            Outcome(name, one.regime, errs, found.values[name] / true(one, name) - 1.0, stated[name] / true(one, name))
             for name in question
-        ]  # fmt: skip
+        ]
 
 
 class Tally(NamedTuple):
@@ -197,8 +190,7 @@ def tally(question: tuple[str, ...], sets: int, seed: int, law: str = "fem") -> 
             "data and model": [one for one in of if one.model_errs],
             **{regime: [one for one in of if one.regime == regime] for regime in REGIMES},
         }
-        within = {part: float(np.mean([one.within for one in ones])) for part, ones in parts.items()
-                  if ones}  # fmt: skip
+        within = {part: float(np.mean([one.within for one in ones])) for part, ones in parts.items() if ones}
         error = float(np.median([one.error for one in of]))
         rows.append(Tally(question, name, len(of), refused, within, error))
     return rows
@@ -218,13 +210,9 @@ def report(sets: int = 1000, seed: int = 1) -> str:
     lines.append(f"{'':56s} {' '.join(f'{part:>8s}' for part in parts)}  refused, median error [%]")
     tasks = [(question, sets, seed, "fem") for question in QUESTIONS]
     with ProcessPoolExecutor() as pool:
-        for rows in tqdm(
-            pool.map(_tally, tasks), "coverage", len(tasks), disable=None, leave=False
-        ):
+        for rows in tqdm(pool.map(_tally, tasks), "coverage", len(tasks), disable=None, leave=False):
             for row in rows:
                 shares = (f"{100.0 * row.within.get(part, math.nan):8.1f}" for part in parts)
                 title = row.name if len(row.question) == 1 else f"{row.name} ({len(row.question)})"
-                lines.append(
-                    f"{title:56s} {' '.join(shares)}  {row.refused}, {100.0 * row.median_error:.2g}"
-                )
+                lines.append(f"{title:56s} {' '.join(shares)}  {row.refused}, {100.0 * row.median_error:.2g}")
     return "\n".join(lines)

@@ -20,9 +20,11 @@ from validation.inverse.model import Impact, unseen
 _ERROR = 0.005  # relative error of finite elements: half the mean difference of two meshes
 BY = {"COR": ("restitution",), "contact time": ("contact_time",), "all three": tuple(NORMAL)}
 SLENDERNESS = {
-    "R/H above 1.4": (1.4, math.inf), "R/H 0.9 to 1.2": (0.9, 1.2),
-    "R/H 0.5 to 0.9": (0.5, 0.9), "R/H below 0.5": (0.0, 0.5),
-}  # fmt: skip
+    "R/H above 1.4": (1.4, math.inf),
+    "R/H 0.9 to 1.2": (0.9, 1.2),
+    "R/H 0.5 to 0.9": (0.5, 0.9),
+    "R/H below 0.5": (0.0, 0.5),
+}
 
 
 class Found(NamedTuple):
@@ -92,9 +94,7 @@ def found(unknown: str, kinds: tuple[str, ...], law: str = "fem") -> tuple[list[
     return answers, refused
 
 
-def one_found(
-    one: Impact, name: str, true: float, kinds: tuple[str, ...], law: str = "fem"
-) -> Found:
+def one_found(one: Impact, name: str, true: float, kinds: tuple[str, ...], law: str = "fem") -> Found:
     """Fit a number to one impact.
 
     Raises
@@ -166,7 +166,5 @@ def contact_time() -> str:
     """
     lines = [_HEAD]
     for law in ("fem", "hertz"):
-        lines += _lines(
-            f"thickness from contact time, law {law}", *found("thickness", BY["contact time"], law)
-        )
+        lines += _lines(f"thickness from contact time, law {law}", *found("thickness", BY["contact time"], law))
     return "\n".join(lines)

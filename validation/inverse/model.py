@@ -103,8 +103,7 @@ def rms(law: str) -> tuple[Array, Array]:
             continue
         off.append(
             [
-                (float(np.asarray(getattr(hit, kind))[0]) - value)
-                / max(value, _LEAST.get(kind, 0.0))
+                (float(np.asarray(getattr(hit, kind))[0]) - value) / max(value, _LEAST.get(kind, 0.0))
                 for kind, value in one.values.items()
             ]
         )

@@ -14,17 +14,7 @@ from validation.paper.closed_form import yield_speed_ratio
 from validation.paper.evidence import RATIO, Q, V, plastic_share, power, surface
 from validation.paper.setting import ETA, FASTEST, SPEED, THINNEST, borderline, impacts, largest
 from validation.paper.turning_point import WAVE_SLOPE
-from validation.paper.verdicts import (
-    AT_MOST,
-    LIMITED,
-    MISPRINT,
-    MORE_THAN,
-    Claim,
-    Row,
-    at_most_rounded,
-    judge,
-    within,
-)
+from validation.paper.verdicts import AT_MOST, LIMITED, MISPRINT, MORE_THAN, Claim, Row, at_most_rounded, judge, within
 
 
 def claims() -> tuple[Claim, ...]:

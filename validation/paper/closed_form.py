@@ -96,9 +96,7 @@ def mueller(inelasticity: ArrayLike) -> float | Array:
     >>> mueller([0.1, 0.25]).round(4)
     array([0.8545, 0.6731])
     """
-    lam, shape = checked(
-        inelasticity=(inelasticity, 0.0, 2.0, "(beyond, Eq. 3 has no rebound: take zener)")
-    )
+    lam, shape = checked(inelasticity=(inelasticity, 0.0, 2.0, "(beyond, Eq. 3 has no rebound: take zener)"))
     with np.errstate(divide="ignore"):  # at 2
         return shaped(np.exp(-math.pi * lam / np.sqrt(4.0 - lam**2)), shape)
 
@@ -123,9 +121,7 @@ def zener(inelasticity: ArrayLike) -> float | Array:
     array([0.8433, 0.6577])
     """
     lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, TOO_THIN))
-    return shaped(
-        np.array([_zener.solve(HERTZ, one, 1.0, _RTOL).restitution for one in lam]), shape
-    )
+    return shaped(np.array([_zener.solve(HERTZ, one, 1.0, _RTOL).restitution for one in lam]), shape)
 
 
 def elastic_compression(inelasticity: ArrayLike) -> float | Array:
@@ -244,12 +240,7 @@ def half_space(speed_ratio: ArrayLike) -> float | Array:
     return shaped(np.sqrt(force * span) / v, shape)
 
 
-def peng(
-    speed_ratio: ArrayLike,
-    thickness_ratio: ArrayLike,
-    eta: ArrayLike,
-    c: ArrayLike = 0.0935,
-) -> float | Array:
+def peng(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, eta: ArrayLike, c: ArrayLike = 0.0935) -> float | Array:
     """COR of an elastic-plastic impact on a plate, Eq. 22 made continuous.
 
     Parameters

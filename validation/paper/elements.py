@@ -11,16 +11,7 @@ from contactlaw import laws
 from validation.accuracy import compare
 from validation.fem import store
 from validation.paper import closed_form, formulas
-from validation.paper.setting import (
-    FASTEST,
-    PAIR,
-    THINNEST,
-    Array,
-    extreme,
-    impacts,
-    largest,
-    unloading,
-)
+from validation.paper.setting import FASTEST, PAIR, THINNEST, Array, extreme, impacts, largest, unloading
 from validation.paper.verdicts import Numbers
 
 FASTEST_COMPRESSION = 4.77  # largest compression at 7 V_Y0 on a half-space [d_Y]
@@ -65,9 +56,7 @@ def bending_by_transits() -> Numbers:
 def loading_error(law: str, of: Callable[[Array], float] = extreme) -> Numbers:
     """Largest error of a law's loading force from 0.5 to 10 d_Y; its size at 2, 4.77 and 30 d_Y."""
     near = compare.loading_errors(_LOADING)[law]
-    slow, fast, deep = np.abs(
-        compare.loading_errors(np.array([2.0, FASTEST_COMPRESSION, 30.0]))[law]
-    )
+    slow, fast, deep = np.abs(compare.loading_errors(np.array([2.0, FASTEST_COMPRESSION, 30.0]))[law])
     return {"ours": of(near), "slow": slow, "fast": fast, "deep": deep}
 
 

@@ -12,13 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw.physical.arguments import checked, shaped
-from validation.paper.closed_form import (
-    TOO_THIN,
-    Array,
-    approximate_yield_speed_ratio,
-    mueller,
-    peng,
-)
+from validation.paper.closed_form import TOO_THIN, Array, approximate_yield_speed_ratio, mueller, peng
 from validation.paper.turning_point import INTEGRATE, WAVE_SLOPE
 
 
@@ -46,9 +40,7 @@ def raman(inelasticity: ArrayLike) -> float | Array:
     array([0.8408, 0.6444])
     """
     k = 0.5 * WAVE_SLOPE
-    lam, shape = checked(
-        inelasticity=(inelasticity, 0.0, 1.0 / k, "(beyond, the form has no rebound: take zener)")
-    )
+    lam, shape = checked(inelasticity=(inelasticity, 0.0, 1.0 / k, "(beyond, the form has no rebound: take zener)"))
     return shaped((1.0 - k * lam) / (1.0 + k * lam), shape)
 
 
@@ -150,9 +142,7 @@ def eq_21(speed_ratio: ArrayLike) -> float | Array:
     return shaped((1.0 - (1.0 - np.maximum(v, 1.0) ** -0.8) ** 2) ** 0.25, shape)
 
 
-def eq_22(
-    speed_ratio: ArrayLike, thickness_ratio: ArrayLike, eta: ArrayLike, c: ArrayLike = 0.0935
-) -> float | Array:
+def eq_22(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, eta: ArrayLike, c: ArrayLike = 0.0935) -> float | Array:
     """COR of an elastic-plastic impact on a plate, whose plastic branch jumps to 1 at yield.
 
     Parameters

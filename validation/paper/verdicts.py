@@ -30,17 +30,12 @@ class Agreement(NamedTuple):
 
 def within(tolerance: float) -> Agreement:
     """Agreement within an absolute tolerance."""
-    return Agreement(
-        f"within {tolerance:g}", lambda ours, printed: abs(ours - printed) <= tolerance
-    )
+    return Agreement(f"within {tolerance:g}", lambda ours, printed: abs(ours - printed) <= tolerance)
 
 
 def at_most_rounded(digits: int) -> Agreement:
     """Agreement with an upper bound after rounding to the decimals that are printed."""
-    return Agreement(
-        f"at most, to the {digits} decimals printed",
-        lambda ours, printed: round(ours, digits) <= printed,
-    )
+    return Agreement(f"at most, to the {digits} decimals printed", lambda ours, printed: round(ours, digits) <= printed)
 
 
 AT_MOST = Agreement("at most", lambda ours, printed: ours <= printed)

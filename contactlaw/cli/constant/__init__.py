@@ -67,12 +67,7 @@ def _run(arguments: argparse.Namespace) -> None:
         elif arguments.csv:
             walls.write_csv(found, arguments.keep, sys.stdout, asked(model), head=n == 0)
         else:
-            print(
-                *[""] * (n > 0),
-                in_words(asked(model)),
-                *walls.text(found, arguments.keep),
-                sep="\n",
-            )
+            print(*[""] * (n > 0), in_words(asked(model)), *walls.text(found, arguments.keep), sep="\n")
 
 
 def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recorded]:
@@ -99,9 +94,7 @@ def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recor
     return [records.completed(one, *sizes) for one in found]
 
 
-def _of_names(
-    arguments: argparse.Namespace, found: list[records.Recorded]
-) -> list[records.Recorded]:
+def _of_names(arguments: argparse.Namespace, found: list[records.Recorded]) -> list[records.Recorded]:
     """Impacts of the materials that --sphere and --plate name; of all if none of these is given."""
     for role in ("sphere", "plate"):
         name = getattr(arguments, role)

@@ -36,9 +36,7 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     yield "# No friction: put your own after `tangential`. Define first where each wall is, as in"
     yield '#     variable wall1 string "zplane 0 NULL"'
     yield "# Bead on bead, by the same law at the same speeds; after `pair_style granular`."
-    yield "pair_coeff * * " + hertz_material(
-        sphere.youngs_modulus, beads.restitution, sphere.poissons_ratio, free
-    )
+    yield "pair_coeff * * " + hertz_material(sphere.youngs_modulus, beads.restitution, sphere.poissons_ratio, free)
     modulus = 2.0 * (1.0 - sphere.poissons_ratio**2) * pair.effective_modulus
     for n, wall in enumerate(found, start=1):
         contact = hertz_material(modulus, wall.best.restitution, sphere.poissons_ratio, free)
@@ -52,8 +50,7 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
     for where, best in [("bead on bead", beads), *((_name(wall), wall.best) for wall in found)]:
         if not best.restitution > _LIGGGHTS_LEAST:
             raise ValueError(
-                f"{where}: the COR is {best.restitution:.3g}, and LIGGGHTS takes none below "
-                f"{_LIGGGHTS_LEAST}"
+                f"{where}: the COR is {best.restitution:.3g}, and LIGGGHTS takes none below {_LIGGGHTS_LEAST}"
             )
     types = (f"{n} {_name(wall)}" for n, wall in enumerate(found, start=2))
     yield f"# Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1."
@@ -103,10 +100,7 @@ def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Itera
 
 def _bead_on_bead(model: ImpactModel, found: list[Wall], keep: Keep) -> Constant:
     """One COR for beads that hit beads of their own size at the speeds of the impacts on walls."""
-    v, r, w = (
-        np.concatenate([getattr(wall, name) for wall in found])
-        for name in ("speed", "radius", "weights")
-    )
+    v, r, w = (np.concatenate([getattr(wall, name) for wall in found]) for name in ("speed", "radius", "weights"))
     try:
         rebound = model.lookup_sphere_sphere(v, r, r)
     except OutsideTableError as error:

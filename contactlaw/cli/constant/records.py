@@ -79,9 +79,7 @@ def _check(found: Recorded) -> None:
     check(**{name: values for name, values in sizes.items() if values is not None})
 
 
-def combined(
-    speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> Recorded:
+def combined(speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None) -> Recorded:
     """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once."""
     sizes = {"radius": radii, "thickness": thicknesses}
     grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
@@ -89,9 +87,7 @@ def combined(
     return Recorded(v, r, h, np.ones(v.size))
 
 
-def completed(
-    found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> Recorded:
+def completed(found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None) -> Recorded:
     """Add what a record does not say: the radius of its beads, and the thickness of its plates [m].
 
     One value is for all; thicknesses may be one for each plate if the record has their numbers.
@@ -127,9 +123,7 @@ def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     return values
 
 
-def _sized(
-    name: str, recorded: Array | None, values: Sequence[float] | None, which: NDArray[np.int64]
-) -> Array:
+def _sized(name: str, recorded: Array | None, values: Sequence[float] | None, which: NDArray[np.int64]) -> Array:
     """Size of each impact's bead or plate: the record's own, or the given one of number `which`."""
     if recorded is None:
         sizes = np.array(_given(name, values))
@@ -154,10 +148,16 @@ def _by_pair(record: Record) -> list[Recorded]:
         rows = impacts.rows[impacts.which == n]
         known = {name: rows[name] for name in _OF_ROWS if name in (rows.dtype.names or ())}
         pair, law = impacts.bodies[n] if n >= 0 else (None, None)
-        found.append(Recorded(
-            rows["approach_speed"], plate=rows["plate"], pair=pair, law=law or None,
-            left_out=on_plates.left_out, **known,
-        ))  # fmt: skip
+        found.append(
+            Recorded(
+                rows["approach_speed"],
+                plate=rows["plate"],
+                pair=pair,
+                law=law or None,
+                left_out=on_plates.left_out,
+                **known,
+            )
+        )
     return found
 
 
@@ -168,9 +168,7 @@ def _npy(content: bytes) -> Recorded:
     def numbers(wanted: list[int]) -> Array:
         for n in wanted:
             if rows[names[n]].ndim != 1 or rows[names[n]].dtype.kind not in "iuf":
-                raise ValueError(
-                    f"column {names[n]} holds values of type {rows.dtype[n]}, expected numbers"
-                )
+                raise ValueError(f"column {names[n]} holds values of type {rows.dtype[n]}, expected numbers")
         return np.column_stack([rows[names[n]] for n in wanted]).astype(np.float64)
 
     return _columns(names, numbers)
@@ -190,13 +188,10 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
     more = ("kind", "mass") if "sliding_speed" in heads else ()
     found = columns.locate(heads, _COLUMNS | {one: TextColumn((one,), None) for one in more})
     if "speed" not in found:
-        raise ValueError(
-            f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
-        )
+        raise ValueError(f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s")
     rows = numbers([one.place for one in found.values()])
     picked: dict[str, Any] = {
-        field: column / one.per_unit
-        for (field, one), column in zip(found.items(), rows.T, strict=True)
+        field: column / one.per_unit for (field, one), column in zip(found.items(), rows.T, strict=True)
     }
     columns.halve_diameters(picked)
     if "plate" in picked:

@@ -80,9 +80,7 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
     yield from explained(flags, sum(one.impacts for one in best))
 
 
-def write_csv(
-    found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any], head: bool = True
-) -> None:
+def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any], head: bool = True) -> None:
     """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
     writer = csv.writer(out, lineterminator="\n")
     errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")

@@ -19,9 +19,7 @@ _OF_ALL = "two of three impacts, as far as errors are known"
 WIDTH = 110  # of a line of text
 
 
-def with_bands(
-    table: ImpactTable, bands: Uncertainty | None
-) -> tuple[ImpactTable, tuple[Column, ...]]:
+def with_bands(table: ImpactTable, bands: Uncertainty | None) -> tuple[ImpactTable, tuple[Column, ...]]:
     """Table and columns with the ends of each band after its value; without bands, as they are."""
     columns, values = [], {}
     for column in COLUMNS:
@@ -65,11 +63,7 @@ def left_out(band: Band, pair: Pair) -> str:
     """Name what is not in the band and often matters most: unknown errors, viscosity."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
     known = {"yield_strength", "hardness"}
-    names = [
-        role
-        for role, body in roles.items()
-        if body.strength is not None and not body.uncertainty.keys() & known
-    ]
+    names = [role for role, body in roles.items() if body.strength is not None and not body.uncertainty.keys() & known]
     parts = list(filter(None, [unknown(band)]))
     if names and meaning(band) is _OF_ALL:
         subject = "strength" if len(names) == 1 else "strengths"

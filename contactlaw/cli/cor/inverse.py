@@ -30,9 +30,13 @@ def add(commands: Any) -> None:
         options.add_sizes(command, quantities.values, unknown=unknown)
         if unknown == "thickness":
             options.add_speed(command, quantities.values)
-        command.add_argument("--cor", required=True, metavar="E",
+        command.add_argument(
+            "--cor",
+            required=True,
+            metavar="E",
             type=options.reader_of(quantities.values, quantities.SHARE),
-            help="coefficients of restitution, between 0 and 1")  # fmt: skip
+            help="coefficients of restitution, between 0 and 1",
+        )
         options.add_name_of_law(command)
         command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])
@@ -52,8 +56,9 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     questions = [dict(zip(known, one, strict=True)) for one in asked[1:].T.tolist()]
     remarks = [
         f"{impacts.in_words(impacts.asked(model, **sizes))}, COR {one.restitution:g}: {one.remark}"
-        for sizes, one in zip(questions, found, strict=True) if one.remark
-    ]  # fmt: skip
+        for sizes, one in zip(questions, found, strict=True)
+        if one.remark
+    ]
     if len(remarks) == len(found):
         raise ValueError("\n".join(remarks))
     for remark in remarks:

@@ -44,12 +44,20 @@ def add(commands: Any) -> None:
     options.add_pair(command, options.OF_RECORD)
     length = reader_of(quantities.value, LENGTH)
     options.add_radius(command, length, "all beads")
-    add("--thickness", metavar="H", type=length,
-        help="thickness of all plates [m], or with a unit; inf: a half-space")  # fmt: skip
-    add("--friction", metavar="MU", type=reader_of(quantities.value, quantities.FRICTION),
-        help="coefficient of friction of all rebounds at angles, unless it is unknown")  # fmt: skip
-    add("--unknown", required=True, metavar="NAME", type=_names,
-        help=f"what to find, up to three: {', '.join(UNKNOWNS)}")  # fmt: skip
+    add("--thickness", metavar="H", type=length, help="thickness of all plates [m], or with a unit; inf: a half-space")
+    add(
+        "--friction",
+        metavar="MU",
+        type=reader_of(quantities.value, quantities.FRICTION),
+        help="coefficient of friction of all rebounds at angles, unless it is unknown",
+    )
+    add(
+        "--unknown",
+        required=True,
+        metavar="NAME",
+        type=_names,
+        help=f"what to find, up to three: {', '.join(UNKNOWNS)}",
+    )
     add(
         "--prior",
         action="append",
@@ -62,8 +70,7 @@ def add(commands: Any) -> None:
     options.add_name_of_law(command)
     add = command.add_mutually_exclusive_group().add_argument
     add("--json", action="store_true", help="print the whole fit in SI units")
-    add("--plot", metavar="FILE",
-        help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")  # fmt: skip
+    add("--plot", metavar="FILE", help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")
     command.epilog = options.UNITS
 
 
@@ -76,13 +83,8 @@ def _prior(text: str) -> tuple[str, float]:
     name, _, size = text.partition("=")
     name = name.strip().replace("-", "_")
     if name not in UNKNOWNS or not size:
-        raise argparse.ArgumentTypeError(
-            f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}"
-        )
-    kinds = {
-        "Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH,
-        "": quantities.FRICTION,
-    }  # fmt: skip
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}")
+    kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH, "": quantities.FRICTION}
     error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
     return name, error
 
@@ -95,9 +97,7 @@ def _run(arguments: argparse.Namespace) -> None:
     else:
         data, known = _typed(arguments), None
     pair = chosen.pair(arguments, known)
-    asked: dict[str, Any] = {
-        "sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law
-    }  # fmt: skip
+    asked: dict[str, Any] = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     for name in ("radius", "thickness"):
         if (size := getattr(arguments, name)) is not None:
             asked[f"{name}_m"] = size
@@ -118,9 +118,7 @@ def _typed(arguments: argparse.Namespace) -> Measurements:
     """Read a table of rebounds, with warnings about what is not used or likely wrong."""
     read = measured.read(arguments.data)
     if read.unused:
-        wording.print_warning(
-            f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
-        )
+        wording.print_warning(f"{arguments.data}: columns that are not used: {', '.join(read.unused)}")
     for name in ("radius", "thickness"):
         if (size := unlikely(read.columns.get(name, 0.0))) is not None:
             said = f"{name} {size:g} is {size:g} m; call the column {name}_mm for millimetres?"
@@ -129,14 +127,11 @@ def _typed(arguments: argparse.Namespace) -> Measurements:
         lines = ", ".join(map(str, read.empty))
         wording.print_warning(f"{arguments.data}: lines without a rebound are left out: {lines}")
     return measured.completed(
-        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
-        friction=arguments.friction,
-    )  # fmt: skip
+        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness, friction=arguments.friction
+    )
 
 
-def _recorded(
-    arguments: argparse.Namespace, unknown: Collection[str]
-) -> tuple[Measurements, Pair | None]:
+def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[Measurements, Pair | None]:
     """Impacts on walls of the record of a run, and their pair; one of several has to be named."""
     record = read_record(arguments.data)
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
@@ -144,9 +139,10 @@ def _recorded(
     if len(pairs) > 1:
         given = {role: getattr(arguments, role) for role in ("sphere", "plate")}
         named = [
-            n for n, pair in pairs.items()
+            n
+            for n, pair in pairs.items()
             if all(name in (None, getattr(pair, role).name) for role, name in given.items())
-        ]  # fmt: skip
+        ]
         if len(named) != 1:
             names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs.values())
             reason = f"has impacts of several pairs, {names}: choose one by --sphere and --plate"

@@ -68,9 +68,7 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
     with style.applied():
         width = 9.0 if len(kinds) == 1 else 1.5 + 5.6 * len(kinds)
         figure = style.figure(width, 7.4, title, _caption(found, groups, curves))
-        grid = figure.subplots(
-            2, len(kinds), sharex=True, squeeze=False, gridspec_kw={"height_ratios": [2.6, 1.0]}
-        )
+        grid = figure.subplots(2, len(kinds), sharex=True, squeeze=False, gridspec_kw={"height_ratios": [2.6, 1.0]})
         for (above, below), kind in zip(grid.T, kinds, strict=True):
             for n, group in enumerate(groups):
                 colour = colour_of(n, len(groups)) if len(curves) > 1 else style.BLUE
@@ -122,27 +120,26 @@ def _draw_curve(above: Axes, below: Axes, curve: FitCurve, kind: str, colour: An
     _, scale = _KINDS[kind]
     values, errors = curve.values[kind], curve.errors[kind]
     low, high = (values + sign * errors for sign in (-1.0, 1.0))
-    above.fill_between(
-        curve.speed, low * scale, high * scale, color=colour, alpha=0.22, linewidth=0.0
-    )
+    above.fill_between(curve.speed, low * scale, high * scale, color=colour, alpha=0.22, linewidth=0.0)
     above.plot(curve.speed, values * scale, color=colour, linewidth=2.2)
     share = 100.0 * errors / values
     below.fill_between(curve.speed, -share, share, color=colour, alpha=0.22, linewidth=0.0)
     if math.isfinite(curve.yield_speed):
         at = np.exp(np.interp(math.log(curve.yield_speed), np.log(curve.speed), np.log(values)))
-        above.plot(curve.yield_speed, at * scale, "v", color=colour, markersize=11,
-                   markeredgecolor="white", zorder=4)  # fmt: skip
+        above.plot(curve.yield_speed, at * scale, "v", color=colour, markersize=11, markeredgecolor="white", zorder=4)
         above.annotate(
-            "yield begins", (curve.yield_speed, 0.03), (6.0, 0.0), color=colour,
-            xycoords=("data", "axes fraction"), textcoords="offset points",
-        )  # fmt: skip
+            "yield begins",
+            (curve.yield_speed, 0.03),
+            (6.0, 0.0),
+            color=colour,
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+        )
         for axes in (above, below):
             axes.axvline(curve.yield_speed, color=colour, linewidth=1.0, linestyle=(0, (2.0, 2.5)))
 
 
-def _draw_values(
-    above: Axes, below: Axes, found: Fit, group: Group, kind: str, colour: Any, on_curve: bool
-) -> None:
+def _draw_values(above: Axes, below: Axes, found: Fit, group: Group, kind: str, colour: Any, on_curve: bool) -> None:
     rows, off = found.rows[kind], found.residuals[kind]
     chosen = np.isin(rows, group.rows)
     rows, off = rows[chosen], off[chosen]
@@ -159,19 +156,20 @@ def _draw_values(
         if not part.any():
             continue
         look: dict[str, Any] = {
-            "fmt": "o", "color": colour, "markersize": 6.5, "markeredgecolor": colour,
-            "markerfacecolor": face, "elinewidth": 1.3, "zorder": 3,
-        }  # fmt: skip
+            "fmt": "o",
+            "color": colour,
+            "markersize": 6.5,
+            "markeredgecolor": colour,
+            "markerfacecolor": face,
+            "elinewidth": 1.3,
+            "zorder": 3,
+        }
         bars = None if errors is None else errors[rows][part]
-        above.errorbar(v[part], measured[part] * scale, None if bars is None else bars * scale,
-                       label=name, **look)  # fmt: skip
+        above.errorbar(v[part], measured[part] * scale, None if bars is None else bars * scale, label=name, **look)
         name = "_"
-        below.errorbar(v[part], 100.0 * off[part],
-                       None if bars is None else 100.0 * bars / fitted[part], **look)  # fmt: skip
+        below.errorbar(v[part], 100.0 * off[part], None if bars is None else 100.0 * bars / fitted[part], **look)
     if not on_curve:
-        above.plot(
-            v, fitted * scale, "_", color=style.INK, markersize=11, markeredgewidth=1.8, zorder=4
-        )
+        above.plot(v, fitted * scale, "_", color=style.INK, markersize=11, markeredgewidth=1.8, zorder=4)
 
 
 def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:

@@ -35,9 +35,7 @@ _COLUMNS = {
     **columns.SIZES,
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
     **{
-        f"{field}_error": TextColumn(
-            tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity
-        )
+        f"{field}_error": TextColumn(tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity)
         for field, (names, quantity) in _KINDS.items()
     },
 }
@@ -74,9 +72,7 @@ def _read(content: bytes) -> Read:
     listed = ", ".join(names)[:200]
     if "speed" not in found:
         near = _nearest(names, ("speed",))
-        raise ValueError(
-            f"no column of speeds in its first line, {listed!r}: call one speed_m/s{near}"
-        )
+        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s{near}")
     if not found.keys() & _KINDS.keys():
         near = _nearest(names, _KINDS)
         raise ValueError(
@@ -92,10 +88,7 @@ def _read(content: bytes) -> Read:
         raise ValueError("it has no row after the first line")
     wanted = [one.place for one in found.values()]
     lines, table = columns.numbers(rows, delimiter, names, wanted, gaps=True)
-    picked = {
-        name: values / one.per_unit
-        for (name, one), values in zip(found.items(), table.T, strict=True)
-    }
+    picked = {name: values / one.per_unit for (name, one), values in zip(found.items(), table.T, strict=True)}
     columns.halve_diameters(picked)
     measured = np.any([~np.isnan(picked[kind]) for kind in _KINDS if kind in picked], axis=0)
     if not measured.any():

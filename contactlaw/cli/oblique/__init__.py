@@ -51,22 +51,36 @@ def add(commands: Any) -> None:
     options.add_name_of_law(command)
     command.set_defaults(outside="raise")  # every impact is integrated
     add = command.add_argument
-    add("--angle", required=True, metavar="A",
+    add(
+        "--angle",
+        required=True,
+        metavar="A",
         type=options.reader_of(quantities.values, quantities.ANGLE),
-        help="angle of incidence from the plate's normal [deg], from 0 to below 90")  # fmt: skip
-    add("--friction", required=True, metavar="MU",
+        help="angle of incidence from the plate's normal [deg], from 0 to below 90",
+    )
+    add(
+        "--friction",
+        required=True,
+        metavar="MU",
         type=options.reader_of(quantities.values, quantities.FRICTION),
-        help="coefficient of friction between bead and plate")  # fmt: skip
+        help="coefficient of friction between bead and plate",
+    )
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
-    add("--plot", metavar="FILE",
+    add(
+        "--plot",
+        metavar="FILE",
         help="draw the tangential restitution into FILE (PNG, SVG, PDF): over the first list of "
         "angles, speeds, thicknesses, radii or coefficients of friction, with a curve for each "
-        "value of a second list; as a map, if both have more than 8 values")  # fmt: skip
+        "value of a second list; as a map, if both have more than 8 values",
+    )
     for name, program in (("fluent", "Ansys Fluent"), ("acusolve", "AcuTrace (AcuSolve)")):
-        add(f"--{name}", metavar="FILE",
+        add(
+            f"--{name}",
+            metavar="FILE",
             help="write the restitution of the wall over these angles into FILE, in a form that "
-            f"{program} documents; it was not tried there")  # fmt: skip
+            f"{program} documents; it was not tried there",
+        )
     command.epilog = (
         f"--speed is that of the bead, whose normal part is speed cos(angle). {options.UNITS} "
         "Several values are a list, 10,20, or a range start:stop:count."
@@ -114,12 +128,11 @@ def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> di
         hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve", mass=mass)
     changed = sliding - np.asarray(hit.sliding_speed)
     return {
-        **vars(hit), **given,
+        **vars(hit),
+        **given,
         "spin": (1.0 - 1.0 / POINT) * changed / radius,
-        "rebound_angle": np.degrees(
-            np.arctan2(sliding - changed / POINT, hit.restitution * speed)
-        ),
-    }  # fmt: skip
+        "rebound_angle": np.degrees(np.arctan2(sliding - changed / POINT, hit.restitution * speed)),
+    }
 
 
 def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) -> str:

@@ -94,9 +94,7 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
             if unit is None:
                 continue
             if field in found:
-                raise ValueError(
-                    f"two columns of {field}, {names[found[field].place]!r} and {head!r}"
-                )
+                raise ValueError(f"two columns of {field}, {names[found[field].place]!r} and {head!r}")
             found[field] = Located(n, _per_unit(head, unit, column.quantity))
     return found
 
@@ -143,10 +141,7 @@ def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
         return 1.0
     sizes = {name.lower(): size for name, size in quantity.units.items()}
     if unit not in sizes:
-        raise ValueError(
-            f"column {head!r}: {unit!r} is no unit of {quantity.name}; take "
-            f"{', '.join(quantity.units)}"
-        )
+        raise ValueError(f"column {head!r}: {unit!r} is no unit of {quantity.name}; take {', '.join(quantity.units)}")
     return float(1 / sizes[unit])
 
 
@@ -201,9 +196,7 @@ def _fields(row: str, delimiter: str) -> list[str]:
     return found
 
 
-def _check_fields(
-    line: int, row: str, fields: list[str], delimiter: str, count: int, least: int
-) -> None:
+def _check_fields(line: int, row: str, fields: list[str], delimiter: str, count: int, least: int) -> None:
     """Refuse rows with more fields than the first line: numbers might be in the wrong column.
 
     Rows with fewer than the `least` number of fields, which ends with the last wanted column, are

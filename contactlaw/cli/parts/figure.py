@@ -36,9 +36,13 @@ class Subject(NamedTuple):
 
 
 def save(
-    path: str | os.PathLike[str], subject: Subject, given: Mapping[str, Sequence[float]], ask: Ask,
-    along: int = 400, across: int = 81,  # steps of half a millimetre on a slide
-) -> None:  # fmt: skip
+    path: str | os.PathLike[str],
+    subject: Subject,
+    given: Mapping[str, Sequence[float]],
+    ask: Ask,
+    along: int = 400,
+    across: int = 81,  # steps of half a millimetre on a slide
+) -> None:
     """Draw what `ask` answers into a file: PNG, SVG or PDF, by its suffix.
 
     The other arguments, and what is refused, are those of `layout`. Bands are shaded, first yield
@@ -109,9 +113,7 @@ def _finite(values: Array) -> Array:
     return values[values < math.inf]
 
 
-def _draw(
-    axes: Axes, x: Array, found: Answers, kinds: dict[Validity, FlagLook], colour: Any
-) -> None:
+def _draw(axes: Axes, x: Array, found: Answers, kinds: dict[Validity, FlagLook], colour: Any) -> None:
     """Draw a curve with its band and first yield; what follows the finite x is a thin line."""
     parts: list[Any] = [part[: x.size] for part in found[:5]]
     value, flags, overload, low, high = parts
@@ -134,8 +136,7 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
 
     figure = _figure(9.0, 7.0, plan, found, subject)
     axes, kinds = figure.add_subplot(), kinds_of(found.flags)
-    x, y = (plan.values[name] * _unit(name, plan.values[name])[1]
-            for name in (plan.axis, plan.curve))  # fmt: skip
+    x, y = (plan.values[name] * _unit(name, plan.values[name])[1] for name in (plan.axis, plan.curve))
     for which, name in (("x", plan.axis), ("y", plan.curve)):
         _scale(axes, which, name, plan.values[name])
     value, flags, overload = (part[0] for part in found[:3])
@@ -157,8 +158,7 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
         lines = axes.contour(x, y, value, inner, colors="white", linewidths=1.0)
         figure.draw_without_rendering()  # so that the slopes of the lines are known
         for text in axes.clabel(lines, fmt="%g", fontsize=12, inline=False):
-            text.set(color=style.INK, fontweight="bold",
-                     path_effects=[withStroke(linewidth=3.0, foreground="white")])  # fmt: skip
+            text.set(color=style.INK, fontweight="bold", path_effects=[withStroke(linewidth=3.0, foreground="white")])
             corners = text.get_window_extent().corners()
             text.set_visible(axes.bbox.count_contains(corners) == 4)  # none that is cut off
     return figure
@@ -214,9 +214,7 @@ def _keys(kinds: dict[Validity, FlagLook], width: float, hatched: bool) -> list[
             keys.append(Patch(facecolor="none", edgecolor=style.INK, hatch=kind.hatch, label=words))
         else:
             dashes = dashes_of(flag, kinds)
-            keys.append(
-                Line2D([], [], color=style.INK, linewidth=2.4, linestyle=dashes, label=words)
-            )
+            keys.append(Line2D([], [], color=style.INK, linewidth=2.4, linestyle=dashes, label=words))
     return keys
 
 
@@ -247,10 +245,8 @@ def _label(axes: Axes, at: Array, names: list[str]) -> None:
     line = 1.3 * 12.0 / 72.0 / (axes.bbox.height / axes.figure.dpi)
     for n, (at, to) in enumerate(zip(heights, _spread(heights, line), strict=True)):
         colour = colour_of(n, len(names))
-        axes.plot([1.0, 1.02], [at, to], transform=axes.transAxes, color=colour, linewidth=2.0,
-                  clip_on=False)  # fmt: skip
-        axes.text(1.03, to, names[n], transform=axes.transAxes, color=style.INK, va="center",
-                  fontweight="bold")  # fmt: skip
+        axes.plot([1.0, 1.02], [at, to], transform=axes.transAxes, color=colour, linewidth=2.0, clip_on=False)
+        axes.text(1.03, to, names[n], transform=axes.transAxes, color=style.INK, va="center", fontweight="bold")
 
 
 def _spread(heights: Array, least: float) -> Array:

@@ -115,16 +115,10 @@ def tabulate(
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first], mass), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
-    return ImpactTable(
-        {column.name: found[column.name] for column in COLUMNS},
-        found["flags"],
-        asked(model, mass=mass),
-    )
+    return ImpactTable({column.name: found[column.name] for column in COLUMNS}, found["flags"], asked(model, mass=mass))
 
 
-def yield_speeds(
-    model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None
-) -> Array:
+def yield_speeds(model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None) -> Array:
     """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
 
     Other impacts on the same plate may be inside the table.
@@ -199,10 +193,7 @@ def records(table: ImpactTable) -> list[dict[str, object]]:
     """Rows for JSON, which has no inf: an infinite yield speed or thickness is None."""
     values = zip(*(column.tolist() for column in table.columns.values()), strict=True)
     return [
-        {
-            name: value if value < math.inf else None
-            for name, value in zip(table.columns, row, strict=True)
-        }
+        {name: value if value < math.inf else None for name, value in zip(table.columns, row, strict=True)}
         | {**table.asked, "flags": flag_names(flags)}
         for row, flags in zip(values, table.flags, strict=True)
     ]

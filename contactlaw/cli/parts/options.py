@@ -48,24 +48,25 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     add_sizes(command, read)
     add_speed(command, read)
     add_law(command)
-    command.add_argument(
-        "--solve", action="store_true", help="integrate the equation instead of looking up"
-    )
+    command.add_argument("--solve", action="store_true", help="integrate the equation instead of looking up")
 
 
 def add_mass(command: argparse.ArgumentParser) -> None:
     """Add the option of the mass of beads that are no solid spheres."""
-    command.add_argument("--mass", metavar="M", type=reader_of(quantities.value, MASS),
+    command.add_argument(
+        "--mass",
+        metavar="M",
+        type=reader_of(quantities.value, MASS),
         help="mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or "
-        "of a clump (default: that of a solid sphere)")  # fmt: skip
+        "of a clump (default: that of a solid sphere)",
+    )
 
 
-def add_speed(
-    command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed"
-) -> None:
+def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed") -> None:
     """Add the option of the impact speed."""
-    command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
-                         help=f"{what} [m/s], or with a unit")  # fmt: skip
+    command.add_argument(
+        "--speed", required=True, metavar="V", type=reader_of(read, SPEED), help=f"{what} [m/s], or with a unit"
+    )
 
 
 OF_RECORD = " (default: that of the record)"
@@ -82,9 +83,13 @@ def add_pair(command: argparse.ArgumentParser, otherwise: str = "", action: str 
 
 def add_materials(command: argparse.ArgumentParser) -> None:
     """Add the option of a file of materials."""
-    command.add_argument("--materials", metavar="FILE", type=_materials, default={},
-        help="materials of your own beside the catalogue, a TOML file in its format "
-        "(default: none)")  # fmt: skip
+    command.add_argument(
+        "--materials",
+        metavar="FILE",
+        type=_materials,
+        default={},
+        help="materials of your own beside the catalogue, a TOML file in its format (default: none)",
+    )
 
 
 def _materials(path: str) -> dict[str, Material]:
@@ -94,28 +99,27 @@ def _materials(path: str) -> dict[str, Material]:
         raise argparse.ArgumentTypeError(wording.sentence(error, ())) from None
 
 
-def add_sizes(
-    command: argparse.ArgumentParser, read: Reader, required: bool = True, unknown: str = ""
-) -> None:
+def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True, unknown: str = "") -> None:
     """Add the options of sizes, but for an unknown one; if not required, a record may have them."""
     known = "" if required else OF_RECORD
     add_radius(command, reader_of(read, LENGTH), "the bead", required, known)
     if unknown != "thickness":
-        command.add_argument("--thickness", required=required, metavar="H",
+        command.add_argument(
+            "--thickness",
+            required=required,
+            metavar="H",
             type=reader_of(read, LENGTH),
             help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}",
-        )  # fmt: skip
+        )
 
 
 def add_radius(
-    command: argparse.ArgumentParser, read: Callable[[str], Any], of: str, required: bool = False,
-    known: str = "",
-) -> None:  # fmt: skip
+    command: argparse.ArgumentParser, read: Callable[[str], Any], of: str, required: bool = False, known: str = ""
+) -> None:
     """Add the options of a bead's size."""
     add = command.add_mutually_exclusive_group(required=required).add_argument
     add("--radius", metavar="R", type=read, help=f"radius of {of} [m], or with a unit{known}")
-    add("--diameter", dest="radius", metavar="D", type=_half(read),
-        help="diameter instead")  # fmt: skip
+    add("--diameter", dest="radius", metavar="D", type=_half(read), help="diameter instead")
 
 
 def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
@@ -130,12 +134,22 @@ def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
     share = reader_of(quantities.value, SHARE)
     for name in sizes:
-        command.add_argument(f"--{name}-error", metavar="SHARE", type=share, default=0.0,
-            help=f"standard error of the {name}, as 5%% (default: 0)")  # fmt: skip
+        command.add_argument(
+            f"--{name}-error",
+            metavar="SHARE",
+            type=share,
+            default=0.0,
+            help=f"standard error of the {name}, as 5%% (default: 0)",
+        )
     for role in ("sphere", "plate"):
-        command.add_argument(f"--{role}-error", metavar="NUMBER=SHARE", type=_error, default=[],
-            action="append", help="standard error of a number of its material, as "
-            "yield_strength=15%% (default: those of the catalogue)")  # fmt: skip
+        command.add_argument(
+            f"--{role}-error",
+            metavar="NUMBER=SHARE",
+            type=_error,
+            default=[],
+            action="append",
+            help="standard error of a number of its material, as yield_strength=15%% (default: those of the catalogue)",
+        )
 
 
 def _error(text: str) -> tuple[str, float]:
@@ -150,16 +164,21 @@ def _error(text: str) -> tuple[str, float]:
 def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
     """Add the option of the law."""
     stated = default or f"that of the record, or {laws.DEFAULT}"
-    command.add_argument("--law", default=default, metavar="LAW",
-        help=f"force law: {', '.join(laws.names())} (default: {stated})")  # fmt: skip
+    command.add_argument(
+        "--law", default=default, metavar="LAW", help=f"force law: {', '.join(laws.names())} (default: {stated})"
+    )
 
 
 def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
     """Add the options of the law and of the behaviour outside its table."""
     add_name_of_law(command, default)
-    command.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"],
+    command.add_argument(
+        "--outside",
+        default="raise",
+        choices=["raise", "solve", "clamp"],
         help="outside the table: refuse, integrate the equation, or take the value at its border "
-        "(default: %(default)s)")  # fmt: skip
+        "(default: %(default)s)",
+    )
 
 
 def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
@@ -168,9 +187,7 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
     def one(text: str) -> Any:
         pointed = quantities.decimal_comma(text)
         if pointed.lstrip().startswith("0.") and quantity is not ANGLE:
-            said = (
-                f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
-            )
+            said = f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
             if quantity in (LENGTH, SPEED, SHARE):  # none of these may be 0
                 raise argparse.ArgumentTypeError(said)
             wording.print_warning(said)

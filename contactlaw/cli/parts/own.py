@@ -18,9 +18,11 @@ _FIELDS = SHORT | {name: name for name in ("hardness", "kind", "name")}
 # Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
 _BARE = re.compile(r"[\d.eE+-]+")
 _LIKELY = {
-    "E": (1e6, "Pa; MPa or GPa"), "rho": (20.0, "kg/m3; g/cm3"), "yield": (1e4, "Pa; MPa"),
+    "E": (1e6, "Pa; MPa or GPa"),
+    "rho": (20.0, "kg/m3; g/cm3"),
+    "yield": (1e4, "Pa; MPa"),
     "hardness": (1e6, "Pa; HRC, HV or HB"),
-}  # fmt: skip
+}
 
 
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:

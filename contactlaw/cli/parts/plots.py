@@ -88,9 +88,8 @@ def dashes_of(flags: int, kinds: dict[Validity, FlagLook]) -> Any:
 
 
 def curve(
-    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, FlagLook],
-    **options: Any,
-) -> None:  # fmt: skip
+    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, FlagLook], **options: Any
+) -> None:
     """Draw a curve: dashed by kind where it exceeds limits of accuracy, otherwise solid."""
     exceeded = flags & Validity.ACCURACY
     changes = np.flatnonzero(np.diff(exceeded)) + 1

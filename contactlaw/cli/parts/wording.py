@@ -44,14 +44,10 @@ def sentence(error: Exception, options: Container[str]) -> str:
     match error:
         case UnknownMaterialError():
             return (
-                f"{error.what} `contactlaw materials` lists all; one of your own is --materials "
-                f"FILE, or --sphere {OWN}"
+                f"{error.what} `contactlaw materials` lists all; one of your own is --materials FILE, or --sphere {OWN}"
             )
         case NoYieldStrengthError():
-            return (
-                f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the "
-                "other may yield"
-            )
+            return f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the other may yield"
         case OSError(filename=str(path), strerror=str(reason)):
             return f"{path}: {reason}"
         case OSError(strerror=str(reason)):
@@ -109,9 +105,7 @@ def naming_impact(
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
-        v, r, h = (
-            values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness)
-        )
+        v, r, h = (values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness))
         impact = f"{in_unit(v, 'm/s')}, radius {in_unit(r, 'm')}, thickness {in_unit(h, 'm')}"
         if mass is not None:
             impact += f", mass {in_unit(mass, 'kg')}"

@@ -68,14 +68,4 @@ from contactlaw.engines.lammps.attachment import LammpsPlates, attach
 from contactlaw.engines.lammps.beads import pair_coeff
 from contactlaw.walls import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
 
-__all__ = [
-    "LammpsPlates",
-    "Mesh",
-    "Plate",
-    "Rotation",
-    "Tabulated",
-    "Translation",
-    "Vibration",
-    "attach",
-    "pair_coeff",
-]
+__all__ = ["LammpsPlates", "Mesh", "Plate", "Rotation", "Tabulated", "Translation", "Vibration", "attach", "pair_coeff"]

@@ -18,16 +18,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import (
-    COLUMNS,
-    ERROR,
-    FIRST,
-    OWNER,
-    RADIUS,
-    SHARED,
-    SLIDING,
-    WIDTH,
-)
+from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, WIDTH
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
 from contactlaw.record.columns import IMPACT, Kind
@@ -58,21 +49,14 @@ _PARTS = (
     ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
     ("compute", f"{HISTORY}_error", f"all reduce max v_{HISTORY}_errors"),
     ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
-    ("fix", f"{HISTORY}_halt",
-     f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
-)  # fmt: skip
-_REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete",
-            "variable": "variable {} delete"}  # fmt: skip
+    ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+)
+_REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
 def attach(
-    lmp: lammps,
-    model: Models,
-    plates: Sequence[Wall],
-    *,
-    friction: float = 0.0,
-    records: int = 1_000_000,
+    lmp: lammps, model: Models, plates: Sequence[Wall], *, friction: float = 0.0, records: int = 1_000_000
 ) -> LammpsPlates:
     """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
 
@@ -163,9 +147,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
         raise ArgumentError("plates", None, reason)
     for wall in found:
         if not isinstance(wall, Wall):
-            raise TypeError(
-                f"plates: expected Plate or Mesh of contactlaw.engines.lammps, got {wall!r}"
-            )
+            raise TypeError(f"plates: expected Plate or Mesh of contactlaw.engines.lammps, got {wall!r}")
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
             if beads is None:
@@ -256,9 +238,7 @@ class LammpsPlates:
         types, radius = lmp.extract_setting("ntypes"), self._largest_radius()
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
-        self._contacts = WallContacts(
-            walls, models, radius, records, friction=friction, types=types
-        )
+        self._contacts = WallContacts(walls, models, radius, records, friction=friction, types=types)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
@@ -403,8 +383,7 @@ class LammpsPlates:
                 return
             names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
             raise RuntimeError(
-                f"{names}: taken out by a command, and all plates with it; "
-                "LammpsPlates.detach() is the way to do it"
+                f"{names}: taken out by a command, and all plates with it; LammpsPlates.detach() is the way to do it"
             ) from lammps_error
         commands.check_integrator(self._lmp)
 

@@ -13,9 +13,7 @@ from contactlaw.physical.materials import Material
 from contactlaw.stepping.friction import check_friction
 
 
-def hertz_material(
-    youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str
-) -> str:
+def hertz_material(youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str) -> str:
     """Write a contact model of LAMMPS's ``pair_style granular`` with a given COR.
 
     Of LAMMPS's damping models, ``coeff_restitution`` alone gives that COR at any speed.
@@ -27,9 +25,8 @@ def hertz_material(
 
 
 def pair_coeff(
-    sphere: Material | str | Sequence[Material | str], *, radius: float, speed: float,
-    friction: float = 0.0,
-) -> str:  # fmt: skip
+    sphere: Material | str | Sequence[Material | str], *, radius: float, speed: float, friction: float = 0.0
+) -> str:
     """Write LAMMPS's ``pair_coeff`` for ``pair_style granular``.
 
     Parameters

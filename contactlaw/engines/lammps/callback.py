@@ -71,9 +71,18 @@ def _head(history: Any, i: int) -> Any:
 
 @kernel
 def _look_at_all(
-    shared: Any, clock: Clock, step: int, scene: WallScene, tags: Any, v: Any, radius: Any,
-    mass: Any, kind: Any, history: Any, last: Any,
-) -> None:  # fmt: skip
+    shared: Any,
+    clock: Clock,
+    step: int,
+    scene: WallScene,
+    tags: Any,
+    v: Any,
+    radius: Any,
+    mass: Any,
+    kind: Any,
+    history: Any,
+    last: Any,
+) -> None:
     """Report beads that could jump through a wall in one step, or of another radius or density.
 
     A new bead in the row of a removed one does not inherit the last COR.
@@ -237,8 +246,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
                 if scene.impacts[n].kind == Kind.IMPACT.value:  # other kinds have no COR
                     last[i] = scene.impacts[n].restitution
             if status.trouble != 0:
-                mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value,
-                         status.limit)  # fmt: skip
+                mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value, status.limit)
                 head.error = max(head.error, status.worst)
                 status.trouble = status.worst = 0
         _keep_sphere(head, row, bead)

@@ -15,13 +15,10 @@ if TYPE_CHECKING:
 # Commands whose first argument names a part of the simulation, which may be the adapter's own.
 _NAMING = {"fix", "fix_modify", "unfix", "compute", "compute_modify", "uncompute", "group"}
 _NAMING |= {"variable"}
-_NO_STEPS = (
-    "it moves beads without time steps, and the force of the plates depends on what happens between"
-)
+_NO_STEPS = "it moves beads without time steps, and the force of the plates depends on what happens between"
 _REFUSED = {
     **dict.fromkeys(
-        ("minimize", "neb", "neb/spin", "prd", "tad", "hyper", "dynamical_matrix", "third_order"),
-        _NO_STEPS,
+        ("minimize", "neb", "neb/spin", "prd", "tad", "hyper", "dynamical_matrix", "third_order"), _NO_STEPS
     ),
     "rerun": "the plates would see beads that jump from frame to frame",
 }

@@ -12,22 +12,15 @@ _CHANGED = (
 )
 _MESSAGES: dict[int, str] = {
     Trouble.STEP_TOO_LARGE: (
-        "timestep: too large for an impact at {value:.4g} m/s, which needs {steps} steps; take "
-        "{limit:.2g} s or less"
+        "timestep: too large for an impact at {value:.4g} m/s, which needs {steps} steps; take {limit:.2g} s or less"
     ),
     Trouble.STARTS_INSIDE: (
         "the first touch finds it {value:.4g} m deep in the plate, more than its speed explains; "
         "place it outside, or at most {limit:.2g} m deep (and give by itself, not among other "
         "commands, a delete_atoms or reset_atoms that changes IDs in mid-contact)"
     ),
-    memory.RESIZED: (
-        "diameter: its radius is {value:.6g} m and was {limit:.6g} m when it began to touch"
-        + _CHANGED
-    ),
-    memory.REWEIGHED: (
-        "density: its mass is {value:.6g} kg and was {limit:.6g} kg when it began to touch"
-        + _CHANGED
-    ),
+    memory.RESIZED: ("diameter: its radius is {value:.6g} m and was {limit:.6g} m when it began to touch" + _CHANGED),
+    memory.REWEIGHED: ("density: its mass is {value:.6g} kg and was {limit:.6g} kg when it began to touch" + _CHANGED),
     memory.RETYPED: (
         "type: it is of atom type {value:.0f} and was of {limit:.0f}, of another model, when it "
         "began to touch" + _CHANGED

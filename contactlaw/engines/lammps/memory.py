@@ -97,18 +97,14 @@ def matrix_at(address: int, rows: int, columns: int) -> Any:
 
 
 @kernel
-def mark_error(
-    shared: Any, step: int, tag: int, head: Any, code: int, plate: int, value: float, limit: float
-) -> None:
+def mark_error(shared: Any, step: int, tag: int, head: Any, code: int, plate: int, value: float, limit: float) -> None:
     """Record an error of a bead, and mark the bead, which stops the run on all ranks."""
     head.error = max(head.error, code)
     record_error(shared, step, tag, code, plate, value, limit)
 
 
 @kernel
-def record_error(
-    shared: Any, step: int, tag: int, code: int, plate: int, value: float, limit: float
-) -> None:
+def record_error(shared: Any, step: int, tag: int, code: int, plate: int, value: float, limit: float) -> None:
     """Record an error if it is the first on this rank; -1 means no bead or no plate."""
     if shared.error == 0:
         shared.error, shared.error_step, shared.error_bead = code, step, tag

@@ -13,9 +13,7 @@ if TYPE_CHECKING:
     import pymunk
 
 
-def attach(
-    space: pymunk.Space, model: RestitutionModel | Sequence[RestitutionModel]
-) -> PymunkImpacts:
+def attach(space: pymunk.Space, model: RestitutionModel | Sequence[RestitutionModel]) -> PymunkImpacts:
     """Let a model decide how the beads of a pymunk space rebound.
 
     Parameters

@@ -107,18 +107,15 @@ class Contacts:
                 after, work = abs(slip), 0.0
                 if friction is not None:
                     gain = (1.0 + cor) / (1.0 + plate.curve(bead, shape)(speed)) if near else 1.0
-                    slip, after, spin, work = self._slide(
-                        arbiter, bead, plate, body, (nx, ny), speed, slip, gain
-                    )
+                    slip, after, spin, work = self._slide(arbiter, bead, plate, body, (nx, ny), speed, slip, gain)
                 elif arbiter.friction > 0.0:
                     self._rub(arbiter, circle, shape, len(self.record))
                     after = spin = work = math.nan
                 if near:
                     self.record.near[len(self.record)] = near
-                record((
-                    self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor, abs(slip), kind,
-                    after, spin, work,
-                ))  # fmt: skip
+                record(
+                    (self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor, abs(slip), kind, after, spin, work)
+                )
             except BaseException as error:
                 self.keep(error, arbiter)
 
@@ -157,10 +154,9 @@ class Contacts:
                 if arbiter.friction > 0.0:
                     self._rub(arbiter, circle, shape, len(self.record))
                     after = spin = work = math.nan
-                record((
-                    self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor, abs(slip), kind,
-                    after, spin, work,
-                ))  # fmt: skip
+                record(
+                    (self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor, abs(slip), kind, after, spin, work)
+                )
             except BaseException as error:
                 self.keep(error, arbiter)
 
@@ -308,9 +304,7 @@ class Contacts:
             raise
         if not 0.0 <= restitution <= 1.0:
             where = self._describe(bead, other, speed)
-            raise ValueError(
-                f"restitution must lie in [0, 1], the model gave {restitution!r} {where}"
-            )
+            raise ValueError(f"restitution must lie in [0, 1], the model gave {restitution!r} {where}")
         arbiter.restitution = restitution
         _begin_anew(arbiter)
         return restitution
@@ -326,9 +320,7 @@ class Contacts:
             self.error = error
 
 
-def _call(
-    hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space, answered: bool = False
-) -> None:
+def _call(hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space, answered: bool = False) -> None:
     """Call the user's ``pre_solve``, before the model sets the restitution.
 
     `answered` says whether the model answers for friction, too, in place of the engine.

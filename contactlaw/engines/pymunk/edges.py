@@ -37,9 +37,7 @@ class PlateEdges:
         """Measure again, because plates have come or gone."""
         self._sides.clear()
 
-    def near(
-        self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float
-    ) -> KnownEdge | None:
+    def near(self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float) -> KnownEdge | None:
         """Kind of the nearest edge and its distance [m]; None if it is too far to matter."""
         sides = self._sides.get(plate.index)
         if sides is None:

@@ -39,9 +39,7 @@ class Handlers:
         }
         earlier = space._handlers.get((None, None))  # the only key that can be older than ours
         if earlier is not None and earlier.pre_solve is not None:
-            self.on_collision(
-                None, None, pre_solve=earlier.pre_solve, data=earlier.data["pre_solve"]
-            )
+            self.on_collision(None, None, pre_solve=earlier.pre_solve, data=earlier.data["pre_solve"])
         for key, callback in self._own.items():
             self._engine(*key, pre_solve=callback)
         self._installed = [(key, space._handlers[key], own) for key, own in self._own.items()]

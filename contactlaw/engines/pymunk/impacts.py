@@ -353,9 +353,7 @@ class PymunkImpacts:
         if state.get("step") != self._step:
             raise RuntimeError("space.step has been replaced since attach(); undo that first")
         if self._handlers.replaced():
-            raise RuntimeError(
-                "space.on_collision has been replaced since attach(); undo that first"
-            )
+            raise RuntimeError("space.on_collision has been replaced since attach(); undo that first")
         self._handlers.detach()
         del state["step"]
         if self._replaced:
@@ -369,8 +367,7 @@ class PymunkImpacts:
 
     def __reduce_ex__(self, protocol: Any) -> NoReturn:
         raise TypeError(
-            "a space with an impact model cannot be copied or pickled: detach() first, and attach "
-            "to the copy"
+            "a space with an impact model cannot be copied or pickled: detach() first, and attach to the copy"
         )
 
     def _admit(self, shape: Any, kinds: Sequence[type], collision_type: int) -> pymunk.Body:

@@ -37,9 +37,7 @@ class TunnellingError(RuntimeError):
         bit by bit, because of overlaps or too few iterations.
     """
 
-    def __init__(
-        self, bead: int, plate: int, time: float, speed: float, safe_step: float | None
-    ) -> None:
+    def __init__(self, bead: int, plate: int, time: float, speed: float, safe_step: float | None) -> None:
         super().__init__(bead, plate, time, speed, safe_step)  # the arguments as given, for pickle
         self.bead, self.plate, self.time = bead, plate, time
         self.speed, self.safe_step = speed, safe_step
@@ -69,11 +67,7 @@ class LookAhead:
     """Checks of one space; the caller sets `reach`, the radius of the smallest bead [m]."""
 
     def __init__(
-        self,
-        space: pymunk.Space,
-        beads: dict[int, BeadShape],
-        plates: dict[int, PlateShape],
-        mounts: dict[int, Mount],
+        self, space: pymunk.Space, beads: dict[int, BeadShape], plates: dict[int, PlateShape], mounts: dict[int, Mount]
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 

@@ -179,9 +179,7 @@ def _listed(given: Any) -> list[RestitutionModel]:
         raise ArgumentError("model", None, "expected at least one ImpactModel, got an empty list")
     for model in models:
         if not callable(getattr(model, "curve", None)):
-            raise TypeError(
-                f"model: expected an ImpactModel or an object with curve(), got {model!r}"
-            )
+            raise TypeError(f"model: expected an ImpactModel or an object with curve(), got {model!r}")
     return models
 
 

@@ -199,9 +199,7 @@ def may_meet(circle: pymunk.Circle, shape: pymunk.Shape) -> bool:
     return not (grouped or masked)
 
 
-def body_of(
-    shape: Any, kinds: Sequence[type], space: pymunk.Space, collision_type: int
-) -> pymunk.Body:
+def body_of(shape: Any, kinds: Sequence[type], space: pymunk.Space, collision_type: int) -> pymunk.Body:
     """Body of a shape that may be registered."""
     if not isinstance(shape, tuple(kinds)):
         expected = " or ".join(f"pymunk.{kind.__name__}" for kind in kinds)
@@ -266,9 +264,7 @@ def check_solid(circle: Any, radius: float, rough: Iterable[Any]) -> None:
             raise
 
 
-def friction_of(
-    friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]
-) -> float:
+def friction_of(friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]) -> float:
     """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
     friction = float(scalars(friction=friction)[0][0])
     for model in models.values():

@@ -55,9 +55,7 @@ class Seams:
                 self._ends[cell] = left
 
 
-def belongs_to_neighbour(
-    bead: BeadShape, plate: PlateShape, circle: Any, shape: Any, x: float, y: float
-) -> bool:
+def belongs_to_neighbour(bead: BeadShape, plate: PlateShape, circle: Any, shape: Any, x: float, y: float) -> bool:
     """Whether a contact of a bead at x, y belongs to another plate that shares the touched end.
 
     It belongs to the nearest plate, and of equally near plates to the one registered first.

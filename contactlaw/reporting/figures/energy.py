@@ -21,20 +21,26 @@ def draw(run: Run) -> Figure:
     share = 100.0 * causes[most] / (causes.sum() or 1.0)
     height = 2.6 + 0.5 * max(len(walls), 3)
     figure = style.figure(
-        12.0, height,
+        12.0,
+        height,
         f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
         f"{run.subject}; {'left'}: energy that all contacts took, "
         f"{'right'}: shares of the energy that the impacts brought",
-    )  # fmt: skip
+    )
     left, right = figure.subplots(*(1, 2), sharey=True)
     unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
     for n, wall in enumerate(walls):
         part = by_cause(wall.rows)
         for m, (_, colour) in enumerate(PARTS[1:]):
-            left.barh(n, part[m] / scale, 0.7, part[:m].sum() / scale, color=colour,
-                      edgecolor="white", linewidth=0.6)  # fmt: skip
-        left.annotate(drawn(part.sum(), "J", 3), (part.sum() / scale, n), (4, 0), va="center",
-                      textcoords="offset points", fontsize=11)  # fmt: skip
+            left.barh(n, part[m] / scale, 0.7, part[:m].sum() / scale, color=colour, edgecolor="white", linewidth=0.6)
+        left.annotate(
+            drawn(part.sum(), "J", 3),
+            (part.sum() / scale, n),
+            (4, 0),
+            va="center",
+            textcoords="offset points",
+            fontsize=11,
+        )
         if wall.impacts.size:
             found = shares(wall.impacts, wall.impacts["mass"], rubs)
             across(right, n, list(zip(PARTS, found, strict=True)))
@@ -46,6 +52,5 @@ def draw(run: Run) -> Figure:
     for axes in (left, right):
         axes.grid(visible=False, axis="y")
     handles = dict(zip(*reversed(right.get_legend_handles_labels()), strict=True))
-    figure.legend(handles.values(), list(handles), loc="outside lower center",
-                  ncols=4 if len(handles) < 5 else 3)  # fmt: skip
+    figure.legend(handles.values(), list(handles), loc="outside lower center", ncols=4 if len(handles) < 5 else 3)
     return figure

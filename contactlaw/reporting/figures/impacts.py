@@ -28,10 +28,11 @@ def draw(run: Run) -> Figure:
         title = f"Nine in ten impacts have a COR of {low:.2f} to {high:.2f}"
         title = f"The impacts have a COR of {low:.2f}" if high - low < 0.005 else title
     figure = style.figure(
-        13.0, 4.9, title,
-        f"{run.subject}; {rows.size} impact{'s' * (rows.size != 1)}"
-        f"{'; ' * bool(run.left_out)}{run.left_out}",
-    )  # fmt: skip
+        13.0,
+        4.9,
+        title,
+        f"{run.subject}; {rows.size} impact{'s' * (rows.size != 1)}{'; ' * bool(run.left_out)}{run.left_out}",
+    )
     walls = _stacked(run)
     bins = int(np.clip(2.0 * rows.size**0.5, *_BINS)) + 1
     columns: dict[str, tuple[Callable[[Any], Any], float | None, float | None]] = {
@@ -45,19 +46,30 @@ def draw(run: Run) -> Figure:
         whole = np.concatenate(values)
         ends = np.quantile(whole, [0.002, 0.998]) if whole.size else (0.0, 1.0)
         edges = np.sort(np.linspace(ends[0] if least is None else least, most or ends[1], bins))
-        axes.hist([one.clip(edges[0], edges[-1]) for one in values], list(edges), stacked=True,
-                  label=[name for name, _ in walls], color=_COLOURS[: len(walls)],
-                  edgecolor="white", linewidth=0.3)  # fmt: skip
+        axes.hist(
+            [one.clip(edges[0], edges[-1]) for one in values],
+            list(edges),
+            stacked=True,
+            label=[name for name, _ in walls],
+            color=_COLOURS[: len(walls)],
+            edgecolor="white",
+            linewidth=0.3,
+        )
         axes.set(xlabel=label, ylabel="impacts")
         axes.yaxis.get_major_locator().set_params(integer=True)
         if whole.size:
             middle = float(np.median(whole))
             axes.axvline(middle, color=style.INK, linestyle="--", linewidth=1.4)
-            axes.annotate(f"median {middle:.3g}", (middle, 1.01), ha="center", va="bottom",
-                          xycoords=("data", "axes fraction"), fontsize=11)  # fmt: skip
+            axes.annotate(
+                f"median {middle:.3g}",
+                (middle, 1.01),
+                ha="center",
+                va="bottom",
+                xycoords=("data", "axes fraction"),
+                fontsize=11,
+            )
     panels[2].set_xticks(range(0, 91, 15))
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center",
-                  ncols=len(walls))  # fmt: skip
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(walls))
     return figure
 
 

@@ -41,8 +41,9 @@ def draw(run: Run) -> Figure:
     size = np.ptp(found.corners, axis=(0, 1))
     thin = np.flatnonzero(size <= _FLAT * size.max())
     views = 1 if thin.size else len(_VIEWS)
-    figure = style.figure(12.0, 6.6 if thin.size else 5.8, _TITLE,
-                          f"{run.subject}; energy of all contacts per area{within}")  # fmt: skip
+    figure = style.figure(
+        12.0, 6.6 if thin.size else 5.8, _TITLE, f"{run.subject}; energy of all contacts per area{within}"
+    )
     panels = np.atleast_1d(figure.subplots(*(1, views)))
     if thin.size:
         x, y = (n for n in range(3) if n != thin[0])

@@ -26,10 +26,12 @@ _LOSSES = ("wave", "bending wave in the plate"), ("plastic", "lost at the contac
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw the shell as a clock, under the law and with a constant COR."""
     figure = style.figure(
-        12.0, 7.5, "Where round the drum its shell dissipates energy",
+        12.0,
+        7.5,
+        "Where round the drum its shell dissipates energy",
         f"{graphs.source(runs)}; seen along the axis, {360 // _BINS} degrees per bar, "
         f"energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms",
-    )  # fmt: skip
+    )
     shown: list[tuple[Any, Run[Any]]] = graphs.panels(figure, runs, projection="polar")
     for axes, run in shown:
         bottom = np.zeros(_BINS)
@@ -37,8 +39,7 @@ def draw(runs: Runs[Drum]) -> Figure:
         middle = width * (np.arange(_BINS) + 0.5)
         for (name, text), colour in zip(_LOSSES, (style.BLUE, style.ORANGE), strict=True):
             share = _round(run, f"{name}_energy") * 1e6
-            axes.bar(middle, share, width, bottom, color=colour, label=text, edgecolor="white",
-                     linewidth=0.6)  # fmt: skip
+            axes.bar(middle, share, width, bottom, color=colour, label=text, edgecolor="white", linewidth=0.6)
             bottom += share
         axes.set(theta_zero_location="N", theta_direction=-1)
         axes.set_xticks(np.arange(4) * 0.5 * math.pi, ["", "right", "bottom", "left"])

@@ -23,10 +23,8 @@ def draw(runs: Runs[Drum]) -> Figure:
     radius = run.scene.radius
     middle = float(np.median(radius))
     kinds = [
-        (f"smaller beads, radius {radius.min() * 1e3:.1f} to {middle * 1e3:.1f} mm",
-         radius <= middle),
-        (f"larger beads, radius {middle * 1e3:.1f} to {radius.max() * 1e3:.1f} mm",
-         radius > middle),
-    ]  # fmt: skip
+        (f"smaller beads, radius {radius.min() * 1e3:.1f} to {middle * 1e3:.1f} mm", radius <= middle),
+        (f"larger beads, radius {middle * 1e3:.1f} to {radius.max() * 1e3:.1f} mm", radius > middle),
+    ]
     title = "One drum has many coefficients of restitution"
     return graphs.restitution(runs, on_faces(run), kinds, title, "at a seam of shell and end")

@@ -22,9 +22,7 @@ def source(run: Run) -> str:
 
 def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:
     """Mark the points of impacts that are outside a limit of the model."""
-    axes.scatter(
-        x[far], y[far], s=46, facecolors="none", edgecolors=style.VERMILION, linewidths=1.1
-    )
+    axes.scatter(x[far], y[far], s=46, facecolors="none", edgecolors=style.VERMILION, linewidths=1.1)
 
 
 def ringed(far: NDArray[np.bool_]) -> str:

@@ -118,6 +118,10 @@ def _draw_plates(axes: Axes, scene: Scene) -> None:
         axes.annotate(
             label(plate.thickness),
             (0.5 * (plate.x0 + plate.x1) * MM, (plate.y - depth) * MM),
-            xytext=(0, -4), textcoords="offset points", ha="center", va="top",
-            fontsize=12, fontweight="bold",
-        )  # fmt: skip
+            xytext=(0, -4),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=12,
+            fontweight="bold",
+        )

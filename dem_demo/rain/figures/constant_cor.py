@@ -70,6 +70,12 @@ def _column(axes: Axes, run: Run, plate: int, error: Floats) -> None:
     middle = float(np.median(error[here]))
     axes.hlines(middle, plate - 0.42, plate + 0.42, color=style.INK, linewidth=2.5)
     axes.annotate(
-        _signed(middle), (plate + 0.42, middle), xytext=(0, 3), textcoords="offset points",
-        ha="right", va="bottom", fontweight="bold", path_effects=[_HALO],
-    )  # fmt: skip
+        _signed(middle),
+        (plate + 0.42, middle),
+        xytext=(0, 3),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        fontweight="bold",
+        path_effects=[_HALO],
+    )

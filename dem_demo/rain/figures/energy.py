@@ -48,6 +48,11 @@ def _legend(axes: Axes) -> None:
     columns = len(unique) if len(unique) < 5 else 3
     if unique:
         axes.legend(
-            unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
-            ncols=columns, columnspacing=1.4, handlelength=1.2,
-        )  # fmt: skip
+            unique.values(),
+            unique.keys(),
+            loc="lower center",
+            bbox_to_anchor=(0.5, 1.0),
+            ncols=columns,
+            columnspacing=1.4,
+            handlelength=1.2,
+        )

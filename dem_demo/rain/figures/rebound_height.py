@@ -33,9 +33,12 @@ def draw(run: Run) -> Figure:
         _column(axes, run, n, column, fastest)
     cor = one_for_all(run)
     axes.axhline(
-        cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0,
+        cor**2,
+        color=style.VERMILION,
+        linestyle="--",
+        linewidth=2.0,
         label=f"one COR for all: the run's mean, {cor:.2f}",
-    )  # fmt: skip
+    )
     wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
@@ -48,9 +51,8 @@ def _column(axes: Axes, run: Run, plate: int, column: Rebounds, fastest: float) 
     first = plate == 0
     x = plate + 0.8 * (speed / fastest - 0.5)
     axes.scatter(
-        x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0,
-        label="measured in the run" if first else None,
-    )  # fmt: skip
+        x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0, label="measured in the run" if first else None
+    )
     ring(axes, x, ratio, far)
     radius = run.scene.beads.radius
     v = np.linspace(0.02, 1.0, 100) * fastest
@@ -58,6 +60,9 @@ def _column(axes: Axes, run: Run, plate: int, column: Rebounds, fastest: float) 
     for r in (radius.min(), radius.max()):
         e = run.model.restitution(v, r, run.scene.plates[plate].thickness)
         axes.plot(
-            x, np.square(e), color=style.INK, linewidth=1.4,
+            x,
+            np.square(e),
+            color=style.INK,
+            linewidth=1.4,
             label="model, smallest and largest bead" if first and r == radius.min() else None,
-        )  # fmt: skip
+        )

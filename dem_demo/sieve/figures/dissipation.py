@@ -28,8 +28,7 @@ def draw(runs: Runs[Sieve]) -> Figure:
         12.0,
         5.9,
         _title(runs),
-        f"{source(runs)}; energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms, averaged over "
-        "neighbouring openings",
+        f"{source(runs)}; energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms, averaged over neighbouring openings",
     )
     shown = panels(figure, runs)
     for (axes, run), value in zip(shown, values, strict=True):

@@ -164,9 +164,7 @@ def test_where_two_thicknesses_meet_the_first_plate_is_hit(model, order, thickne
     assert hit_once(model, halves(0.5e-3, 3e-3, order), thickness=thickness) == 0
 
 
-@pytest.mark.parametrize(
-    "place", [(0, 0), (1e-5, 2e-5), (-1e-5, 2e-5), (1e-5, -2e-5), (-1e-5, -2e-5), (0, 1e-5)]
-)
+@pytest.mark.parametrize("place", [(0, 0), (1e-5, 2e-5), (-1e-5, 2e-5), (1e-5, -2e-5), (-1e-5, -2e-5), (0, 1e-5)])
 def test_four_tiles_at_a_corner_are_one_plate(model, place):
     corners = [(x, y, 0) for x in (-0.05, 0) for y in (-0.05, 0)]
     tiles = [Plate(corner, (0.05, 0, 0), (0, 0.05, 0), 1e-3) for corner in corners]
@@ -252,8 +250,12 @@ def test_detach_gives_the_simulation_back(model):
     walls.detach()
     walls.detach()
     assert "command" not in vars(lmp)
-    assert not [name for kind in ("fix", "compute", "variable", "group")
-                for name in lmp.available_ids(kind) if name and "contactlaw" in name]  # fmt: skip
+    assert not [
+        name
+        for kind in ("fix", "compute", "variable", "group")
+        for name in lmp.available_ids(kind)
+        if name and "contactlaw" in name
+    ]
     lmp.command("run 2000")
     assert lmp.numpy.extract_atom("v")[0, 2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
 

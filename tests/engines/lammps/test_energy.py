@@ -136,9 +136,7 @@ CHANGES += ["fix adapt all dt/reset 1 {less} {more} {way} units box"]
 
 
 @pytest.mark.parametrize("command", CHANGES)
-@pytest.mark.parametrize(
-    ("model", "thickness", "speed"), [DROPS[0], (MYC, 1e-3, 5.0), (MYC, 0.5e-3, 3.0)]
-)
+@pytest.mark.parametrize(("model", "thickness", "speed"), [DROPS[0], (MYC, 1e-3, 5.0), (MYC, 0.5e-3, 3.0)])
 def test_the_step_may_change_in_mid_contact(model, thickness, speed, command):
     """The step may change each time, as by fix dt/reset; 50 steps per contact promise 1e-4."""
     for after in range(1, 50, 6):

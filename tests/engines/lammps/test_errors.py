@@ -31,13 +31,20 @@ def test_too_large_a_step_names_the_one_that_would_do(model):
     [
         ((0, 0, 0.02), 5.0, 1e-3, "", "further than its radius.*take 0.00018 s at most"),
         (ABOVE, 5.0, 1e-7, "set group all density 900", "density: its mass.*set group all density"),
-        *(((0, 0, height * R), speed, 1e-7, "", "m deep in the plate.*place it outside")
-          for height, speed in ((0.5, 5.0), (0.91, 0.0), (0.998, 5.0))),
+        *(
+            ((0, 0, height * R), speed, 1e-7, "", "m deep in the plate.*place it outside")
+            for height, speed in ((0.5, 5.0), (0.91, 0.0), (0.998, 5.0))
+        ),
         # pushed through, no faster than it may fly
-        (above(1e-7), 0.0, 1e-7, "fix push all setforce NULL NULL -1000\nunfix move\n"
-         "fix slow all nve/limit 1e-5", "centre went through the plate|further than its radius"),
+        (
+            above(1e-7),
+            0.0,
+            1e-7,
+            "fix push all setforce NULL NULL -1000\nunfix move\nfix slow all nve/limit 1e-5",
+            "centre went through the plate|further than its radius",
+        ),
     ],
-)  # fmt: skip
+)
 def test_impacts_that_are_refused(model, position, speed, dt, commands, words):
     lmp, _ = scene(model, None, position, (0, 0, -speed), dt=dt)
     with pytest.raises(RuntimeError, match=words):
@@ -165,13 +172,11 @@ def test_a_run_that_is_halted_by_someone_elses_mark(model):
     ("commands", "words"),
     [
         ("units lj\natom_style sphere\nregion b block 0 1 0 1 0 1\ncreate_box 1 b", "units si"),
-        ("units si\natom_style atomic\nregion b block 0 1 0 1 0 1\ncreate_box 1 b",
-         "atom_style sphere"),
+        ("units si\natom_style atomic\nregion b block 0 1 0 1 0 1\ncreate_box 1 b", "atom_style sphere"),
         ("units si\natom_style sphere", "no simulation box"),
-        ("units si\ndimension 2\natom_style sphere\nregion b block 0 1 0 1 -1 1\ncreate_box 1 b",
-         "three dimensions"),
+        ("units si\ndimension 2\natom_style sphere\nregion b block 0 1 0 1 -1 1\ncreate_box 1 b", "three dimensions"),
     ],
-)  # fmt: skip
+)
 def test_another_kind_of_simulation(model, commands, words):
     lmp = quiet(commands)
     with pytest.raises(ValueError, match=words):
@@ -250,10 +255,7 @@ def test_plates_serve_the_same_beads_and_law(model):
     lmp = make(ABOVE)
     steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
-    for other in (
-        cl.ImpactModel(PAIR, law="hertz"),
-        cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz"),
-    ):
+    for other in (cl.ImpactModel(PAIR, law="hertz"), cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")):
         with pytest.raises(ValueError, match="another law or other beads"):
             attach(lmp, model, [flat(1e-3, model=other)])
 

@@ -10,10 +10,7 @@ from lammps_box import R, above, attach, flat, make, scene, state
 import contactlaw as cl
 from contactlaw.engines.lammps.memory import FIRST, SLIDING, WIDTH
 
-MODELS = {
-    "myc": cl.ImpactModel(box.PAIR, law="myc"),
-    "fem": cl.ImpactModel(cl.Pair("stainless-steel-304", "glass")),
-}
+MODELS = {"myc": cl.ImpactModel(box.PAIR, law="myc"), "fem": cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))}
 PSI = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0])
 MU = 0.2
 
@@ -41,18 +38,14 @@ def test_sliding_speed_is_that_of_the_integration(law, thickness, speed):
         assert np.abs(error).max() < bound
 
 
-@pytest.mark.parametrize(
-    "share", [0.97, 1.03, *(pytest.param(far, marks=pytest.mark.long) for far in (0.5, 2.0))]
-)
+@pytest.mark.parametrize("share", [0.97, 1.03, *(pytest.param(far, marks=pytest.mark.long) for far in (0.5, 2.0))])
 @pytest.mark.parametrize("thickness", [0.5e-3, math.inf])
 def test_a_bead_that_cannot_roll_rests_on_an_incline_or_slides(share, thickness):
     """On the half-space, which takes no energy, it jumps and creeps by 1e-9 R a step for ever."""
     slope, g, dt, steps = math.atan(MU * share), 9.81, 2e-7, 100_000
     lmp = make([above(1e-9)], (0, 0, 0), dt=dt)
     down = f"{math.sin(slope)!r} 0 {-math.cos(slope)!r}"
-    lmp.commands_string(
-        f"unfix move\nunfix gravity\nfix move all nve\nfix tilt all gravity {g} vector {down}"
-    )
+    lmp.commands_string(f"unfix move\nunfix gravity\nfix move all nve\nfix tilt all gravity {g} vector {down}")
     attach(lmp, MODELS["myc"], [flat(thickness)], friction=MU, records=10_000)
     lmp.command(f"run {steps}")
     now = state(lmp)
@@ -68,9 +61,7 @@ def test_beads_struck_in_mid_contact_gain_no_energy():
     """What the tangential motion has at the end is what it came with and what the blows gave."""
     count, generator = 60, np.random.default_rng(0)
     model, dt = MODELS["myc"], 5e-8
-    places = [
-        above(1e-6, x=0.008 * (n % 8) - 0.03, y=0.008 * (n // 8) - 0.03) for n in range(count)
-    ]
+    places = [above(1e-6, x=0.008 * (n % 8) - 0.03, y=0.008 * (n // 8) - 0.03) for n in range(count)]
     start = generator.normal(size=(count, 3)) * (2, 2, 0) - (0, 0, 5)
     lmp, _ = scene(model, [flat(1e-3)], places, start, friction=0.4, dt=dt)
     lmp.command("run 0")
@@ -78,9 +69,7 @@ def test_beads_struck_in_mid_contact_gain_no_energy():
 
     def energy():
         """Tangential kinetic energy of each bead over its mass, with spin."""
-        return 0.5 * (v[:count, :2] ** 2).sum(axis=1) + 0.2 * R**2 * (omega[:count] ** 2).sum(
-            axis=1
-        )
+        return 0.5 * (v[:count, :2] ** 2).sum(axis=1) + 0.2 * R**2 * (omega[:count] ** 2).sum(axis=1)
 
     held = energy()
     for _ in range(30):
@@ -100,16 +89,11 @@ def test_the_record_accounts_for_all_energy(motion):
     """Spinning beads that hit a plate at 45 to 85 degrees, one impact each."""
     model, count, generator = MODELS["fem"], 96, np.random.default_rng(1)
     angle, turn = np.radians(generator.uniform((45.0, 0.0), (85.0, 360.0), (count, 2))).T
-    start = 5.0 * np.column_stack(
-        (np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), -np.cos(angle))
-    )
-    places = [
-        above(2e-6, x=0.01 * (n % 10) - 0.045, y=0.01 * (n // 10) - 0.045) for n in range(count)
-    ]
+    start = 5.0 * np.column_stack((np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), -np.cos(angle)))
+    places = [above(2e-6, x=0.01 * (n % 10) - 0.045, y=0.01 * (n // 10) - 0.045) for n in range(count)]
     lmp, plates = scene(
-        model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8,
-        density=model.pair.sphere.density,
-    )  # fmt: skip
+        model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8, density=model.pair.sphere.density
+    )
     lmp.command("run 0")
     spin = lmp.numpy.extract_atom("omega")[:count]
     spin[:] = generator.normal(size=(count, 3)) * 3.0 / R

@@ -16,9 +16,15 @@ def test_drops_are_those_of_the_solver(model):
         plate = box.flat(thickness, width=0.03)
         place = box.above(5.0 * dt * speed, x=plate.corner[0] + 0.015, radius=radius)
         (row,), _ = box.dropped(
-            model, [plate], [place], [(0.0, 0.0, -speed)], radius=radius, dt=dt, steps=1000,
+            model,
+            [plate],
+            [place],
+            [(0.0, 0.0, -speed)],
+            radius=radius,
+            dt=dt,
+            steps=1000,
             density=model.pair.sphere.density,
-        )  # fmt: skip
+        )
         hit = model.solve(speed, radius, thickness)
         energy = 0.5 * 4 / 3 * math.pi * radius**3 * model.pair.sphere.density * speed**2
         assert row["restitution"] == pytest.approx(hit.restitution, rel=3e-3)

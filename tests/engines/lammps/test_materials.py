@@ -76,11 +76,7 @@ def test_each_bead_and_plate_has_its_material():
     lmp = scene(beads=three())
     rows = run(lmp, right, walls)
     assert rows["bead"].tolist() == [1, 2, 3, 4, 5, 6]
-    expected = [
-        table[kind].restitution(3.0, R, h)
-        for kind in (1, 2, 3)
-        for table, h in ((left, 1e-3), (right, 2e-3))
-    ]
+    expected = [table[kind].restitution(3.0, R, h) for kind in (1, 2, 3) for table, h in ((left, 1e-3), (right, 2e-3))]
     assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
     assert len({round(e, 2) for e in expected}) == 6
 
@@ -90,8 +86,7 @@ def test_a_plate_may_differ_for_one_type_only():
     lmp = scene(beads=three()[::2])
     rows = run(lmp, models(STEEL), [plate])
     plates = (STEEL, ALUMINIUM, STEEL)
-    expected = [cl.ImpactModel(cl.Pair(*pair)).restitution(3.0, R, 1e-3)
-                for pair in zip(SPHERES, plates, strict=True)]  # fmt: skip
+    expected = [cl.ImpactModel(cl.Pair(*pair)).restitution(3.0, R, 1e-3) for pair in zip(SPHERES, plates, strict=True)]
     assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
 
 
@@ -158,9 +153,7 @@ def test_a_bead_that_is_changed_in_mid_contact(commands, words):
         assert len(walls.collisions()) == 0
 
 
-@pytest.mark.parametrize(
-    "commands", [f"set group all diameter {2 * R!r} density {DENSITY}", "set group all type 3"]
-)
+@pytest.mark.parametrize("commands", [f"set group all diameter {2 * R!r} density {DENSITY}", "set group all type 3"])
 def test_a_change_that_is_none_in_mid_contact(commands):
     """Setting the same numbers again, or another atom type of the same model, changes nothing."""
     alumina = cl.ImpactModel(cl.Pair(SPHERES[0], STEEL))
@@ -175,8 +168,7 @@ def test_beads_may_change_between_contacts():
     lmp.command("run 1000")
     glass = cl.material("glass")
     lmp.commands_string(
-        f"set group all type 2 diameter 1.2e-3 density {glass.density}\n"
-        "set group all z 7e-4 vz -2\nrun 2000"
+        f"set group all type 2 diameter 1.2e-3 density {glass.density}\nset group all z 7e-4 vz -2\nrun 2000"
     )
     _, row = walls.collisions()
     expected = models(STEEL)[2].restitution(2.0, 0.6e-3, 1e-3)
@@ -201,9 +193,12 @@ def test_units_are_converted_at_the_border(units, model):
         order = np.argsort(lmp.numpy.extract_atom("id")[:2])
         atoms = {name: lmp.numpy.extract_atom(name)[:2][order] for name in ("x", "v", "omega")}
         outcomes[system] = (
-            walls.collisions(), atoms["x"] * length, atoms["v"] * length / time,
-            atoms["omega"] / time, walls.time,
-        )  # fmt: skip
+            walls.collisions(),
+            atoms["x"] * length,
+            atoms["v"] * length / time,
+            atoms["omega"] / time,
+            walls.time,
+        )
     rows, others = outcomes["si"][0], outcomes[units][0]
     assert len(rows) == 2 and abs(rows["wall_work"]).min() > 1e-7
     for name in rows.dtype.names:

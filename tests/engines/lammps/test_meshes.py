@@ -47,13 +47,7 @@ def fan():
     return np.vstack((rim, [[0.007, -0.003, 0.0]])), triangles
 
 
-SQUARES = {
-    "two": lambda: lattice(1),
-    "lattice": lambda: lattice(20),
-    "scattered": scattered,
-    "soup": soup,
-    "fan": fan,
-}
+SQUARES = {"two": lambda: lattice(1), "lattice": lambda: lattice(20), "scattered": scattered, "soup": soup, "fan": fan}
 
 
 def places(corners, triangles):
@@ -156,8 +150,7 @@ def test_more_contacts_than_slots_end_no_run(model, edges):
     rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
     here = np.arange(edges)
     there = np.roll(here, -1)
-    ring = np.concatenate((np.stack((here, there, here + edges), 1),
-                           np.stack((there, there + edges, here + edges), 1)))  # fmt: skip
+    ring = np.concatenate((np.stack((here, there, here + edges), 1), np.stack((there, there + edges, here + edges), 1)))
     hole = Mesh(np.vstack((0.8 * R * rim, 0.01 * rim)), ring, 1e-3)
     rest = math.sqrt(1 - (0.8 * math.cos(math.pi / edges)) ** 2)  # height of the centre at rest [R]
     start = 1e-6, 2e-6, (rest + 0.003) * R

@@ -33,14 +33,10 @@ def test_a_rotation_is_that_of_scipy(time):
 def test_shifts_and_rates_are_those_of_the_formulas(time):
     swing = Vibration((1e-3, 0, -2e-3), 50.0, phase=0.4)
     row, omega = placed(swing, time), 2 * math.pi * 50
-    assert row["shift"] == pytest.approx(
-        np.array([1e-3, 0, -2e-3]) * math.sin(omega * time + 0.4), abs=1e-15
-    )
+    assert row["shift"] == pytest.approx(np.array([1e-3, 0, -2e-3]) * math.sin(omega * time + 0.4), abs=1e-15)
     speed = np.array([1e-3, 0, -2e-3]) * omega
     # a mean over one step and over two differs from the rate in mid-step by (omega dt)^2/24, /6
-    assert row["half_rate"] == pytest.approx(
-        speed * math.cos(omega * (time - 0.5e-6) + 0.4), rel=1e-7, abs=1e-9
-    )
+    assert row["half_rate"] == pytest.approx(speed * math.cos(omega * (time - 0.5e-6) + 0.4), rel=1e-7, abs=1e-9)
     assert row["rate"] == pytest.approx(speed * math.cos(omega * time + 0.4), rel=1e-7, abs=1e-9)
     row = placed(Translation((1, 2, 3)), time)
     assert row["shift"] == pytest.approx(np.array([1, 2, 3]) * time, rel=1e-15)
@@ -117,8 +113,7 @@ def test_a_belt_takes_a_bead_along(model):
 def test_a_drum_turns_a_bead(model):
     """At the bottom a bead ends up rolling in place, its surface as fast as the wall."""
     speed, radius = 50.0, 0.018
-    drum = Mesh.cylinder((0, -0.03, 0), (0, 0.03, 0), radius, 1e-3, facets=360,
-                         motion=Rotation((0, 1, 0), speed))  # fmt: skip
+    drum = Mesh.cylinder((0, -0.03, 0), (0, 0.03, 0), radius, 1e-3, facets=360, motion=Rotation((0, 1, 0), speed))
     start = 0, 0.001, -(radius * math.cos(math.pi / 360) - R - 1e-9)
     lmp, _ = scene(model, [drum], start, (0, 0, 0), gravity=1e4, dt=2e-7, friction=0.5)
     lmp.command("run 40000")

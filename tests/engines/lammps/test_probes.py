@@ -19,8 +19,7 @@ def test_a_floor_of_many_tiny_triangles_hides_no_wall(n):
     half = 1e-3
     corners, triangles = square(n, half)
     upright = corners[:, [2, 1, 0]] + [half, 0, half]
-    mesh = Mesh(np.vstack((corners, upright)), np.vstack((triangles, triangles + len(corners))),
-                math.inf)  # fmt: skip
+    mesh = Mesh(np.vstack((corners, upright)), np.vstack((triangles, triangles + len(corners))), math.inf)
     start = half - R - 1e-6, 1e-5, R + 5e-7
     rows, now = dropped(HERTZ, [mesh], start, (1.0, 0, -12.0), steps=300)
     assert rows["restitution"] == pytest.approx([1.0, 1.0], abs=1e-9)

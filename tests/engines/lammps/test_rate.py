@@ -17,17 +17,21 @@ MASS = 4 / 3 * np.pi * metal.PAIR.sphere.density
 def dropped(model, radius, drops, rising=0.0, along=0.0, friction=0.0):
     """Record of beads that hit plates of their own at these speeds, plates that may rise."""
     motion = Translation((0.0, 0.0, rising)) if rising else None
-    plates = [
-        box.flat(h, x=0.01 * n - 0.05, width=0.008, motion=motion) for n, (h, _) in enumerate(drops)
-    ]
+    plates = [box.flat(h, x=0.01 * n - 0.05, width=0.008, motion=motion) for n, (h, _) in enumerate(drops)]
     dt = min(time_step(model, v, radius, h, 1e-4) for h, v in drops)
     gap = 5.0 * dt * min(v for _, v in drops)
     places = [box.above(gap, x=plate.corner[0] + 0.004, radius=radius) for plate in plates]
     rows, _ = box.dropped(
-        model, plates, places, [(along, 0.0, rising - v) for _, v in drops], radius=radius, dt=dt,
-        steps=int(4e-5 * (radius / 1e-3) / dt) + 100, friction=friction,
+        model,
+        plates,
+        places,
+        [(along, 0.0, rising - v) for _, v in drops],
+        radius=radius,
+        dt=dt,
+        steps=int(4e-5 * (radius / 1e-3) / dt) + 100,
+        friction=friction,
         density=metal.PAIR.sphere.density,
-    )  # fmt: skip
+    )
     return np.sort(rows, order="bead")
 
 

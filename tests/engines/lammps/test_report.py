@@ -24,8 +24,9 @@ def numbers(path):
     cells = np.array(words[at + 3 : at + 3 + int(words[at + 2])], int).reshape(-1, 4)
     columns = {
         words[at + 1]: np.array(words[at + 6 : at + 6 + len(cells)], float)
-        for at, word in enumerate(words) if word == "SCALARS"
-    }  # fmt: skip
+        for at, word in enumerate(words)
+        if word == "SCALARS"
+    }
     return corners[cells[:, 1:]], columns
 
 
@@ -94,10 +95,7 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     corners, triangles = square(1, 25.0)
     trimesh.Trimesh(corners, triangles, process=False).export(tmp_path / "other.stl")
     assert main([*command, "--mesh", str(tmp_path / "other.stl"), "--scale", "1mm"]) == 1
-    assert (
-        "not the mesh of wall 0: it has no triangle 4, which the record has hits on"
-        in capsys.readouterr().err
-    )
+    assert "not the mesh of wall 0: it has no triangle 4, which the record has hits on" in capsys.readouterr().err
 
 
 def test_a_report_that_fails_on_rank_0_is_an_error(model, tmp_path):

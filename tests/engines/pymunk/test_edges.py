@@ -103,9 +103,7 @@ def test_friction_follows_the_normal_impulse(model, sliding):
     row, _ = hit(model, NEAR, [LONG], "free", slip=sliding * mu * speed, friction=mu)
     expected = model.oblique(speed, sliding * mu * speed, R, H, mu, "solve", "free", row["x"])
     least = 1e-3 if sliding > 10.0 else 0.05
-    assert row["sliding_speed_after"] == pytest.approx(
-        float(expected.sliding_speed), abs=least * mu * speed
-    )
+    assert row["sliding_speed_after"] == pytest.approx(float(expected.sliding_speed), abs=least * mu * speed)
 
 
 @pytest.mark.parametrize(

@@ -39,8 +39,7 @@ def test_exception_in_the_model_reaches_the_caller(error):
 
 
 @pytest.mark.parametrize(
-    ("errors", "raised"),
-    [((KeyError, IndexError), KeyError), ((KeyError, KeyboardInterrupt), KeyboardInterrupt)],
+    ("errors", "raised"), [((KeyError, IndexError), KeyError), ((KeyError, KeyboardInterrupt), KeyboardInterrupt)]
 )
 def test_the_first_of_several_errors_or_the_interrupt_is_raised(errors, raised):
     left = list(errors)

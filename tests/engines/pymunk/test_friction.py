@@ -65,9 +65,8 @@ def test_an_isolated_impact_is_that_of_collide(model, motion, gravity, seed):
     angle, friction = random.uniform(0.0, 2.0 * math.pi), 10.0 ** random.uniform(-2.0, 0.0)
     came = pymunk.Vec2d(random.uniform(-8.0, 8.0), -(10.0 ** random.uniform(-0.3, 1.0)))
     space, bead, plate, impacts = scene(
-        model, came.rotated(angle), random.normal(scale=4000.0), friction, gravity, angle,
-        MOUNTS[motion],
-    )  # fmt: skip
+        model, came.rotated(angle), random.normal(scale=4000.0), friction, gravity, angle, MOUNTS[motion]
+    )
     if motion == "belt":
         plate.surface_velocity = UP.rotated(angle).perpendicular() * 3.0
     row, before, spin = hit(space, impacts, bead)
@@ -75,9 +74,7 @@ def test_an_isolated_impact_is_that_of_collide(model, motion, gravity, seed):
     normal = (bead.position - point).normalized()
     along = normal.perpendicular()
     wall = plate.surface_velocity + plate.body.velocity_at_world_point(point)
-    velocity, turned = model.collide(
-        (*before, 0), (0, 0, spin), (*normal, 0), R, H, friction, (*wall, 0)
-    )
+    velocity, turned = model.collide((*before, 0), (0, 0, spin), (*normal, 0), R, H, friction, (*wall, 0))
     fall = along * (-gravity * 1e-6 * along.y)  # along the plate it falls in every step
     assert bead.velocity - fall == pytest.approx(tuple(velocity[:2]), abs=1e-9)
     assert R * bead.angular_velocity == pytest.approx(R * turned[2], abs=1e-9)

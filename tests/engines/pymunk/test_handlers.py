@@ -32,9 +32,7 @@ def as_usual(space, *args, **kwargs):
 def test_a_users_pre_solve_and_the_model_are_both_heard(key, register):
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
     seen = []
-    register(
-        space, *key(impacts), pre_solve=lambda arbiter, space, data: seen.append(data), data="mine"
-    )
+    register(space, *key(impacts), pre_solve=lambda arbiter, space, data: seen.append(data), data="mine")
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert impacts.collisions()["restitution"].tolist() == [0.6]

@@ -130,9 +130,7 @@ def test_beads_that_touch_gain_no_energy(iterations, friction, between):
     """Whatever the COR of each impact; some contacts separate while their neighbours hit."""
     rng = np.random.default_rng(3)
     starts = [([R] * 4, [3.633, -0.1, 0.173, -2.974])]
-    starts += [
-        (R * rng.uniform(0.4, 1, n % 9 + 2), rng.uniform(-4, 4, n % 9 + 2)) for n in range(27)
-    ]
+    starts += [(R * rng.uniform(0.4, 1, n % 9 + 2), rng.uniform(-4, 4, n % 9 + 2)) for n in range(27)]
     for radii, speeds in starts:
         space = make_space(0.0)
         space.iterations = iterations

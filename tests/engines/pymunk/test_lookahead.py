@@ -52,12 +52,7 @@ def test_safe_step_of_a_bead_that_overlaps_already():
 def test_a_fast_plate_is_reported(motion):
     space = make_space(0.0)
     body = room.moving_body(space, position=(-1, 0), **motion)
-    room.registered(
-        space,
-        Stub(),
-        [make_bead(space, (0, 0.003))],
-        [make_plate(space, (0, 0), (1.5, 0), body=body)],
-    )
+    room.registered(space, Stub(), [make_bead(space, (0, 0.003))], [make_plate(space, (0, 0), (1.5, 0), body=body)])
     # At a distance of 1 m the turning plate sweeps over 10 mm a step, too.
     with pytest.raises(TunnellingError) as caught:
         space.step(DT)

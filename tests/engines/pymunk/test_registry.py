@@ -98,9 +98,7 @@ def test_other_contacts_and_handlers_are_untouched():
 def test_beads_and_plates_come_and_go():
     space, body, impacts = drop(Stub(0.5))
     (bead,), (plate,) = body.shapes, space.static_body.shapes
-    space.on_collision(
-        impacts.bead_type, impacts.plate_type, post_solve=lambda *_: space.remove(bead, body)
-    )
+    space.on_collision(impacts.bead_type, impacts.plate_type, post_solve=lambda *_: space.remove(bead, body))
     space.step(DT)
     assert body not in space.bodies
     room.steps(space, 3)

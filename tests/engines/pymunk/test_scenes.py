@@ -80,9 +80,7 @@ def test_a_removed_plate_is_an_ordinary_segment():
 def test_a_bead_may_go_in_the_middle_of_a_step():
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
     (circle,) = body.shapes
-    space.on_collision(
-        impacts.bead_type, impacts.plate_type, post_solve=lambda *_: impacts.remove_bead(circle)
-    )
+    space.on_collision(impacts.bead_type, impacts.plate_type, post_solve=lambda *_: impacts.remove_bead(circle))
     room.steps(space, 3)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
@@ -203,9 +201,7 @@ def test_a_sloping_side_of_a_turning_polygon():
     plate = body.velocity_at_world_point(point)
     assert abs(plate.dot(turned)) > 0.1  # it turns away under the bead, or towards it
     assert row["approach_speed"] == pytest.approx(-(normal * -1 - plate).dot(turned), abs=1e-9)
-    assert (circle.body.velocity - plate).dot(turned) == pytest.approx(
-        0.6 * row["approach_speed"], abs=1e-9
-    )
+    assert (circle.body.velocity - plate).dot(turned) == pytest.approx(0.6 * row["approach_speed"], abs=1e-9)
 
 
 @pytest.mark.parametrize("ratio", [1.5, 3.0, 30.0])
@@ -261,9 +257,7 @@ BEADS, PLATES = ("gamma-alumina", STEEL), ("glass", STEEL)
 @pytest.fixture(scope="module")
 def models():
     """Models of every kind of bead on every kind of plate."""
-    return {
-        (b, p): cl.ImpactModel(cl.Pair(b, p), law="jackson_green") for b in BEADS for p in PLATES
-    }
+    return {(b, p): cl.ImpactModel(cl.Pair(b, p), law="jackson_green") for b in BEADS for p in PLATES}
 
 
 def shower(models, speed=1.0):
@@ -281,9 +275,7 @@ def shower(models, speed=1.0):
             bodies.append(circle.body)
     for n, bead in enumerate(BEADS):
         side, rho = (-1, 1)[n], cl.material(bead).density
-        circle = make_bead(
-            space, (1.01 * side * R, 1), (-side * speed, 0), radius=R * (1 + n), density=rho
-        )
+        circle = make_bead(space, (1.01 * side * R, 1), (-side * speed, 0), radius=R * (1 + n), density=rho)
         circle.body.position = (side * R * (1 + n) * 1.01, 1)
         impacts.add_bead(circle, material=bead)
         bodies.append(circle.body)
@@ -360,9 +352,7 @@ def test_a_pair_without_a_model_says_which(models):
     rho = cl.material("carbon-steel").density
     circle = make_bead(space, (0, 1.01 * R), (0, -2), density=rho)
     impacts.add_bead(circle, material=cl.material("carbon-steel"))
-    with pytest.raises(
-        ValueError, match=r"Pair\('carbon-steel-1020', 'carbon-steel-1020'\)"
-    ) as caught:
+    with pytest.raises(ValueError, match=r"Pair\('carbon-steel-1020', 'carbon-steel-1020'\)") as caught:
         space.step(DT)
     assert "bead 0 on plate 0" in caught.value.__notes__[0]
 
@@ -370,9 +360,7 @@ def test_a_pair_without_a_model_says_which(models):
 def test_what_is_no_material(models):
     space = make_space(0.0)
     impacts = attach(space, list(models.values()))
-    with pytest.raises(
-        ValueError, match="spheres of 'gold'.* 'gamma-alumina', 'carbon-steel-1020'"
-    ):
+    with pytest.raises(ValueError, match="spheres of 'gold'.* 'gamma-alumina', 'carbon-steel-1020'"):
         impacts.add_bead(make_bead(space, (0, 1)), material="gold")
     with pytest.raises(ValueError, match="plates of 'gold', only for 'glass', 'carbon-steel-1020'"):
         impacts.add_plate(make_plate(space), 1e-3, material="gold")
@@ -425,16 +413,12 @@ def floor(pieces, radius=0.0, turn=0.0, neighbours=False, boxes=False, at=0.0):
     for a, b in zip(xs, xs[1:], strict=False):
         if boxes:
             corners = [(a, 0), (b, 0), (b, -0.01), (a, -0.01)]
-            shape = pymunk.Poly(
-                space.static_body, [pymunk.Vec2d(*c).rotated(turn) for c in corners], radius=radius
-            )
+            shape = pymunk.Poly(space.static_body, [pymunk.Vec2d(*c).rotated(turn) for c in corners], radius=radius)
         else:
             ends = [pymunk.Vec2d(x, 0).rotated(turn) for x in (a, b)]
             shape = pymunk.Segment(space.static_body, *ends, radius)
             if neighbours:
-                shape.set_neighbors(
-                    *[pymunk.Vec2d(x, 0).rotated(turn) for x in (2 * a - b, 2 * b - a)]
-                )
+                shape.set_neighbors(*[pymunk.Vec2d(x, 0).rotated(turn) for x in (2 * a - b, 2 * b - a)])
         space.add(shape)
         impacts.add_plate(shape, 1e-3)
     return space, circle.body, impacts
@@ -559,9 +543,7 @@ def test_a_mass_that_is_not_the_spheres_is_told(model, factor):
     space = make_space()
     impacts = attach(space, model)
     circle = make_bead(space, (0, 1), density=879.0 * factor)
-    with pytest.warns(
-        UserWarning, match=r"body.mass: .* gamma-alumina .* 2.684e-06 kg.*set"
-    ) as told:
+    with pytest.warns(UserWarning, match=r"body.mass: .* gamma-alumina .* 2.684e-06 kg.*set") as told:
         impacts.add_bead(circle)
     assert told[0].filename == __file__
 

@@ -92,9 +92,7 @@ def test_every_body_yields_somewhere_in_the_set(rows):
 
 
 def member(error, flags=0):
-    return Member(
-        "", "", "", 1.0, 1.0, 1.0, "none", 0.5, 0.5, Errors(error, 0.0, 0.0, 0.0), Validity(flags)
-    )
+    return Member("", "", "", 1.0, 1.0, 1.0, "none", 0.5, 0.5, Errors(error, 0.0, 0.0, 0.0), Validity(flags))
 
 
 @pytest.mark.parametrize(
@@ -135,8 +133,7 @@ def test_the_report_lists_every_impact_kept_out(capsys):
     text = capsys.readouterr().out
     for case in census.drawn("kept_out"):
         assert any(
-            case.sphere in line and case.plate in line and f" {case.speed:6.2f} " in line
-            for line in text.splitlines()
+            case.sphere in line and case.plate in line and f" {case.speed:6.2f} " in line for line in text.splitlines()
         ), case
     assert "one published measurement" in text
     silent = [name for name, (_, _, beyond, *_) in MEASURED.items() if beyond]

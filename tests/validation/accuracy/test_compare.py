@@ -58,9 +58,7 @@ def test_a_result_that_is_missing_names_the_command():
     ],
     ids=["NaN", "no unit", "cannot be written"],
 )
-def test_a_wrong_result_is_refused_and_leaves_nothing(
-    force, units, mesh, message, tmp_path, monkeypatch
-):
+def test_a_wrong_result_is_refused_and_leaves_nothing(force, units, mesh, message, tmp_path, monkeypatch):
     monkeypatch.setattr(store, "FOLDER", tmp_path)
     with pytest.raises((ValueError, TypeError), match=message):
         store.write("bad", "", {"force": np.array([force])}, units, mesh=mesh)
@@ -114,9 +112,7 @@ def test_discretisation_error():
     """The error is estimated from three meshes and the plate's far mesh, as the docs say."""
     found = compare.discretisation()
     assert all(off.max() < 0.007 for off in found.values())
-    stated = re.search(
-        r"error of (\S+) % in COR, (\S+) % in peak force, (\S+) % in contact time and (\S+) %", SAID
-    )
+    stated = re.search(r"error of (\S+) % in COR, (\S+) % in peak force, (\S+) % in contact time and (\S+) %", SAID)
     for value, name in zip(stated.groups(), found, strict=True):
         assert float(value) == pytest.approx(100 * found[name].max(), abs=0.006), name
 
@@ -137,9 +133,7 @@ def test_hertz_is_the_limit_of_narrow_contacts():
     """The difference from Hertz goes to nothing with the contact's radius over the sphere's."""
     data = store.read("verification").data
     rows = data["check"] == "hertz"
-    hertz = cl.ImpactModel(setting.PAIR, law="hertz").solve(
-        data["speed"][rows], setting.RADIUS, np.inf
-    )
+    hertz = cl.ImpactModel(setting.PAIR, law="hertz").solve(data["speed"][rows], setting.RADIUS, np.inf)
     width = np.sqrt(hertz.peak_compression / setting.RADIUS)
     for name in ("peak_force", "contact_time"):
         off = data[name][rows] / getattr(hertz, name) - 1.0
@@ -181,14 +175,12 @@ def test_impact_agrees_with_calculix():
     apart = {}
     for n, size in enumerate(theirs["size"]):
         ours = impact(
-            setting.PAIR, made["speed"], made["radius"], made["thickness"], size=size,
-            friction=made["friction"],
-        )  # fmt: skip
+            setting.PAIR, made["speed"], made["radius"], made["thickness"], size=size, friction=made["friction"]
+        )
         sphere, plate = ours.system.sphere.elements, ours.system.plate.elements
         assert len(sphere) + len(plate) == theirs["elements"][n]
         apart[size] = [
-            abs(theirs[key][n] / getattr(ours, key) - 1)
-            for key in ("restitution", "peak_force", "contact_time")
+            abs(theirs[key][n] / getattr(ours, key) - 1) for key in ("restitution", "peak_force", "contact_time")
         ]
         assert apart[size][1] < 0.02
         assert apart[size][2] < 0.015  # the time comes in increments of 0.009
@@ -289,9 +281,7 @@ def test_the_law_has_to_suit_the_yield_strain():
 def test_an_edge_beyond_the_edge_distance_is_not_felt():
     data = store.read("edge").data
     thickness = data["thickness"][0]
-    free = cl.ImpactModel(setting.PAIR, law="myc").lookup(
-        data["speed"][0], data["radius"][0], thickness
-    )
+    free = cl.ImpactModel(setting.PAIR, law="myc").lookup(data["speed"][0], data["radius"][0], thickness)
     distance = cl.edge_distance(setting.PAIR.plate, thickness, free.contact_time)
     ratio, cor = data["width"] / distance, data["restitution"]
     assert cor[ratio > 0.99] == pytest.approx(cor[-1], rel=0.002)

@@ -76,10 +76,7 @@ def test_hardening_indentation_agrees_with_calculix():
     soft = cl.Pair(SOFT, HARDENING.plate)
     hard, ideal = (
         _works(press.compression, press.force)
-        for press in (
-            indent(pair, RADIUS, HARDENING_DEPTH, size=2.0 * HARDENING_SIZE)
-            for pair in (HARDENING, soft)
-        )
+        for press in (indent(pair, RADIUS, HARDENING_DEPTH, size=2.0 * HARDENING_SIZE) for pair in (HARDENING, soft))
     )
     assert hard[0] == pytest.approx(theirs[0], rel=0.03)
     assert ideal[0] < 0.7 * theirs[0]

@@ -95,9 +95,7 @@ def test_the_input_of_calculix_is_the_same_mesh():
     width = core(R, depth)
     above = mesh.sphere(R, 0.1 * R, width, hemisphere=True)
     below = mesh.plate(R, 0.1 * R, width, 20 * R, 20 * R)
-    assert len(re.findall(r"^\d+(?:, \d+){4}$", text, re.M)) == sum(
-        len(body.elements) for body in (above, below)
-    )
+    assert len(re.findall(r"^\d+(?:, \d+){4}$", text, re.M)) == sum(len(body.elements) for body in (above, below))
     for name, body in (("ABOVE", above), ("BELOW", below)):
         faces = re.search(rf"NAME={name}, TYPE=ELEMENT\n((?:\d+, S\d\n)+)", text).group(1)
         near = body.nodes[body.surface, 0] <= R
@@ -106,9 +104,15 @@ def test_the_input_of_calculix_is_the_same_mesh():
 
 @pytest.mark.parametrize(
     ("argument", "value"),
-    [("size", -1.0), ("size", 2.0), ("friction", -1.0), ("width", 1e-6), ("far", 0.0),
-     ("hourglass_stiffness", math.nan)],
-)  # fmt: skip
+    [
+        ("size", -1.0),
+        ("size", 2.0),
+        ("friction", -1.0),
+        ("width", 1e-6),
+        ("far", 0.0),
+        ("hourglass_stiffness", math.nan),
+    ],
+)
 def test_wrong_arguments_are_refused(argument, value):
     with pytest.raises(ValueError, match=f"{argument}: got {value}; must lie between"):
         impact(PAIR, 26.0, R, 0.5e-3, **{argument: value})

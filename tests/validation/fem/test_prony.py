@@ -45,23 +45,16 @@ def test_strained_block_stores_and_loses_as_its_springs_and_dashpots(frequency):
     assert body.work[2] - lost == pytest.approx(loss, rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    "branches", ["standard solid", pytest.param("constant loss", marks=pytest.mark.long)]
-)
+@pytest.mark.parametrize("branches", ["standard solid", pytest.param("constant loss", marks=pytest.mark.long)])
 def test_impact_of_lossy_bodies_is_hertzs_with_memory(branches, monkeypatch):
     """Contact of 1/37 of the radius, on a plate of ten times the modulus."""
     plate = cl.Material("plate", 3e10, NU, 3000.0, loss_factor=(LOSS, 1e4))
     hertz = cl.ImpactModel(cl.Pair(LOSSY, plate), law="hertz").solve(0.1, 1e-3, math.inf)
     time = float(hertz.contact_time)
-    relaxed, sphere = (
-        power_law(LOSS),
-        cl.Material("sphere", 3e9, NU, 1200.0, loss_factor=(LOSS, 0.5 / time)),
-    )
+    relaxed, sphere = (power_law(LOSS), cl.Material("sphere", 3e9, NU, 1200.0, loss_factor=(LOSS, 0.5 / time)))
     plate = cl.Material("plate", 3e10, NU, 3000.0, loss_factor=sphere.loss_factor)
     if branches == "standard solid":
-        monkeypatch.setattr(
-            prony, "series", lambda *_: prony.Prony(np.array([0.6]), np.array([0.25 * time]), 1.0)
-        )
+        monkeypatch.setattr(prony, "series", lambda *_: prony.Prony(np.array([0.6]), np.array([0.25 * time]), 1.0))
         tau = 0.25 * ELASTIC_TIME
         relaxed = lambda t: 0.4 * t - 0.6 * tau * np.expm1(-t / tau)  # noqa: E731
     wanted = rebound(relaxed, 2000)
@@ -89,10 +82,7 @@ def test_weak_viscosity_is_kuwabaras_and_konos():
     loss = []
     for x in (0.01, 0.02):
         # errors of the first order in the step: the dashpot's force is that of half a step before
-        cor = [
-            rebound(lambda t, x=x: t + x / 1.5 * (t > 0.0), steps).restitution
-            for steps in (1000, 2000)
-        ]
+        cor = [rebound(lambda t, x=x: t + x / 1.5 * (t > 0.0), steps).restitution for steps in (1000, 2000)]
         loss.append((1.0 - 2.0 * cor[1] + cor[0]) / x)
     assert 2.0 * loss[0] - loss[1] == pytest.approx(first, rel=2e-3)
 

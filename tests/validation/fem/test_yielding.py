@@ -132,9 +132,7 @@ def test_yielding_block_agrees_with_calculix():
 def _left(found):
     """Residual over largest compression, taken where unloading reaches 1 % of the peak force."""
     top = int(found.compression.argmax())
-    down = np.interp(
-        0.01 * found.force.max(), found.force[top:][::-1], found.compression[top:][::-1]
-    )
+    down = np.interp(0.01 * found.force.max(), found.force[top:][::-1], found.compression[top:][::-1])
     return down / BOTH_DEPTH
 
 

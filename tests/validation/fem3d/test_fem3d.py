@@ -20,9 +20,16 @@ SPEED, FRICTION = 6.0, 0.2
 def _body(elements, stiffness=1.0, strength=math.inf):
     m = len(elements)
     return hexahedra.Body(
-        elements, np.zeros((m, 6)), np.zeros((m, 12)), np.zeros(m), np.full(m, stiffness),
-        np.zeros(2), 1.5, 1.0, strength,
-    )  # fmt: skip
+        elements,
+        np.zeros((m, 6)),
+        np.zeros((m, 12)),
+        np.zeros(m),
+        np.full(m, stiffness),
+        np.zeros(2),
+        1.5,
+        1.0,
+        strength,
+    )
 
 
 def _strained(nodes, elements, v, **given):
@@ -79,10 +86,7 @@ def test_a_plate_ends_at_its_edge(hole):
 
 @pytest.mark.long
 def test_a_sphere_rebounds_less_near_an_edge():
-    near, far = (
-        oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=distance)
-        for distance in (R, math.inf)
-    )
+    near, far = (oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=distance) for distance in (R, math.inf))
     assert near.balance < 0.003
     assert near.restitution == pytest.approx(0.45, abs=0.03)
     assert far.restitution == pytest.approx(0.660, abs=0.02)  # of the round plate, as above
@@ -140,9 +144,7 @@ def test_stress_returns_to_the_yield_surface(ball):
     v = ball.nodes @ np.diag([1.0, -1.0, 0.0])
     body, _ = _strained(ball.nodes, ball.elements, v, strength=1e-6)
     s = body.stress
-    mises = np.sqrt(
-        0.5 * ((s[:, 0] - s[:, 1]) ** 2 + (s[:, 1] - s[:, 2]) ** 2 + (s[:, 2] - s[:, 0]) ** 2)
-    )
+    mises = np.sqrt(0.5 * ((s[:, 0] - s[:, 1]) ** 2 + (s[:, 1] - s[:, 2]) ** 2 + (s[:, 2] - s[:, 0]) ** 2))
     assert mises == pytest.approx(1e-6)
     # plastic strain is the total one, 2/sqrt(3), less the elastic one, sigma_Y/(3 G)
     assert body.plastic_strain == pytest.approx((2 / math.sqrt(3) - 1 / 3) * 1e-6)
@@ -171,10 +173,7 @@ def test_slip_begins_in_cattaneos_annulus():
     held[above:] |= np.linalg.norm(system.x[above:], axis=1) > 3.99 * R
     system.inverse_mass[held] = 0.0
     held[above:] = False  # the rim of the block does not move
-    step = 0.95 * min(
-        hexahedra.stable_step(body, system.x, STEEL.density)
-        for body in (system.sphere, system.plate)
-    )
+    step = 0.95 * min(hexahedra.stable_step(body, system.x, STEEL.density) for body in (system.sphere, system.plate))
     share = mesh.areas(meshes[0])[system.surfaces.slave]
 
     def move(axis, way, duration):
@@ -270,9 +269,8 @@ def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     cases.write("kept_out")
     listed = cases.drawn("kept_out")
     outcome = dict.fromkeys(
-        ("psi_after", "impulse_ratio", "restitution", "normal_restitution", "pressure", "slide",
-         "contact_radius"), 0.5,
-    )  # fmt: skip
+        ("psi_after", "impulse_ratio", "restitution", "normal_restitution", "pressure", "slide", "contact_radius"), 0.5
+    )
     computed = []
 
     def solve(case):

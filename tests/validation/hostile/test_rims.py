@@ -72,19 +72,13 @@ def test_the_force_on_meshes_has_a_continuous_potential(name):
         errors = []
         for pieces in (500, 4000):
             t = np.linspace(0, 1, pieces)[:, None]
-            way = (
-                place
-                + (4.5e-5 + 0.02 * r * np.sin(math.pi * t)) * ahead
-                + (t - 0.5) * 0.3 * r * side
-            )
+            way = place + (4.5e-5 + 0.02 * r * np.sin(math.pi * t)) * ahead + (t - 0.5) * 0.3 * r * side
             energies, forces = np.empty(pieces), np.empty((pieces, 3))
             for n, x in enumerate(way):
                 energies[n] = energy(made.frames, made.facets, tuple(x), r, found, force)
                 forces[n] = force
             work = 2.5 * (0.5 * (forces[1:] + forces[:-1]) * np.diff(way, axis=0)).sum()
-            errors.append(
-                abs(work + energies[-1] - energies[0]) / max(energies.max(), (0.02 * r) ** 2.5)
-            )
+            errors.append(abs(work + energies[-1] - energies[0]) / max(energies.max(), (0.02 * r) ** 2.5))
         worst.append(errors)
     assert np.max(worst, axis=0)[1] < 5e-4
     coarse, fine = np.mean(worst, axis=0)  # a kink's error depends on where in a piece it lies
