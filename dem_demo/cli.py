@@ -17,6 +17,7 @@ from collections.abc import Sequence
 
 import dem_demo
 from contactlaw.parser import Parser
+from dem_demo.kit import signals
 from dem_demo.kit.options import Refused
 from dem_demo.kit.signals import Interrupted, interruptible
 
@@ -33,7 +34,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with interruptible():
             arguments = parser().parse_args(argv)
-            status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
+            try:
+                status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
+            except Exception:
+                signals.check()  # it may be what an interrupt has left that Python dropped
+                raise
         return _stopped(status) if status else 0
     except Interrupted as stop:
         if not _rank():  # of several ranks only the first one reports

@@ -131,7 +131,8 @@ def run(begin: Callable[[], Simulation], frames: int, name: str, recorder: Recor
             if recorder is not None and frame is not None:
                 recorder.add(frame)
     except (Exception, Interrupted) as error:
-        stop = error
+        came = signals.first()  # the error may be what an interrupt has left that Python dropped
+        stop = Interrupted(came) if came else error
     with signals.held():
         try:
             record = None if simulation is None else simulation.record()

@@ -135,6 +135,21 @@ def test_an_interrupt_that_python_drops_ends_the_run(dust, tmp_path, monkeypatch
         assert file["trajectories/time"].size == FRAMES // 2 + 1
 
 
+@pytest.mark.parametrize("while_it_runs", [True, False])
+def test_an_error_that_a_dropped_interrupt_leaves_is_an_interrupt(while_it_runs, dust, tmp_path, monkeypatch, capsys):
+    """As that of a compiler whose callback the interrupt has ended."""
+
+    def compile():
+        Dropped()
+        raise RuntimeError("no compiled object yet")
+
+    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: None)
+    setattr(dust, "middle" if while_it_runs else "before", compile)
+    assert main(tmp_path / "out") == 130
+    errors = capsys.readouterr().err
+    assert "interrupted by SIGINT" in errors and "no compiled object" not in errors
+
+
 @pytest.mark.parametrize("error", [KeyError("drawing"), signal.SIGINT])
 def test_what_fails_while_figures_are_drawn_keeps_the_record(error, dust, tmp_path, capsys):
     raise_it = signal.raise_signal if isinstance(error, int) else fails(error)
