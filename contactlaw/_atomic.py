@@ -51,9 +51,18 @@ def folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     with temporary as made:
         with _naming(to, made):
             yield Path(made)
+            files = {one.name: one.read_bytes() for one in Path(made).iterdir()}
+        contents = {Path(os.path.realpath(to / name)): content for name, content in files.items()}
+        if len(contents) < len(files):
+            raise FileExistsError(errno.EEXIST, "two of its names are links to one file", str(to))
+        made_here = not to.exists()
         to.mkdir(exist_ok=True)
-        files = Path(made).iterdir()
-        _replace({Path(os.path.realpath(to / one.name)): one.read_bytes() for one in files})
+        try:
+            _replace(contents)
+        except BaseException:
+            if made_here:
+                to.rmdir()
+            raise
 
 
 def _check_folder(path: Path) -> None:
@@ -88,7 +97,7 @@ def _naming(path: Path, temporary: str = "") -> Iterator[None]:
         yield
     except OSError as error:
         if str(error.filename or temporary).startswith(temporary):
-            error.filename, error.filename2 = str(path), None
+            raise type(error)(error.errno, error.strerror, str(path)) from None
         raise
 
 
@@ -97,6 +106,8 @@ def _staged(path: Path, content: bytes, done: contextlib.ExitStack) -> Path:
     _check_folder(path.parent)
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if path.exists() and not path.is_file():  # a device: the system would lose it
+        raise FileExistsError(errno.EEXIST, "is no file that can be replaced")
     mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o644
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     done.callback(Path(name).unlink, missing_ok=True)

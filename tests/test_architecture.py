@@ -142,7 +142,7 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 32_937,
+    "contactlaw": 32_948,
     "contactlaw/answers": 2_776,
     "contactlaw/cli": 3_776,
     "contactlaw/emit": 715,
@@ -158,9 +158,9 @@ BUDGETS = {
     "contactlaw/table": 2_940,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_914,
     "contactlaw templates": 1_098,  # sources of other languages, and pages
-    "dem_demo": 4_474,
-    "validation": 14_047,  # finite elements are 5,529 of them
-    "tests": 24_035,  # a fact is held at one level, the one that is nearest to the user
+    "dem_demo": 4_486,
+    "validation": 14_058,  # finite elements are 5,529 of them
+    "tests": 24_089,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

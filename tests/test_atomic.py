@@ -130,3 +130,26 @@ def test_a_full_disk_names_the_folder_and_leaves_nothing(tmp_path):
             (made / "a.h").write_text("after")
             raise OSError(ENOSPC, os.strerror(ENOSPC), str(made / "b.h"))
     assert names(tmp_path) == []
+
+
+def test_a_folder_replaces_no_device_and_no_file_twice(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "one").write_text("old")
+    out = tmp_path / "out"
+    out.mkdir()
+    for links, reason in (({"a": "pipe"}, "no file that can be replaced"), ({"a": "one", "b": "one"}, "links to one")):
+        for name, target in links.items():
+            (out / name).symlink_to(tmp_path / target)
+        with pytest.raises(FileExistsError, match=reason) as refused, _atomic.folder(out) as made:
+            for name in links:
+                (made / name).write_text(name)
+        assert "None" not in str(refused.value)
+        assert (tmp_path / "pipe").is_fifo() and (tmp_path / "one").read_text() == "old"
+        for name in links:
+            (out / name).unlink()
+
+
+def test_a_new_folder_that_fails_is_not_left_behind(tmp_path):
+    with pytest.raises(IsADirectoryError, match="new"), _atomic.folder(tmp_path / "new") as made:
+        (made / "sub").mkdir()
+    assert list(tmp_path.iterdir()) == []

@@ -106,6 +106,8 @@ class Recorder:
     def _write_rest(self, file: h5py.File) -> None:
         """Write the scene and its frames."""
         self._write_scene(file)
+        if not self._frames:
+            return
         group, count = file.create_group("trajectories"), len(self._frames)
         write(group, "time", np.arange(count) / self._frame_rate, "s", "time of the frame")
         for name, _, unit, description in self._trajectories:
@@ -138,7 +140,7 @@ def run(begin: Callable[[], Simulation], frames: int, name: str, recorder: Recor
             record = None if simulation is None else simulation.record()
             if recorder is not None and record is not None:
                 recorder.save(record)
-        except OSError as error:
+        except Exception as error:
             stop = stop or error
     return stop
 

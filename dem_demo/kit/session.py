@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -29,29 +29,33 @@ class Show(NamedTuple):
 def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | None]) -> int:
     """Simulate a scene and write its files.
 
-    Of a run that has not come to its end the records alone are kept, as ``*-partial.h5``: what they
-    have until then is whole, and an earlier run in the folder stays as it is.
+    Of a run that has not come to its end, with all its figures, the records alone are kept, as
+    ``*-partial.h5``: what they have until then is whole, and an earlier run in the folder stays as
+    it is. The next one that comes to its end removes them.
     """
     with _atomic.folder(out) as folder:
         text, stop = "", simulate(folder)
         if stop is None:
-            run = show.read(folder)
-            text = f"{show.summary(run)}\n"
             try:
+                run = show.read(folder)
+                text = f"{show.summary(run)}\n"
                 make(show, run, text, folder)
             except (Exception, Interrupted) as error:
-                stop = error
-        else:
+                text, stop = "", error
+        if stop is not None:
             for file in list(folder.iterdir()):
                 if file.suffix == ".h5":
-                    file.rename(file.with_stem(f"{file.stem}-partial"))
+                    file.rename(_partial(file))
                 else:
                     file.unlink()
-        written = _names(folder.iterdir())
+        written = sorted(file.name for file in folder.iterdir())
         if not written:
             assert stop is not None
             raise stop
-    print(f"{text}\nWritten to {out}: {written}", flush=True)
+    if stop is None:
+        for name in written:
+            _partial(out / name).unlink(missing_ok=True)
+    print(f"{text}\nWritten to {out}: {', '.join(written)}", flush=True)
     if stop is None:
         return 0
     if not isinstance(stop, FORESEEN):
@@ -78,5 +82,5 @@ def sentence(error: BaseException) -> str:
     return f"{where}: {text}" if where else text
 
 
-def _names(files: Iterable[Path]) -> str:
-    return ", ".join(sorted(file.name for file in files))
+def _partial(record: Path) -> Path:
+    return record.with_stem(f"{record.stem}-partial")

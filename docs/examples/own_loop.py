@@ -32,11 +32,8 @@ def run(scene, contacts, friction, x, v, mass, radius, dt, steps):
             force[i, 2] = -mass * GRAVITY
             place, speed = (x[i, 0], x[i, 1], x[i, 2]), (v[i, 0], v[i, 1], v[i, 2])
             spin = (omega[i, 0], omega[i, 1], omega[i, 2])
-            interact(
-                scene,
-                clock,
-                Bead(i, 0, place, speed, spin, radius, mass, force[i], torque[i], contacts[i], friction[i]),
-            )
+            bead = Bead(i, 0, place, speed, spin, radius, mass, force[i], torque[i], contacts[i], friction[i])
+            interact(scene, clock, bead)
             v[i] += 0.5 * dt * force[i] / mass
             omega[i] += 0.5 * dt * torque[i] / (0.4 * mass * radius**2)
 
@@ -44,9 +41,8 @@ def run(scene, contacts, friction, x, v, mass, radius, dt, steps):
 def main():
     """Throw the beads into the tray; print the range of the COR on its floor and its sides."""
     model = cl.ImpactModel(PAIR)
-    walls = WallContacts(
-        [Mesh.read(TRAY, THICKNESS, scale=1e-3)], model, RADIUS, np.zeros(1000, IMPACT), friction=FRICTION
-    )
+    tray = Mesh.read(TRAY, THICKNESS, scale=1e-3)
+    walls = WallContacts([tray], model, RADIUS, np.zeros(1000, IMPACT), friction=FRICTION)
     side = np.linspace(-0.028, 0.028, round(BEADS**0.5))
     x = np.array([(a, b, 0.012) for a in side for b in side])
     v = np.full(x.shape, (0.1, 0.2, -SPEED))

@@ -224,7 +224,9 @@ def summary(rain):
 def test_without_friction_nothing_tells_of_it(rain, run):
     with h5py.File(rain / "rain.h5") as file:
         assert "spin" not in file["trajectories"]
-    assert not run.collisions["spin_z"].any() and not run.collisions["friction_energy"].any()
+    assert not run.collisions["friction_energy"].any()
+    # the arm of an impulse along the normal is rounded: 1e-9 rad/s, of a thousand with friction
+    assert abs(run.collisions["spin_z"]).max() < 1e-8
     assert '"spin"' not in (rain / "index.html").read_text()
 
 

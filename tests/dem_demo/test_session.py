@@ -151,13 +151,27 @@ def test_an_error_that_a_dropped_interrupt_leaves_is_an_interrupt(while_it_runs,
 
 
 @pytest.mark.parametrize("error", [KeyError("drawing"), signal.SIGINT])
-def test_what_fails_while_figures_are_drawn_keeps_the_record(error, dust, tmp_path, capsys):
+def test_what_fails_while_figures_are_drawn_keeps_the_record_apart(error, dust, tmp_path, capsys):
+    """The page in the folder stays that of the record beside it, until a run comes to its end."""
+    out, draw = tmp_path / "out", dust.figures.draw
+    assert main(out) == 0
+    before = (out / "dust.h5").read_bytes()
     raise_it = signal.raise_signal if isinstance(error, int) else fails(error)
     dust.figures.draw = lambda name, run: raise_it(error)
-    assert main(tmp_path / "out") == (130 if isinstance(error, int) else 1)
-    assert names(tmp_path / "out") == {"dust.h5", "summary.txt"}
-    assert cl.read_record(tmp_path / "out/dust.h5").rows.size == IMPACTS
+    assert main(out) == (130 if isinstance(error, int) else 1)
     assert "dem-demo: stopped: " in capsys.readouterr().err
+    assert names(out) == FILES | {"dust-partial.h5"} and (out / "dust.h5").read_bytes() == before
+    assert cl.read_record(out / "dust-partial.h5").rows.size == IMPACTS
+    dust.figures.draw = draw
+    assert main(out) == 0
+    assert names(out) == FILES
+
+
+def test_a_run_that_stops_before_its_first_frame_keeps_its_contacts(dust, tmp_path, capsys):
+    dust.look = fails(RuntimeError("no frame"))
+    assert main(tmp_path / "out") == 1
+    assert capsys.readouterr().err == "dem-demo: stopped: no frame\n"
+    assert cl.read_record(tmp_path / "out/dust-partial.h5").rows.size == IMPACTS
 
 
 def test_files_that_may_not_grow_keep_the_impacts_without_the_frames(dust, tmp_path, capsys):
