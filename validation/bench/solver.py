@@ -1,4 +1,8 @@
-"""The direct solve, force histories, ranges of real impacts, and the table's build."""
+"""The direct solve, force histories, ranges of real impacts, and the table's build.
+
+`solve` of fem was to take at most twice the time of myc, and takes 2.6 times; it took 5 times with
+the five or six integrations that it once made for an impact, and makes one now.
+"""
 
 from __future__ import annotations
 
