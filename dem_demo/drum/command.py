@@ -28,34 +28,17 @@ def add(commands: Any) -> None:
     )
     add = drum.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add(
-        "--radius",
-        type=options.radii,
-        metavar="MIN,MAX",
-        default=options.text(defaults.RADIUS),
-        help="bead radii [m], or with units",
-    )
-    add(
-        "--drum",
-        type=options.length,
-        metavar="R",
-        default=f"{defaults.DRUM:g}",
-        help="radius of the drum [m], or with a unit",
-    )
-    add(
-        "--length",
-        type=options.length,
-        metavar="L",
-        default=f"{defaults.LENGTH:g}",
-        help="length of the drum [m], or with a unit",
-    )
+    options.quantity(add, "--radius", options.radii, "MIN,MAX", defaults.RADIUS, "bead radii [m], or with units")
+    options.quantity(add, "--drum", options.length, "R", defaults.DRUM, "radius of the drum [m], or with a unit")
+    options.quantity(add, "--length", options.length, "L", defaults.LENGTH, "length of the drum [m], or with a unit")
     add("--turns", type=float, metavar="F", default=defaults.TURNS, help="revolutions of the drum per second [1/s]")
-    add(
+    options.quantity(
+        add,
         "--speed",
-        type=options.speed,
-        metavar="V",
-        default=f"{defaults.SPEED:g}",
-        help="speed at which the beads are thrown down [m/s], or with a unit",
+        options.speed,
+        "V",
+        defaults.SPEED,
+        "speed at which the beads are thrown down [m/s], or with a unit",
     )
     options.add_bed(add, defaults, wall="drum", beads="beads")
     add("--out", type=Path, metavar="DIR", default=Path("drum"), help="folder for the results")

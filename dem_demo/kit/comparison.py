@@ -63,7 +63,9 @@ def start(
         partial(drawing.gif, drawn),
     )
     if lammps.rank() > 0:
-        _simulate(chosen, command, None)
+        stop = _simulate(chosen, command, None)
+        if stop is not None:
+            raise stop  # the command waits until rank 0 has kept the records
         return 0
     return session.deliver(arguments.out, show, partial(_simulate, chosen, command))
 

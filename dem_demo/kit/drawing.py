@@ -82,7 +82,7 @@ class Drawing(ABC, Generic[S]):
 
 def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], title: str) -> Figure:
     """Draw the last frame of both runs."""
-    frame = min(run.time.size for run in runs.both) - 1
+    frame = runs.law.time.size - 1
     scene = runs.law.scene
     figure = style.figure(
         12.0,
@@ -101,8 +101,7 @@ def snapshot(drawn: type[Drawing[Any]], runs: Runs[Any], title: str) -> Figure:
 
 
 def gif(drawn: type[Drawing[Any]], runs: Runs[Any]) -> bytes:
-    """Film all frames that both runs have, in slow motion, as a GIF that repeats itself."""
-    frames = min(run.time.size for run in runs.both)
+    """Film both runs in slow motion, as a GIF that repeats itself."""
     with style.applied():
         size = _WIDTH, _height(drawn, runs, 0.85 * _WIDTH, _ROOM)
         figure = Figure(figsize=size, dpi=100, layout="constrained")
@@ -114,7 +113,7 @@ def gif(drawn: type[Drawing[Any]], runs: Runs[Any]) -> bytes:
         bar.set_label("COR of the last impact")
         clock = figure.text(0.01, 0.01, "", ha="left", va="bottom", color=style.MUTED)
         images = []
-        for frame in range(frames):
+        for frame in range(runs.law.time.size):
             clock.set_text(f"{runs.law.time[frame] * 1e3:.0f} ms")
             for drawing in drawings:
                 drawing.show(frame)

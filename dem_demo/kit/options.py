@@ -57,6 +57,14 @@ def text(numbers: Sequence[float]) -> str:
     return ",".join(f"{number:g}" for number in numbers)
 
 
+def quantity(
+    add: Any, name: str, read: Callable[[str], Any], metavar: str, default: float | Sequence[float], about: str
+) -> None:
+    """Add an option for one number or several, with units, which one of the functions below reads."""
+    numbers = default if isinstance(default, Sequence) else (default,)
+    add(name, type=read, metavar=metavar, default=text(numbers), help=about)
+
+
 def lengths(words: str) -> tuple[float, ...]:
     """Read lengths [m], or with units."""
     return _values(words, "LENGTH")
@@ -115,13 +123,7 @@ def add_law(add: Any) -> None:
 
 def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
     """Add the options of every bed; `wall` and `beads` are its words in the help texts."""
-    add(
-        "--thickness",
-        type=length,
-        metavar="H",
-        default=f"{defaults.THICKNESS:g}",
-        help="thickness of the sheet metal [m], or with a unit",
-    )
+    quantity(add, "--thickness", length, "H", defaults.THICKNESS, "thickness of the sheet metal [m], or with a unit")
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet metal")
     add(

@@ -19,6 +19,7 @@ from tqdm import tqdm
 
 from contactlaw import ImpactModel, Pair, Record, _atomic
 from contactlaw.record.file import bodies_of, read_from, write
+from contactlaw.reporting import page
 from dem_demo.kit import signals
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.signals import Interrupted
@@ -152,9 +153,6 @@ class Recorded:
     # all contacts by time; with a constant COR in an engine that resolves an impact in one step,
     # the columns after the COR are missing
     record: Record
-    law: str  # contact law; of a run with a constant COR, the law to compare it with
-    outside: Literal["raise", "solve", "clamp"]  # policy for impacts outside the law's table
-    constant_cor: float | None  # of every impact; None if a law gives it
     time: Floats  # of the frames, shape (T,) [s]
     position: NDArray[np.float32]  # shape (T, N, 2 or 3) [m]
     velocity: NDArray[np.float32]  # shape (T, N, 2 or 3) [m/s]
@@ -176,12 +174,27 @@ class Recorded:
         return self.record.bodies[0].pair
 
     @property
+    def law(self) -> str:
+        """Contact law; of a run with a constant COR, the law to compare it with."""
+        return str(self.record.made["law"])
+
+    @property
+    def outside(self) -> Literal["raise", "solve", "clamp"]:
+        """Policy for impacts outside the law's table."""
+        found: Literal["raise", "solve", "clamp"] = self.record.made["outside"]
+        return found
+
+    @property
+    def constant_cor(self) -> float | None:
+        """COR of every impact; None if the law gives it."""
+        return self.record.made.get("constant_cor")
+
+    @property
     def made(self) -> str:
         """When the record was made, and by which versions."""
         known = self.record.made
-        versions = sorted(name for name in known if name.startswith("version_"))
-        programs = ", ".join(f"{name.removeprefix('version_')} {known[name]}" for name in versions)
-        return f"{known['created']}; {programs}"
+        versions = {name.removeprefix("version_"): known[name] for name in known if name.startswith("version_")}
+        return page.made(known["created"], versions)
 
 
 def read(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
@@ -194,10 +207,4 @@ def read(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
         )
     record = read_from(file)
     record = record.part(np.argsort(record.rows["time"], kind="stable"))
-    return {
-        "record": record,
-        "law": record.made["law"],
-        "outside": record.made["outside"],
-        "constant_cor": record.made.get("constant_cor"),
-        **{name: dataset[()] for name, dataset in file["trajectories"].items()},
-    }
+    return {"record": record, **{name: dataset[()] for name, dataset in file["trajectories"].items()}}

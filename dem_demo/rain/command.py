@@ -31,28 +31,24 @@ def add(commands: Any) -> None:
     )
     add = rain.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add(
+    options.quantity(
+        add,
         "--plates",
-        type=options.lengths,
-        metavar="H,...",
-        default=options.text(defaults.THICKNESSES),
-        help="thickness of each plate [m], or with units; inf: a half-space",
+        options.lengths,
+        "H,...",
+        defaults.THICKNESSES,
+        "thickness of each plate [m], or with units; inf: a half-space",
     )
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the plates")
-    add(
-        "--radius",
-        type=options.radii,
-        metavar="MIN,MAX",
-        default=options.text(defaults.RADIUS),
-        help="bead radii [m], or with units",
-    )
-    add(
+    options.quantity(add, "--radius", options.radii, "MIN,MAX", defaults.RADIUS, "bead radii [m], or with units")
+    options.quantity(
+        add,
         "--speed",
-        type=options.speeds,
-        metavar="MIN,MAX",
-        default=options.text(defaults.SPEED),
-        help="speeds at which beads leave the nozzles [m/s], or with units",
+        options.speeds,
+        "MIN,MAX",
+        defaults.SPEED,
+        "speeds at which beads leave the nozzles [m/s], or with units",
     )
     add(
         "--friction",

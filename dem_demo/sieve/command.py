@@ -34,34 +34,28 @@ def add(commands: Any) -> None:
         default=defaults.BEADS,
         help="number of beads; the deck is as large as they need",
     )
-    add(
+    options.quantity(
+        add,
         "--radius",
-        type=options.radii,
-        metavar="MIN,MAX",
-        default=options.text(defaults.RADIUS),
-        help="radii of beads that pass the openings, and of others [m], or with units",
+        options.radii,
+        "MIN,MAX",
+        defaults.RADIUS,
+        "radii of beads that pass the openings, and of others [m], or with units",
     )
-    add(
-        "--opening",
-        type=options.length,
-        metavar="D",
-        default=f"{defaults.OPENING:g}",
-        help="diameter of the openings [m], or with a unit",
+    options.quantity(
+        add, "--opening", options.length, "D", defaults.OPENING, "diameter of the openings [m], or with a unit"
     )
     add("--frequency", type=float, metavar="F", default=defaults.FREQUENCY, help="frequency of the deck [1/s]")
-    add(
+    options.quantity(
+        add,
         "--amplitude",
-        type=options.length,
-        metavar="A",
-        default=f"{defaults.AMPLITUDE:g}",
-        help="amplitude of the deck [m], or with a unit, at 45 degrees to it",
+        options.length,
+        "A",
+        defaults.AMPLITUDE,
+        "amplitude of the deck [m], or with a unit, at 45 degrees to it",
     )
-    add(
-        "--speed",
-        type=options.speed,
-        metavar="V",
-        default=f"{defaults.SPEED:g}",
-        help="speed at which the feed comes down [m/s], or with a unit",
+    options.quantity(
+        add, "--speed", options.speed, "V", defaults.SPEED, "speed at which the feed comes down [m/s], or with a unit"
     )
     options.add_bed(add, defaults, wall="deck", beads="feed")
     add("--out", type=Path, metavar="DIR", default=Path("sieve"), help="folder for the results")
