@@ -90,6 +90,8 @@ class WallContacts:
         *,
         friction: float = 0.0,
         types: int = 1,
+        softening: float = 1.0,
+        parcel: float = 1.0,
     ) -> None:
         check_friction(friction)
         check_models(models)
@@ -101,7 +103,10 @@ class WallContacts:
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
-        self.scene = WallScene(rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction)
+        scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
+        self.scene = WallScene(
+            rows, frames, facets, scratch, impacts, status, float(friction), float(softening), float(parcel)
+        )
 
     def collisions(self) -> Rows:
         """Impacts that have ended, one row each.

@@ -22,11 +22,24 @@ from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.scaling import wave_rate
 from contactlaw.physical.validity import edge_flags, flags_of
 from contactlaw.stepping import energy
+from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
-from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Spring, State, at_largest, impact
+from contactlaw.stepping.softened import (
+    DAMPED,
+    FASTER,
+    HELD,
+    Softened,
+    keep,
+    push,
+    residual,
+    softened_of,
+    tangential_push,
+)
+from contactlaw.stepping.softened import FREE as UNHELD
+from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -72,6 +85,9 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
+# Largest correction of a softened contact's last step [larger of the two speeds]: a spring that
+# gives back at least 2 % of its work lets no bead leave slower than 0.14 of its speed.
+_MOST_SETTLED = 0.2
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
 
 
@@ -99,6 +115,9 @@ STATUS = np.dtype(
         ("wall", "i8"),  # wall, wrong value and its limit are those of the first `Trouble`
         ("value", "f8"),
         ("limit", "f8"),
+        # the deepest overlap of softened contacts [r], and the approach speed in that impact [m/s]
+        ("overlap", "f8"),
+        ("speed", "f8"),
     ]
 )
 
@@ -122,6 +141,8 @@ class WallScene(NamedTuple):
     impacts: Any  # rows of the record
     status: Any
     friction: float  # Coulomb's coefficient [-]
+    softening: float  # by which the moduli of the contacts are divided; 1: true contacts
+    parcel: float  # radius of a bead over that of the true beads that it stands for
 
 
 class Bead(NamedTuple):
@@ -186,9 +207,15 @@ def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, 
 
 
 @kernel
+def _stretched(scene: WallScene) -> float:
+    """Contact time over that of a true contact."""
+    return math.pow(scene.softening, 0.4) if scene.softening > 1.0 else 1.0
+
+
+@kernel
 def _check_step(law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
-    limit = CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
+    limit = _stretched(scene) * CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
     if clock.dt > limit:
         report_trouble(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
 
@@ -220,8 +247,9 @@ def _begin(
     if u > 0.0:
         _check_step(law, scene, clock, wall, spring, u)
         lam = impact(law, spring, u).inelasticity
-        if not THINNEST * bead.r <= plate_row.thickness:
-            report_trouble(scene, Trouble.FOIL, wall, bead.r / plate_row.thickness, 1.0 / THINNEST)
+        ratio = bead.r / scene.parcel / plate_row.thickness
+        if not THINNEST * ratio <= 1.0:
+            report_trouble(scene, Trouble.FOIL, wall, ratio, 1.0 / THINNEST)
         elif lam > plate_row.largest:
             report_trouble(scene, Trouble.TOO_THIN, wall, lam, plate_row.largest)
 
@@ -284,6 +312,14 @@ def _kind_of(scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: flo
 
 
 @kernel
+def _softened_at_largest(soft: Softened, last: State) -> Largest:
+    """Say what the largest overlap of a softened contact means for its unloading, in SI units."""
+    lost = (1.0 - soft.restitution * soft.restitution) * soft.stored
+    left = residual(last.largest_compression, soft.restitution)
+    return Largest(1.0, 1.0, lost, 0.0, left, soft.peak_force)
+
+
+@kernel
 def _end(
     law: Array,
     scene: WallScene,
@@ -302,7 +338,8 @@ def _end(
     """
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    ended = at_largest(law, spring, last)
+    soft, softened = softened_of(last), scene.softening > 1.0
+    ended = _softened_at_largest(soft, last) if softened else at_largest(law, spring, last)
     scale, unit = ended.scale, ended.unit
     lost, other = ended.lost * unit * scale, ended.other * unit * scale
     if contact.merged_into >= 0:
@@ -320,16 +357,21 @@ def _end(
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
-    extra, leaves, size = (0.0, 0.0, 0.0), -u, 0.0
+    extra, leaves, size, damped = (0.0, 0.0, 0.0), -u, 0.0, 0.0
     if sharing >= 0:  # the other contact has the energy that this one lacks
         bead.contacts[sharing].work -= missing
         missing = 0.0
+    elif softened and soft.lasting == DAMPED:
+        damped, missing = missing, 0.0
     elif row.disturbance != ALONE:
         more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
         size = more * bead.mass / clock.dt
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
-        size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
+        most = energy.largest_change(u, row.approach_speed, steps)
+        if softened:
+            most = _MOST_SETTLED * max(row.approach_speed, -u)
+        size = energy.settling_force(missing, bead.mass, u, clock.dt, most)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
         leaves = size * clock.dt / bead.mass - u
     if size != 0.0:
@@ -353,39 +395,38 @@ def _end(
     record.x, record.y, record.z = contact.point
     record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed
     record.contact_time = row.duration - since
-    record.peak_force = ended.peak * unit
+    record.peak_force = ended.peak * unit / scene.parcel**3  # of one of the true beads
     # earlier impacts of the same contact have reported a part of the loss already
-    share = 1.0 - other / lost if lost > 0.0 else 0.0
-    record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
-    # what is still missing is an error of the steps; with it, the energies of a run add up
-    record.other_energy = (1.0 - share) * (lost - reported) + missing
+    gone, wave = lost - reported, row.wave_energy
+    if softened:
+        record.contact_time, record.peak_force = soft.contact_time, soft.peak_force
+        plastic, wave = soft.plastic_share * gone, soft.wave_share * gone
+        record.other_energy = gone - plastic - wave + damped
+    else:
+        share = 1.0 - other / lost if lost > 0.0 else 0.0
+        plastic = share * gone
+        record.other_energy = (1.0 - share) * gone
+    record.plastic_energy, record.wave_energy = plastic, wave
+    record.scheme_energy = missing  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
-    record.radius, record.mass, record.thickness = bead.r, bead.mass, plate_row.thickness
+    record.radius, record.mass, record.thickness = bead.r / scene.parcel, bead.mass, plate_row.thickness
+    record.parcel = scene.parcel
     expected = impact(law, spring, abs(row.approach_speed))
-    record.kind = _kind_of(
-        scene,
-        bead,
-        contact,
-        row,
-        lost - reported + row.wave_energy + missing,
-        leaves,
-        _LASTING * CONTACT_TIME * expected.time,
-    )
-    record.flags = flags_of(
-        limits_of(plate_row),
-        bead.r,
-        plate_row.thickness,
-        expected.compression,
-        record.contact_time,
-        last.largest_compression,
-        record.peak_force,
-    )
+    total = gone + row.wave_energy + damped + missing
+    long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
+    record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
+    if softened:
+        record.flags = int(soft.flags)
+        return extra
+    r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
+    time, force = record.contact_time, record.peak_force
+    record.flags = flags_of(limits, r, plate_row.thickness, expected.compression, time, deepest, force)
     if edge.near.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
         record.kind = Kind.STRUCK.value
     # Whether the plate comes back later is not known here; the strike will have a row of its own.
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.near.rate > 0.0 and leaves < 0.0 else 0.0
-    record.flags |= edge_flags(bead.r, plate_row.thickness, last.largest_compression, edge.distance, recedes)
+    record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
     return extra
 
 
@@ -429,10 +470,96 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, s
     reach = math.sqrt(REACH * path * thickness * long)
     p = to_frame(scene.frames[facet.frame], contact.point)
     # At an edge nearer than that, an impact is flagged.
-    distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
+    distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
     rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
     place = place_of(kind, distance, hole, thickness)
     return NearestEdge(EdgeEcho(plate_row.responses[place], rate), distance)
+
+
+@kernel
+def _softened_step(scene: WallScene, clock: Clock, spring: Spring, row: Any, x: float, u: float) -> State:
+    """Largest overlap and force of a softened contact after a step."""
+    soft = softened_of(state_of(row))
+    stiffness = spring.stiffness / scene.softening
+    now = push(stiffness, spring.mass, row.largest_compression, soft.restitution, x, u, clock.dt)
+    if now.damped:
+        row.y3 = DAMPED
+    elif row.disturbance != ALONE:
+        row.y3 = max(row.y3, HELD)
+    return State(0.0, now.largest, now.force, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def _ask(
+    law: Array,
+    scene: WallScene,
+    bead: Bead,
+    contact: Contact,
+    k: int,
+    spring: Spring,
+    state: State,
+    begins: bool,
+    u: float,
+    edge: NearestEdge,
+) -> None:
+    """Let a softened contact know the true impact: at first touch, and of a bead that was struck."""
+    row, status, x = bead.contacts[k], scene.status[0], contact.touch.x
+    if x > status.overlap * bead.r:
+        status.overlap, status.speed = x / bead.r, row.approach_speed
+    soft = softened_of(state_of(row))
+    if state.force == 0.0 or not (begins or u > FASTER * soft.speed):
+        return
+    if not u > 0.0:  # a bead that was put down
+        keep(row, Softened(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, soft.stored, HELD))
+        return
+    touch, rough = contact.touch, len(bead.friction) > 0
+    plate_row = scene.plate_rows[bead.kind, contact.plate_row]
+    came = sliding(contact.v, bead.omega, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
+    rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
+    if not begins:  # what friction has done so far stays, because a spring holds now
+        rows = bead.friction[0:0]
+    true = bounce(law, spring, u, edge.near, came.size, mu, kappa, rows)
+    if rough and begins:
+        per = -true.impulse_ratio / came.size if came.size > 0.0 else 0.0
+        for i in range(3):
+            bead.friction[k].along[i] = per * came.along[i]
+    r, thickness = bead.r / scene.parcel, plate_row.thickness
+    force = true.peak_force / scene.parcel**3  # of one of the true beads
+    scale = impact(law, spring, u).compression
+    flags = flags_of(limits_of(plate_row), r, thickness, scale, true.contact_time, true.compression, force)
+    flags |= edge_flags(r, thickness, true.compression, edge.distance, 0.0)
+    # In a dent that an earlier impact has left, no energy may come back that has been lost.
+    e = true.restitution if soft.stored == 0.0 else min(true.restitution, soft.restitution)
+    row.reported_loss = (1.0 - e * e) * soft.stored if begins else row.reported_loss
+    lasting = UNHELD if begins and row.arrival != SLIDING and row.disturbance == ALONE else HELD
+    keep(
+        row,
+        Softened(
+            e,
+            u,
+            true.contact_time,
+            force,
+            true.plastic_share,
+            true.wave_share,
+            flags,
+            soft.stored,
+            max(lasting, soft.lasting) if not begins else lasting,
+        ),
+    )
+
+
+@kernel
+def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: State, u: float) -> None:
+    """Keep the work that has been put into a softened contact up to its largest overlap.
+
+    A bead that nothing else disturbs puts in what it has lost up to here, and what it still has.
+    """
+    x, after = state.largest_compression, u - clock.dt * state.force / spring.mass
+    # With velocity Verlet, u^2 becomes the product of the speeds half a step before and after.
+    stored = row.reported_loss - row.work + 0.5 * spring.mass * u * after
+    if row.y3 == DAMPED or row.disturbance != ALONE:
+        stored = 0.4 * spring.stiffness / scene.softening * x * x * math.sqrt(x)
+    row.x3 = stored
 
 
 @kernel
@@ -452,9 +579,12 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
-    spring = spring_of(plate_row, bead.r)
-    last, edge = state_of(row), _near_edge(scene, bead, contact, plate_row, spring)
-    state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
+    spring = spring_of(plate_row, bead.r, scene.parcel)
+    last, edge, softened = state_of(row), _near_edge(scene, bead, contact, plate_row, spring), scene.softening > 1.0
+    if softened:
+        state, extra = _softened_step(scene, clock, spring, row, touch.x, u), 0.0
+    else:
+        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
@@ -478,20 +608,26 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
             _check_step(law, scene, clock, contact.wall, spring, u)
         elif clock.dt > clock.before and row.approach_speed > 0.0:
             _check_step(law, scene, clock, contact.wall, spring, row.approach_speed)
-    row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
-    push = state.force + extra
-    pushes = push * along[0], push * along[1], push * along[2]
+    if softened:
+        _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u, edge)
+    else:
+        row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
+    pressed = state.force + extra
+    pushes = pressed * along[0], pressed * along[1], pressed * along[2]
     power = dot(pushes, contact.w)
     row.work += energy.work(spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before)
+    if softened and state.largest_compression > last.largest_compression:
+        _store(scene, clock, row, spring, state, u)
     if state.force == 0.0 and last.force > 0.0:
         pushes = _end(law, scene, clock, bead, contact, k, spring, last, u, edge)
         extra = dot(pushes, n)
     row.plate_displacement = state.plate_displacement
     row.largest_compression = state.largest_compression
-    row.force, row.mobility = state.force, state.mobility
-    row.stiffening, row.strength = state.stiffening, state.strength
-    row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
-    row.x3, row.y3 = state.x3, state.y3
+    row.force = state.force
+    if not softened:
+        row.mobility, row.stiffening, row.strength = state.mobility, state.stiffening, state.strength
+        row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
+        row.x3, row.y3 = state.x3, state.y3
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]
@@ -557,23 +693,39 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
-            spring, state = spring_of(plate_row, bead.r), state_of(row)
-            drag = tangential_force(
-                bead.friction[k],
-                scene.friction,
-                plate_row.tangential,
-                law,
-                spring,
-                state,
-                before,
-                touch.x,
-                row.approach_speed,
-                n,
-                slip,
-                clock.dt if clock.advancing else 0.0,
-                row.extra_force,
-                room_for(law),
-            )
+            spring, state = spring_of(plate_row, bead.r, scene.parcel), state_of(row)
+            h = clock.dt if clock.advancing else 0.0
+            if scene.softening > 1.0:
+                drag = tangential_push(
+                    bead.friction[k],
+                    softened_of(state),
+                    scene.friction,
+                    plate_row.tangential,
+                    touch.x,
+                    state.largest_compression,
+                    row.force + row.extra_force,
+                    bead.mass,
+                    n,
+                    slip,
+                    h,
+                )
+            else:
+                drag = tangential_force(
+                    bead.friction[k],
+                    scene.friction,
+                    plate_row.tangential,
+                    law,
+                    spring,
+                    state,
+                    before,
+                    touch.x,
+                    row.approach_speed,
+                    n,
+                    slip,
+                    h,
+                    row.extra_force,
+                    room_for(law),
+                )
             torque = (
                 -bead.r * (n[1] * drag[2] - n[2] * drag[1]),
                 -bead.r * (n[2] * drag[0] - n[0] * drag[2]),

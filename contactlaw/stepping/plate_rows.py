@@ -110,8 +110,12 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
 
 
 @kernel
-def spring_of(row: Any, r: float) -> Spring:
-    """Spring of a bead of this radius [m] on the plate of a row."""
+def spring_of(row: Any, r: float, parcel: float) -> Spring:
+    """Spring of a bead of this radius [m] on the plate of a row.
+
+    A parcel stands for so many beads that are smaller by the factor `parcel`: at the same overlap
+    it has their mass, their force, and a plate that gives way as under one of them.
+    """
     corrections = PlateCorrections(
         row.eta,
         row.eta_h,
@@ -135,7 +139,17 @@ def spring_of(row: Any, r: float) -> Spring:
         RateOfStrain(row.slope, row.per_speed),
     )
     unit = Spring(row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio, plate)
-    return resized(unit, r)
+    one, many = resized(unit, r / parcel), parcel * parcel * parcel
+    return Spring(
+        one.mass * many,
+        one.solid * many,
+        one.stiffness * many,
+        one.mobility / many,
+        one.scale,
+        one.relaxation,
+        one.ratio,
+        one.plate,
+    )
 
 
 @kernel

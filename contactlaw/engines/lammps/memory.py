@@ -53,7 +53,7 @@ SHARED = np.dtype(
     + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
-    + [(name, "f8") for name in "error_value error_limit friction base tick before".split()]
+    + [(name, "f8") for name in "error_value error_limit friction softening parcel base tick before".split()]
     + [(name, "f8") for name in ("length", "time", "mass")],  # LAMMPS's units, in SI
     align=True,
 )
