@@ -9,7 +9,7 @@ enough. `contactlaw.stepping` has the schemes, in `spring` and `friction`.
 from __future__ import annotations
 
 import math
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,9 +26,11 @@ from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
+from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import FRICTION, check_friction, clear_friction, tangential_force
+from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clear_friction, tangential_force
+from contactlaw.stepping.softened import DAMPED, Softened, SoftState, advance_softened, check_softening, tangential_push
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
@@ -36,17 +38,38 @@ from contactlaw.stepping.spring import (
     State,
     advance,
     at_usual_frequency,
+    impact,
     resized,
     unit_spring,
 )
 
-__all__ = ["PARTED", "Contacts", "Spring", "State", "advance", "law_of", "resized", "time_step", "unit_spring"]
+__all__ = [
+    "PARTED",
+    "Contacts",
+    "SoftState",
+    "Spring",
+    "State",
+    "advance",
+    "advance_softened",
+    "law_of",
+    "most_softening",
+    "resized",
+    "time_step",
+    "unit_spring",
+]
 
 Array = NDArray[np.float64]
 
 # Largest error of COR times (steps per contact)^2.5, at any phase of the first touch: 0.86 measured
 # with velocity Verlet and the law myc, for lambda to 2 and speeds to 7 V_Y0, at 20, 50, 100 steps.
 _ERROR = 0.9
+# With 20 the COR of a softened contact is right, too; friction of beads that roll likes shorter.
+_SOFTENED_STEPS = 30
+OVERLAP = 0.02  # [radius] most overlap of softened contacts; ten times that of steel at 1 m/s
+# Overlap at the slowest speed over v^2/g, by which a bead's rebound from below the surface is
+# higher than from the surface.
+_WEIGHT = 0.005
+GRAVITY = 9.81  # [m/s2]
 
 
 @kernel(inline=True)
@@ -160,6 +183,94 @@ def _advance_all(
     return -1
 
 
+@kernel(cache=True)
+def _soften_all(
+    law: Array,
+    springs: Spring,
+    softening: float,
+    soft: SoftState,
+    came: Array,
+    restitution: Array,
+    deepest: Array,
+    overlap: Array,
+    step: float,
+    near: EdgeEcho | None,
+    rows: Any,
+) -> int:
+    """`advance_softened` for arrays, as `_advance_all`; each impact has its COR from its second step on."""
+    for n in range(overlap.size):
+        if not -math.inf < overlap[n] <= deepest[n]:
+            return n
+    for n in range(overlap.size):
+        spring, force = _spring_at(springs, n), soft.force[n]
+        u = (overlap[n] - soft.overlap[n]) / step + force * step / spring.mass  # before the first force
+        if force == 0.0:
+            came[n] = 0.0
+        elif came[n] == 0.0 and u > 0.0:
+            came[n] = u
+            e = bounce(law, spring, u, _near_at(near, n), 0.0, 0.0, 1.0, rows).restitution
+            restitution[n] = e if soft.lost[n] == 0.0 else min(e, restitution[n])
+        stiffness, last = spring.stiffness / softening, _soft_at(soft, n)
+        now = advance_softened(stiffness, spring.mass, restitution[n], last, overlap[n], step)
+        soft.force[n], soft.kick[n], soft.largest[n], soft.overlap[n] = now.force, now.kick, now.largest, now.overlap
+        soft.work[n], soft.stored[n], soft.lost[n], soft.damped[n] = now.work, now.stored, now.lost, now.damped
+    return -1
+
+
+@kernel(inline=True)
+def _soft_at(soft: SoftState, n: int) -> SoftState:
+    return SoftState(
+        soft.force[n],
+        soft.kick[n],
+        soft.largest[n],
+        soft.overlap[n],
+        soft.work[n],
+        soft.stored[n],
+        soft.lost[n],
+        soft.damped[n],
+    )
+
+
+@kernel(cache=True)
+def _slide_softened_all(
+    law: Array,
+    kappa: float,
+    springs: Spring,
+    soft: SoftState,
+    came: Array,
+    restitution: Array,
+    rows: Any,
+    friction: float,
+    normal: Array,
+    velocity: Array,
+    step: float,
+    near: EdgeEcho | None,
+    force: Array,
+) -> None:
+    """Friction of arrays of softened contacts."""
+    for n in range(came.size):
+        at = normal[n, 0], normal[n, 1], normal[n, 2]
+        slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
+        up = dot(slip, at)
+        slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
+        now, spring, out = _soft_at(soft, n), _spring_at(springs, n), (0.0, 0.0, 0.0)
+        row, size = rows[n], math.sqrt(dot(slip, slip))
+        if now.force + now.kick == 0.0:
+            clear_friction(row)
+        else:
+            if row.normal != came[n] > 0.0:  # an impact whose speed has just become known
+                one = rows[n : n + 1]
+                ratio = bounce(law, spring, came[n], _near_at(near, n), size, friction, kappa, one).impulse_ratio
+                row.width, row.normal = ratio, came[n]
+                for i in range(3):
+                    row.along[i] = slip[i] / size if size > 0.0 else 0.0
+            kept = Softened(restitution[n], came[n], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, now.damped * DAMPED)
+            x, largest = now.overlap, now.largest
+            push = now.force + now.kick
+            out = tangential_push(row, kept, friction, kappa, x, largest, push, spring.mass, at, slip, step)
+        force[n, 0], force[n, 1], force[n, 2] = out
+
+
 def law_of(model: ImpactModel) -> Array:
     """Force law of a model at any strength, for `advance`.
 
@@ -184,6 +295,9 @@ class Contacts:
         Of the beads and of their plates [m]; broadcast to one entry per contact.
     edge, edge_distance, hole_radius, mass
         As in `ImpactModel.restitution`.
+    softening : float, optional
+        Number by which the modulus of the contacts is divided, for longer steps; a bead leaves with
+        the speed, sliding speed and spin of the true impact. An overlap is then below 0 for a gap.
 
     Raises
     ------
@@ -222,7 +336,9 @@ class Contacts:
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
+        softening: float = 1.0,
     ) -> None:
+        check_softening(softening, 1.0)
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
@@ -247,6 +363,9 @@ class Contacts:
         self._rows = np.zeros(r.size, FRICTION)
         self._deepest, self._overlap, self._step = np.zeros(r.size), np.zeros(r.size), 0.0
         self._sliding = np.zeros((r.size, 3))
+        self._softening = float(softening)
+        self._soft = SoftState(*(np.zeros(r.size) for _ in SoftState._fields))
+        self._came, self._restitution, self._force = np.zeros(r.size), np.ones(r.size), np.zeros(r.size)
 
     @property
     def mass(self) -> Array:
@@ -263,13 +382,13 @@ class Contacts:
     @property
     def largest_compression(self) -> Array:
         """Largest compression so far [m]."""
-        compression: Array = self._states.largest_compression
+        compression: Array = self._states.largest_compression if self._softening == 1.0 else self._soft.largest
         return compression
 
     @property
     def force(self) -> Array:
         """Contact force at the end of the last step [N]."""
-        force: Array = self._states.force
+        force: Array = self._states.force if self._softening == 1.0 else self._force
         return force
 
     def advance(self, overlap: Array, step: float) -> Array:
@@ -306,7 +425,14 @@ class Contacts:
             longest = f"{self._longest:.3g} s, far longer than any contact"
             remedy = "contactlaw.softsphere.time_step advises one"
             raise ArgumentError("step", step, f"must be positive and at most {longest}; {remedy}")
-        wrong = _advance_all(self._law, self._springs, self._states, self._diameters, overlap, step, self._near)
+        law, springs, deepest, near = self._law, self._springs, self._diameters, self._near
+        if self._softening == 1.0:
+            wrong = _advance_all(law, springs, self._states, deepest, overlap, step, near)
+        else:
+            soft, came, e = self._soft, self._came, self._restitution
+            none = self._rows[:0]
+            wrong = _soften_all(law, springs, self._softening, soft, came, e, deepest, overlap, step, near, none)
+            np.add(soft.force, soft.kick, out=self._force)
         if wrong >= 0:
             self._refuse(overlap[wrong], wrong)
         self._overlap[:], self._step = overlap, step
@@ -341,6 +467,23 @@ class Contacts:
         normals, velocities = (
             np.ascontiguousarray(np.broadcast_to(one, shape), np.float64) for one in (normal, velocity)
         )
+        if self._softening > 1.0:
+            _slide_softened_all(
+                self._law,
+                self._tangential,
+                self._springs,
+                self._soft,
+                self._came,
+                self._restitution,
+                self._rows,
+                float(friction),
+                normals,
+                velocities,
+                self._step,
+                self._near,
+                self._sliding,
+            )
+            return self._sliding
         _slide_all(
             self._law,
             self._tangential,
@@ -373,8 +516,55 @@ class Contacts:
         raise ArgumentError("overlap", overlap, reason, n)
 
 
+def most_softening(model: ImpactModel, speed: float, radius: float, slowest: float = 0.1) -> float:
+    """Most by which contacts may be softened at these speeds.
+
+    Parameters
+    ----------
+    model : ImpactModel
+        Materials and law.
+    speed, slowest : float
+        Of the fastest and the slowest impact that matter [m/s].
+    radius : float
+        Of the largest bead [m].
+
+    Returns
+    -------
+    float
+        Number by which the modulus may be divided [-], at least 1: overlaps at `speed` are below
+        2 % of the radius; and at `slowest` the weight changes the COR by less than
+        0.005 (1 - e^2)/e, because a bead leaves the wall from so far below its surface.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.softsphere import most_softening
+    >>> model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "steel-s235"))
+    >>> f"{most_softening(model, speed=0.5, radius=1e-3):.0f}"
+    '815'
+    """
+    v, r, slow = (float(one[0]) for one in scalars(speed=speed, radius=radius, slowest=slowest))
+    law, spring = law_of(model), resized(unit_spring(model, 1.0), r)
+    deepest = [DEEPEST * impact(law, spring, one).compression for one in (v, slow)]
+    limits = OVERLAP * r, _WEIGHT * slow * slow / GRAVITY
+    least = min(limit / depth for limit, depth in zip(limits, deepest, strict=True))
+    return max(1.0, float(f"{least**2.5:.6g}"))
+
+
 def time_step(
-    model: ImpactModel, speed: float, radius: float, thickness: float, error: float = 5e-4, mass: float | None = None
+    model: ImpactModel,
+    speed: float,
+    radius: float,
+    thickness: float,
+    error: float = 5e-4,
+    mass: float | None = None,
+    softening: float | Literal["auto"] = 1.0,
+    parcel: float = 1.0,
 ) -> float:
     """Step with which velocity Verlet meets a wanted error of the COR.
 
@@ -389,6 +579,11 @@ def time_step(
         1e-2.
     mass : float, optional
         Mass of that bead [kg], as in `ImpactModel.restitution`.
+    softening : float or "auto", optional
+        Number by which the modulus of the contacts is divided, or that of `most_softening`. The
+        step is then 1/30 of a contact, whatever the error, because the COR does not depend on it.
+    parcel : float, optional
+        Radius of that bead over that of the true beads for which it stands.
 
     Returns
     -------
@@ -417,6 +612,10 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ArgumentError("error", error, "must lie between 2e-5 and 1e-2")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
+    if softening == "auto":
+        softening = most_softening(model, speed, radius)
+    check_softening(softening, parcel)
+    r = r / parcel
     bodies = SphereOnPlate(model.pair, model.force_law)
     given = bodies.given(v, r, h, mass=None if mass is None else number("mass", mass))
     units = bodies.numbers(bodies.impact(given))
@@ -425,6 +624,8 @@ def time_step(
         raise OutsideTableError(0, too_thin(lam, largest), mass)
     found = solved_within(bodies.data, units, RTOL, None, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
-    steps: float = (_ERROR / error) ** 0.4
+    steps: float = max(FEWEST_STEPS, (_ERROR / error) ** 0.4)
+    if softening > 1.0:
+        steps, time = _SOFTENED_STEPS, CONTACT_TIME * float(units.time[0]) * softening**0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.
-    return float(f"{time / max(FEWEST_STEPS, steps):.6g}")
+    return float(f"{time / steps:.6g}")

@@ -32,6 +32,7 @@ from contactlaw.stepping.contact import (
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.plate_rows import plate_rows
+from contactlaw.stepping.softened import check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
@@ -67,6 +68,9 @@ class WallContacts:
         Coulomb's coefficient of friction between beads and walls [-].
     types : int, optional
         Number of types of beads.
+    softening, parcel : float, optional
+        As in `contactlaw.engines.lammps.attach`: divisor of the modulus of the contacts, and radius
+        of the beads over that of the true ones for which they stand.
 
     Attributes
     ----------
@@ -94,6 +98,7 @@ class WallContacts:
         parcel: float = 1.0,
     ) -> None:
         check_friction(friction)
+        check_softening(softening, parcel)
         check_models(models)
         kinds = sorted(by_type(models, types))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:

@@ -39,11 +39,19 @@ class Bounce(NamedTuple):
     plastic_share: float  # of the energy that is lost
     wave_share: float  # of the energy that is lost
     impulse_ratio: float  # tangential impulse over the normal one; against the sliding
+    recedes: float  # 1.0 if the plate does so before the bead, and will strike it again
 
 
 @kernel
 def bounce(
-    law: Array, spring: Spring, speed: float, near: EdgeEcho, sliding: float, friction: float, kappa: float, rows: Any
+    law: Array,
+    spring: Spring,
+    speed: float,
+    near: EdgeEcho | None,
+    sliding: float,
+    friction: float,
+    kappa: float,
+    rows: Any,
 ) -> Bounce:
     """Impact at these speeds [m/s]; `rows` are the FRICTION rows to use, none without friction."""
     m, expected, room = spring.mass, impact(law, spring, speed), room_for(law)
@@ -82,7 +90,7 @@ def bounce(
     ended, came = at_largest(law, spring, state), 0.5 * m * speed * speed
     gone, other = ended.lost * ended.unit * ended.scale, ended.other * ended.unit * ended.scale
     lost = min(gone + wave, came)
-    restitution = math.sqrt(1.0 - lost / came)
+    restitution = math.sqrt(1.0 - lost / came) if u < 0.0 else 0.0
     ratio = (sliding - s) / (POINT * (1.0 + restitution) * speed)
     gap = ended.residual * ended.scale + state.plate_displacement - x
     since = min(max(gap / -u, 0.0), h) if u < 0.0 else 0.0  # since the end of the contact
@@ -94,4 +102,5 @@ def bounce(
         (gone - other) / lost if lost > 0.0 else 0.0,
         wave / lost if lost > 0.0 else 0.0,
         ratio,
+        0.0 if u < 0.0 else 1.0,
     )

@@ -28,6 +28,7 @@ from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
 from contactlaw.stepping.softened import (
+    BOUNCING,
     DAMPED,
     FASTER,
     HELD,
@@ -35,10 +36,10 @@ from contactlaw.stepping.softened import (
     keep,
     push,
     residual,
+    settling_kick,
     softened_of,
     tangential_push,
 )
-from contactlaw.stepping.softened import FREE as UNHELD
 from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
@@ -85,9 +86,6 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
-# Largest correction of a softened contact's last step [larger of the two speeds]: a spring that
-# gives back at least 2 % of its work lets no bead leave slower than 0.14 of its speed.
-_MOST_SETTLED = 0.2
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
 
 
@@ -368,10 +366,10 @@ def _end(
         size = more * bead.mass / clock.dt
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
-        most = energy.largest_change(u, row.approach_speed, steps)
         if softened:
-            most = _MOST_SETTLED * max(row.approach_speed, -u)
-        size = energy.settling_force(missing, bead.mass, u, clock.dt, most)
+            size = settling_kick(missing, bead.mass, u, row.approach_speed, clock.dt)
+        else:
+            size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
         leaves = size * clock.dt / bead.mass - u
     if size != 0.0:
@@ -520,18 +518,18 @@ def _ask(
         rows = bead.friction[0:0]
     true = bounce(law, spring, u, edge.near, came.size, mu, kappa, rows)
     if rough and begins:
-        per = -true.impulse_ratio / came.size if came.size > 0.0 else 0.0
+        bead.friction[k].width = true.impulse_ratio
         for i in range(3):
-            bead.friction[k].along[i] = per * came.along[i]
+            bead.friction[k].along[i] = came.along[i] / came.size if came.size > 0.0 else 0.0
     r, thickness = bead.r / scene.parcel, plate_row.thickness
     force = true.peak_force / scene.parcel**3  # of one of the true beads
     scale = impact(law, spring, u).compression
     flags = flags_of(limits_of(plate_row), r, thickness, scale, true.contact_time, true.compression, force)
-    flags |= edge_flags(r, thickness, true.compression, edge.distance, 0.0)
+    flags |= edge_flags(r, thickness, true.compression, edge.distance, true.recedes)
     # In a dent that an earlier impact has left, no energy may come back that has been lost.
     e = true.restitution if soft.stored == 0.0 else min(true.restitution, soft.restitution)
     row.reported_loss = (1.0 - e * e) * soft.stored if begins else row.reported_loss
-    lasting = UNHELD if begins and row.arrival != SLIDING and row.disturbance == ALONE else HELD
+    lasting = BOUNCING if begins and row.arrival != SLIDING and row.disturbance == ALONE else HELD
     keep(
         row,
         Softened(

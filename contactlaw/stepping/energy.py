@@ -31,8 +31,9 @@ Point = tuple[float, float, float]
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6, highest power first: a least-squares fit
 _ZETA = np.array([0.0013675, -0.0079223, 0.0284945, -0.1623330, -0.5477877, -0.3118187, -0.0254854])
 # Largest correction of the rebound speed, times (steps per contact)^2.5: twice the scheme's error
-# (`contactlaw.softsphere.time_step`). The correction is relative to the larger of the rebound and
-# the approach speed, because a bead that rolls over a corner may leave slowly.
+# (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one, and
+# its speed is not corrected. The correction is relative to the larger of the rebound and the
+# approach speed, because a bead that rolls over a corner may leave slowly.
 _LARGEST_CORRECTION = 1.8
 # Largest relative correction of the speed of a bead that crossed kinks, times steps per contact. At
 # the peak of Hertz's force the impulse of a step is 3.7/steps of the momentum of the approach.
@@ -113,23 +114,16 @@ def work(mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: f
 
 
 @kernel
-def largest_change(u: float, approach: float, steps: float) -> float:
-    """Largest change of a rebounding bead's speed that the scheme may need [m/s]."""
-    steps = max(steps, FEWEST_STEPS)
-    return max(-u, approach) * _LARGEST_CORRECTION / (steps * steps * math.sqrt(steps))
-
-
-@kernel
-def settling_force(missing: float, m: float, u: float, h: float, most: float) -> float:
-    """Force in the last step that gives a rebounding bead its missing energy [N].
-
-    `most` is the largest change of the speed; a bead that lacks more was struck by another one.
-    """
+def settling_force(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
+    """Force in the last step that gives a rebounding bead its missing energy [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
-    change = math.sqrt(square) + u
-    return m * change / h if abs(change) <= most else 0.0
+    change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
+    largest = max(-u, approach) * _LARGEST_CORRECTION / (steps * steps * math.sqrt(steps))
+    if not abs(change) <= largest:
+        return 0.0
+    return m * change / h
 
 
 @kernel

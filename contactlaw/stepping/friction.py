@@ -45,7 +45,7 @@ FRICTION = np.dtype(
 )
 _NO_DIRECTION = 1e-6  # least share of a vector along the wall; below, rounding decides
 _LEAST_SPEED = 1e-30  # [m/s] far below it the stiffness of an impact is 0 in floating point
-_DEEPEST = 1.25**0.4  # largest compression of Hertz's impact [V0 T_H]
+DEEPEST = 1.25**0.4  # largest compression of Hertz's impact [V0 T_H]
 
 
 def check_friction(friction: Any) -> None:
@@ -75,7 +75,7 @@ def _width(law: Array, own: Array, spring: Spring, scale: float, speed: float, k
     """
     if not speed > _LEAST_SPEED:
         return k / SPRINGS
-    d = _DEEPEST * impact(law, spring, speed).compression / scale
+    d = DEEPEST * impact(law, spring, speed).compression / scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     if d > forces.lossless(own):
         energy = 0.5 * spring.mass * speed * speed / (unit * scale)

@@ -27,8 +27,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
+from contactlaw.physical.arguments import number
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.spring import State
 from contactlaw.walls.facet import Point
@@ -36,12 +38,21 @@ from contactlaw.walls.facet import Point
 # Least share of the work that the spring gives back: unloading curves that are steeper would need
 # shorter steps. What it gives back too much is taken in the last step.
 _LEAST_SHARE = 0.02
+# Largest correction of the last step [larger of approach and rebound speed].
+_MOST_SETTLED = 0.2
 _DAMPING = 0.5  # ratio of damping in a dent
 _MOST_DAMPING = 0.5  # [m/h] beyond which it would make a step unstable
 FASTER = 1.25  # [speed at which the COR was asked for] from which a struck bead asks again
-# A contact is a FREE impact; or friction is HELD by a spring in it; or it is DAMPED, too, since the
+# A contact is an impact that is BOUNCING; or friction is HELD by a spring in it; or it is DAMPED, too, since the
 # bead has come down again in its dent, and takes no energy from the last step.
-FREE, HELD, DAMPED = 0.0, 1.0, 2.0
+BOUNCING, HELD, DAMPED = 0.0, 1.0, 2.0
+
+
+def check_softening(softening: Any, parcel: Any) -> None:
+    """Refuse numbers that are not finite, or below 1."""
+    for name, value in (("softening", softening), ("parcel", parcel)):
+        if not 1.0 <= number(name, value) < math.inf:
+            raise ArgumentError(name, value, "must be finite and at least 1, which is a true contact or bead")
 
 
 class Softened(NamedTuple):
@@ -84,6 +95,13 @@ def keep(row: Any, soft: Softened) -> None:
 
 
 @kernel
+def settling_kick(missing: float, mass: float, u: float, approach: float, h: float) -> float:
+    """Force in the last step that leaves a bead the energy that its COR leaves it [N]."""
+    change = math.sqrt(max(u * u + 2.0 * missing / mass, 0.0)) + u
+    return mass * change / h if u < 0.0 and abs(change) <= _MOST_SETTLED * max(approach, -u) else 0.0
+
+
+@kernel
 def residual(largest: float, restitution: float) -> float:
     """Overlap at which an unloading contact ends [m]."""
     return largest * (1.0 - max(restitution * restitution, _LEAST_SHARE))
@@ -107,6 +125,50 @@ def push(stiffness: float, mass: float, largest: float, restitution: float, x: f
     return Push(force + damping * u, largest, slope, True)
 
 
+class SoftState(NamedTuple):
+    """A softened contact between two steps, all zero where the bodies are apart."""
+
+    force: Any  # [N]
+    kick: Any  # force to add in this step alone, which settles the energy of an impact [N]
+    largest: Any  # dm [m]
+    overlap: Any  # x [m]; below 0 a gap
+    work: Any  # of the force on the bead in this contact [J]
+    stored: Any  # work put into the spring up to dm [J]
+    lost: Any  # part of it that earlier impacts in the same dent have lost [J]
+    damped: Any  # 1.0 once the bead has come down again in its dent
+
+
+@kernel(cache=True)
+def advance_softened(
+    stiffness: float, mass: float, restitution: float, state: SoftState, overlap: float, step: float
+) -> SoftState:
+    """State at the end of a step [s], from the overlap [m] at its end and the COR of the impact.
+
+    The force to apply is the sum of the state's `force` and `kick`. `stiffness` is K of the
+    softened contact [N/m^1.5], `mass` that of the bead [kg]. A gap is an overlap below 0. Until the
+    bead comes back, the COR does not matter, so it may follow from the speed of the second step.
+    """
+    path = overlap - state.overlap
+    u = path / step
+    now = push(stiffness, mass, state.largest, restitution, overlap, u, step)
+    work, lost, damped = state.work, state.lost, state.damped
+    if now.force > 0.0 and state.force == 0.0:  # a new impact, perhaps in the dent of another
+        work, lost, damped = 0.0, (1.0 - restitution * restitution) * state.stored, 0.0
+    damped = 1.0 if now.damped else damped
+    work -= 0.5 * (state.force + now.force) * path
+    stored, kick = state.stored, 0.0
+    if now.largest > state.largest:
+        stored = lost - work + 0.5 * mass * u * (u - step * now.force / mass)
+        if damped > 0.0:
+            stored = 0.4 * stiffness * now.largest * now.largest * math.sqrt(now.largest)
+    if now.force == 0.0 and state.force > 0.0 and damped == 0.0:
+        missing = lost - (1.0 - restitution * restitution) * stored - work
+        kick = settling_kick(missing, mass, u, math.sqrt(2.0 * max(stored - lost, 0.0) / mass), step)
+    if not overlap > 0.0:
+        return SoftState(0.0, kick, 0.0, overlap, 0.0, 0.0, 0.0, 0.0)
+    return SoftState(now.force, kick, now.largest, overlap, work, stored, lost, damped)
+
+
 @kernel
 def tangential_push(
     row: Any,
@@ -123,15 +185,16 @@ def tangential_push(
 ) -> Point:
     """Tangential force on a bead [N], from its normal force f in this step.
 
-    A step h of 0 gives the last step's force again. ``row.along`` is the ratio of both in an
-    impact, a vector; ``row.stretch`` is the force of the spring of a contact that lasts.
+    A step h of 0 gives the last step's force again. ``row.along`` is the direction in which the
+    bead slid at first touch, ``row.width`` the ratio of both forces in an impact, and
+    ``row.stretch`` the force of the spring of a contact that lasts.
     """
     if h == 0.0:
         return row.force[0], row.force[1], row.force[2]
     ax, ay, az = row.along[0], row.along[1], row.along[2]
-    if soft.lasting == FREE:
-        up = dot((ax, ay, az), n)
-        force = f * (ax - up * n[0]), f * (ay - up * n[1]), f * (az - up * n[2])
+    if soft.lasting == BOUNCING:
+        up, size = dot((ax, ay, az), n), -f * row.width
+        force = size * (ax - up * n[0]), size * (ay - up * n[1]), size * (az - up * n[2])
         row.stretch[0], row.stretch[1], row.stretch[2] = force
         row.force[0], row.force[1], row.force[2] = force
         return force
@@ -145,7 +208,7 @@ def tangential_push(
     ax, ay, az = (ax - up * n[0] - path * slip[0], ay - up * n[1] - path * slip[1], az - up * n[2] - path * slip[2])
     damping = min(2.0 * _DAMPING * math.sqrt(mass / POINT * k), _MOST_DAMPING * mass / POINT / h)
     force = ax - damping * slip[0], ay - damping * slip[1], az - damping * slip[2]
-    size, most = math.sqrt(dot(force, force)), friction * f
+    size, most = math.sqrt(dot(force, force)), friction * max(f, 0.0)  # the last step may pull
     if size > most:
         less = most / size
         force = force[0] * less, force[1] * less, force[2] * less

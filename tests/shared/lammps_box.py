@@ -33,7 +33,7 @@ MASS = 4 / 3 * math.pi * DENSITY * R**3
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
-PLATE = 6  # column of the history: number of the plate in contact, or 0; the force is three on
+PLATE = 8  # column of the history: number of the plate in contact, or 0; the force is three on
 _open = weakref.WeakSet()  # simulations that a test has made
 
 
@@ -99,11 +99,22 @@ def restarted(path, *, gravity=0.0, dt=DT):
     return quiet(f"read_restart {path}" + MOTION.format(dt=dt, gravity=gravity))
 
 
-def scene(model, walls=None, position=ABOVE, velocity=(0, 0, -5), *, friction=0.0, records=1000, **box):
+def scene(
+    model,
+    walls=None,
+    position=ABOVE,
+    velocity=(0, 0, -5),
+    *,
+    friction=0.0,
+    records=1000,
+    softening=1.0,
+    parcel=1.0,
+    **box,
+):
     """Beads in a box with walls attached; by default one bead above a plate of 1 mm."""
     lmp = make(position, velocity, **box)
     walls = [flat(1e-3)] if walls is None else walls
-    return lmp, attach(lmp, model, walls, friction=friction, records=records)
+    return lmp, attach(lmp, model, walls, friction=friction, records=records, softening=softening, parcel=parcel)
 
 
 def dropped(*given, steps=700, **options):

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,17 @@ from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, WIDTH
+from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, SOFTENING, WIDTH
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
 from contactlaw.record.columns import IMPACT, Kind
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
+from contactlaw.softsphere import most_softening
 from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.plate_rows import SOLID
+from contactlaw.stepping.softened import check_softening
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import Models, by_type, check_models
 
@@ -62,7 +64,8 @@ def attach(
     *,
     friction: float = 0.0,
     records: int = 1_000_000,
-    softening: float = 1.0,
+    softening: float | Literal["auto"] = 1.0,
+    speeds: tuple[float, float] | None = None,
     parcel: float = 1.0,
 ) -> LammpsPlates:
     """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
@@ -81,6 +84,15 @@ def attach(
         Coulomb's coefficient of friction between beads and plates [-].
     records : int, optional
         Most impacts that a rank can record within one command.
+    softening : float or "auto", optional
+        Number by which the modulus of the contacts is divided, for time steps that are longer by
+        its power of 0.4; beads leave as from the true contact. ``"auto"`` takes
+        `contactlaw.softsphere.most_softening`. See docs/softening.md.
+    speeds : tuple of 2 floats, optional
+        Slowest and fastest approach that matter [m/s], for ``"auto"``.
+    parcel : float, optional
+        Radius of the simulated beads over that of the true beads for which they stand: each stands
+        for ``parcel**3`` beads, and rebounds as one of them.
 
     Returns
     -------
@@ -128,11 +140,35 @@ def attach(
     if not isinstance(lmp, lammps):
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
     check_friction(friction)
+    check_softening(1.0 if softening == "auto" else softening, parcel)
     memory = _record_memory(records)
     _check_simulation(lmp)
     commands.check_integrator(lmp)
     walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
+    if softening == "auto":
+        softening = _most_softening(lmp, models, speeds, parcel)
     return LammpsPlates(lmp, models, walls, memory, friction=friction, softening=softening, parcel=parcel)
+
+
+def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, parcel: float) -> float:
+    """Most softening that all beads allow."""
+    if not isinstance(speeds, tuple | list) or len(speeds) != 2:
+        reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
+        raise ArgumentError("speeds", speeds, reason)
+    radius = _largest_radius(lmp) / parcel
+    return min(most_softening(model, speeds[1], radius, speeds[0]) for model in models.values())
+
+
+def _beads(lmp: lammps, name: str) -> NDArray[Any]:
+    """Read a number of each bead on this rank, in LAMMPS's units."""
+    n = lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
+    return np.asarray(lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, int))
+
+
+def _largest_radius(lmp: lammps) -> float:
+    """Radius of the largest bead on all ranks so far [m]."""
+    length, largest = _UNITS[lmp.extract_global("units")][0], _beads(lmp, "radius")
+    return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
 
 
 def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
@@ -228,7 +264,13 @@ def _c_function(lmp: lammps, name: str, result: Any, arguments: int) -> Any:
 
 
 class LammpsPlates:
-    """The plates of one simulation and the impacts on them; made by `attach`."""
+    """The plates of one simulation and the impacts on them; made by `attach`.
+
+    Attributes
+    ----------
+    softening, parcel : float
+        As given to `attach`; for ``"auto"`` what it took.
+    """
 
     def __init__(
         self,
@@ -242,9 +284,10 @@ class LammpsPlates:
         self._comm = lmp.get_mpi_comm()
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
-        types, radius = lmp.extract_setting("ntypes"), self._largest_radius()
+        types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp)
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
+        self.softening, self.parcel = float(contact["softening"]), float(contact["parcel"])
         self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
@@ -260,24 +303,14 @@ class LammpsPlates:
         for name in _WRAPPED:
             setattr(lmp, name, self._wrapped(name, getattr(lmp, name)))
 
-    def _beads(self, name: str) -> NDArray[Any]:
-        """Read a number of each bead on this rank, in LAMMPS's units."""
-        n = self._lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
-        return self._lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, dtype=int)
-
-    def _largest_radius(self) -> float:
-        """Radius of the largest bead on all ranks so far [m]."""
-        length, largest = _UNITS[self._lmp.extract_global("units")][0], self._beads("radius")
-        return float(max(self._comm.allgather(float(largest.max(initial=0.0))))) * length
-
     def _check_masses(self) -> None:
         """Refuse beads that are no solid spheres of their model's material; all ranks call it."""
         length, _, unit = _UNITS[self._lmp.extract_global("units")]
-        rows = self._contacts.scene.plate_rows[self._beads("type") - 1, 0]
-        mass, radius = unit * self._beads("rmass"), length * self._beads("radius")
+        rows = self._contacts.scene.plate_rows[_beads(self._lmp, "type") - 1, 0]
+        mass, radius = unit * _beads(self._lmp, "rmass"), length * _beads(self._lmp, "radius")
         solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
         wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
-        step, bead = self._lmp.extract_global("ntimestep"), self._beads("id")
+        step, bead = self._lmp.extract_global("ntimestep"), _beads(self._lmp, "id")
         said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
         for found in filter(None, self._comm.allgather(said)):
             raise ValueError(found[0])
@@ -421,6 +454,7 @@ class LammpsPlates:
         rows["kind"][np.isin(rows["bead"], clumped)] = Kind.IN_CLUMP
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
+        self._contacts.warn_of_overlap(stacklevel=5)
         shared = self._shared[[name for name in SHARED.names or () if name.startswith("error")]][0]
         own = shared.item() if shared["error"] else None
         gathered = self._comm.allgather((own, self._clear_marks()))
@@ -443,14 +477,14 @@ class LammpsPlates:
             run(self._lmp, f"variable {name} atom gmask({group})")
             inside = np.array(self._lmp.extract_variable(name, "all", 1) or [])
             run(self._lmp, f"variable {name} delete")
-            found.append(self._beads("id")[inside > 0.0])
+            found.append(_beads(self._lmp, "id")[inside > 0.0])
         return np.concatenate(self._comm.allgather(np.concatenate(found)))
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
-        return None if history is None else (history, self._beads("id"))
+        return None if history is None else (history, _beads(self._lmp, "id"))
 
     def _clear_marks(self) -> list[int]:
         """Remove the error marks, so that the next run goes on; return this rank's marked beads."""
@@ -465,7 +499,7 @@ class LammpsPlates:
 
     def _check_memory(self, columns: int) -> None:
         """Refuse contacts of a restart file with other plates than these; all ranks call it."""
-        wrong = False
+        wrong, before = False, np.zeros((0, 2)).tolist()
         if found := self._history():
             history, ids = found
             own = history[: len(ids)]
@@ -474,6 +508,8 @@ class LammpsPlates:
             facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
             most = len(self._contacts.scene.facets)
             wrong = bool(other[touching].any() or (abs(facets) > most).any())
+            softer = (own[touching, SOFTENING:FIRST] != (self.softening, self.parcel)).any(axis=1)
+            before = [] if wrong else own[touching, SOFTENING:FIRST][softer].tolist()
             own[other & ~touching] = 0.0
         if any(self._comm.allgather(wrong)):
             raise ArgumentError(
@@ -482,6 +518,9 @@ class LammpsPlates:
                 "beads are in contact with other plates, as a restart file has it; attach the "
                 "same plates in the same order, and friction or none as before",
             )
+        for softening, parcel in sum(self._comm.allgather(before), [])[:1]:
+            reason = f"beads are in contact with softening {softening:g}, parcel {parcel:g}; attach with these again"
+            raise ArgumentError("softening, parcel", (self.softening, self.parcel), reason)
 
     def _clear_foreign_rows(self) -> None:
         """Empty the rows that belong to other beads than their present ones, and the spare rows."""

@@ -11,6 +11,7 @@ from contactlaw.laws import DEFAULT
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
 from contactlaw.stepping.friction import check_friction
+from contactlaw.stepping.softened import check_softening
 
 
 def hertz_material(youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str) -> str:
@@ -25,7 +26,13 @@ def hertz_material(youngs_modulus: float, restitution: float, poissons_ratio: fl
 
 
 def pair_coeff(
-    sphere: Material | str | Sequence[Material | str], *, radius: float, speed: float, friction: float = 0.0
+    sphere: Material | str | Sequence[Material | str],
+    *,
+    radius: float,
+    speed: float,
+    friction: float = 0.0,
+    softening: float = 1.0,
+    parcel: float = 1.0,
 ) -> str:
     """Write LAMMPS's ``pair_coeff`` for ``pair_style granular``.
 
@@ -40,6 +47,10 @@ def pair_coeff(
         has the one at this speed.
     friction : float, optional
         Coulomb's coefficient of friction between beads [-].
+
+    softening, parcel : float, optional
+        As in `attach`: a modulus lower by `softening`, and that with which a parcel has the force
+        of the beads that it stands for. The COR is that of the true beads.
 
     Returns
     -------
@@ -69,12 +80,13 @@ def pair_coeff(
     found = sphere if isinstance(sphere, (list, tuple)) else [sphere]
     scalars(radius=radius, speed=speed)
     check_friction(friction)
+    check_softening(softening, parcel)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
     lines = []
     for (i, one), (j, two) in itertools.combinations_with_replacement(enumerate(found, 1), 2):
         beads = Beads(one, two, DEFAULT, Border("raise"))
         ratio = 0.5 * (beads.pair.sphere.poissons_ratio + beads.pair.plate.poissons_ratio)
-        modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus
+        modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus * parcel**2.5 / softening
         restitution = float(beads.integrated(speed, radius, radius))
         types = f"{i} {j}" if len(found) > 1 else "* *"
         contact = hertz_material(modulus, restitution, ratio, tangential)

@@ -137,7 +137,7 @@ def _check_sphere(shared: Any, plate_rows: Any, step: int, head: Any, bead: Bead
 
 
 @kernel
-def _keep_sphere(head: Any, row: Any, bead: Bead) -> None:
+def _keep_sphere(scene: WallScene, head: Any, row: Any, bead: Bead) -> None:
     """Store radius, mass and type of a bead that begins to touch walls; drop invalid contacts."""
     if head.error >= Trouble.STARTS_INSIDE.value:
         _forget(row)
@@ -145,6 +145,7 @@ def _keep_sphere(head: Any, row: Any, bead: Bead) -> None:
         head.radius = 0.0
     elif head.radius == 0.0:
         head.radius, head.mass, head.kind = bead.r, bead.mass, bead.kind
+        head.softening, head.parcel = scene.softening, scene.parcel
 
 
 @kernel
@@ -251,7 +252,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
                 mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value, status.limit)
                 head.error = max(head.error, status.worst)
                 status.trouble = status.worst = 0
-        _keep_sphere(head, row, bead)
+        _keep_sphere(scene, head, row, bead)
 
 
 @functools.cache

@@ -27,9 +27,12 @@ HEAD = np.dtype(
         ("radius", "f8"),  # [m]
         ("mass", "f8"),  # [kg]
         ("kind", "f8"),  # atom type, from 0
+        ("softening", "f8"),  # of the attachment then, and its parcels
+        ("parcel", "f8"),
     ]
 )
 ERROR, OWNER, COLUMNS, RADIUS = range(4)
+SOFTENING = 6
 FIRST, WIDTH, SLIDING = (kind.itemsize // 8 for kind in (HEAD, CONTACT, FRICTION))
 
 # Errors of the adapter, numbered on from those of `contactlaw.stepping.Trouble`. An error whose
