@@ -30,7 +30,15 @@ from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clear_friction, tangential_force
-from contactlaw.stepping.softened import DAMPED, Softened, SoftState, advance_softened, check_softening, tangential_push
+from contactlaw.stepping.softened import (
+    DAMPED,
+    DEEPEST_OVERLAP,
+    Softened,
+    SoftState,
+    advance_softened,
+    check_softening,
+    tangential_push,
+)
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
@@ -65,7 +73,6 @@ Array = NDArray[np.float64]
 _ERROR = 0.9
 # With 20 the COR of a softened contact is right, too; friction of beads that roll likes shorter.
 _SOFTENED_STEPS = 30
-OVERLAP = 0.02  # [radius] most overlap of softened contacts; ten times that of steel at 1 m/s
 # Overlap at the slowest speed over v^2/g, by which a bead's rebound from below the surface is
 # higher than from the surface.
 _WEIGHT = 0.005
@@ -551,7 +558,7 @@ def most_softening(model: ImpactModel, speed: float, radius: float, slowest: flo
     v, r, slow = (float(one[0]) for one in scalars(speed=speed, radius=radius, slowest=slowest))
     law, spring = law_of(model), resized(unit_spring(model, 1.0), r)
     deepest = [DEEPEST * impact(law, spring, one).compression for one in (v, slow)]
-    limits = OVERLAP * r, _WEIGHT * slow * slow / GRAVITY
+    limits = DEEPEST_OVERLAP * r, _WEIGHT * slow * slow / GRAVITY
     least = min(limit / depth for limit, depth in zip(limits, deepest, strict=True))
     return max(1.0, float(f"{least**2.5:.6g}"))
 

@@ -117,5 +117,6 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     rows["peak_force"] = rebound.peak_force
     for channel in DESCRIPTIONS._fields:
         rows[f"{channel}_energy"] = getattr(rebound, f"{channel}_fraction") * energy
-    rows["wall_work"], rows["triangle"] = 0.0, -1
+    rows["scheme_energy"] = rows["wall_work"] = 0.0
+    rows["parcel"], rows["triangle"] = 1.0, -1
     rows["flags"] = rebound.flags

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +33,7 @@ from contactlaw.stepping.contact import (
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.plate_rows import plate_rows
-from contactlaw.stepping.softened import check_softening
+from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
@@ -108,6 +109,7 @@ class WallContacts:
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
+        self._warned = False
         scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
         self.scene = WallScene(
             rows, frames, facets, scratch, impacts, status, float(friction), float(softening), float(parcel)
@@ -127,8 +129,21 @@ class WallContacts:
                 f"{Trouble(status['trouble']).name} on wall {status['wall']}: got "
                 f"{status['value']:.4g}, the limit is {status['limit']:.4g} (SI units)"
             )
+        self.warn_of_overlap(3)
         hits: Rows = self.scene.impacts[: status["impacts"]]
         return hits
+
+    def warn_of_overlap(self, stacklevel: int = 2) -> None:
+        """Warn once of an impact for which the contacts are too soft."""
+        soft, found, status = self.scene.softening, DEEPEST_OVERLAP, self.scene.status[0]
+        if status["overlap"] > 1.01 * found and not self._warned:
+            self._warned, most = True, soft * (found / status["overlap"]) ** 2.5
+            warnings.warn(
+                f"softening: an impact at {status['speed']:.3g} m/s had an overlap of {status['overlap']:.1%} of the "
+                f"radius with a softening of {soft:g}; for overlaps below {found:.0%} take "
+                + (f"at most {most:.3g}" if most > 1.0 else "none"),
+                stacklevel=stacklevel,
+            )
 
     def record(self, rows: Rows | None = None, **made: Any) -> Record:
         """Record of impacts, with the materials, law and places of each.

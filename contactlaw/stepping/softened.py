@@ -38,6 +38,7 @@ from contactlaw.walls.facet import Point
 # Least share of the work that the spring gives back: unloading curves that are steeper would need
 # shorter steps. What it gives back too much is taken in the last step.
 _LEAST_SHARE = 0.02
+DEEPEST_OVERLAP = 0.02  # [radius] of softened contacts; ten times that of steel at 1 m/s
 # Largest correction of the last step [larger of approach and rebound speed].
 _MOST_SETTLED = 0.2
 _DAMPING = 0.5  # ratio of damping in a dent

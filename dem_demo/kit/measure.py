@@ -43,7 +43,7 @@ def account(run: Run[Any]) -> Account:
     moving = run.kinetic + run.rotational
     start, gravity = np.full_like(moving, moving[0]), run.potential[0] - run.potential
     walls, wave, plastic = (so_far(name) for name in ("wall_work", "wave_energy", "plastic_energy"))
-    vibration, friction = so_far("other_energy"), so_far("friction_energy")
+    vibration, friction = so_far("other_energy") + so_far("scheme_energy"), so_far("friction_energy")
     rest = start + gravity + walls - moving - wave - plastic - vibration - friction
     return Account(start, gravity, walls, moving, wave, plastic, vibration, friction, rest)
 

@@ -37,7 +37,7 @@ class Run(Recorded, Generic[S]):
     def dissipated(self) -> Floats:
         """Energy that each impact lost at its wall, without sliding friction [J]."""
         rows = self.collisions
-        lost: Floats = rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
+        lost: Floats = rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"] + rows["scheme_energy"]
         return lost
 
     @property

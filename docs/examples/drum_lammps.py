@@ -44,7 +44,7 @@ def main():
     lmp.command(f"run {STEPS}")
     found = drum.gather()
     if MPI.COMM_WORLD.rank == 0:
-        lost = found["plastic_energy"] + found["wave_energy"] + found["other_energy"]
+        lost = sum(found[f"{name}_energy"] for name in ("plastic", "wave", "other"))
         for wall, name in enumerate(("shell", "front", "back")):
             own = found["plate"] == wall
             print(f"{name}: {own.sum()} impacts, {1e6 * lost[own].sum():.0f} uJ lost in it")

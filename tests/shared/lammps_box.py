@@ -147,7 +147,7 @@ def square(n, half):
 
 def lost(rows):
     """Energy that the record says is lost."""
-    return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
+    return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"] + rows["scheme_energy"]
 
 
 def on_two_ranks(file, *arguments):

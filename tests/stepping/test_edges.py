@@ -59,9 +59,9 @@ def test_a_bead_near_an_edge(kind, wall, distance):
         assert row[name] == pytest.approx(getattr(expected, name), rel=1e-3), name
     assert row["flags"] == expected.flags
     left = 0.5 * MASS * SPEED**2 * (1 - row["restitution"] ** 2)
-    parts = sum(row[f"{name}_energy"] for name in ("plastic", "wave", "other"))
+    parts = sum(row[f"{name}_energy"] for name in ("plastic", "wave", "other", "scheme"))
     assert parts == pytest.approx(left, rel=1e-9)
-    assert abs(row["other_energy"]) < 2e-3 * left
+    assert abs(row["scheme_energy"]) < 2e-3 * left
 
 
 def test_sides_are_in_the_order_of_a_walk():
@@ -150,7 +150,7 @@ def test_a_plate_that_comes_back_strikes_again(kind, distance):
     # at a lambda of 2.3 six numbers are few
     assert first["restitution"] == pytest.approx(expected.restitution, abs=0.03)
     assert later and all(row["kind"] == Kind.STRUCK for row in later)
-    lost = sum(rows[f"{name}_energy"].sum() for name in ("plastic", "wave", "other"))
+    lost = sum(rows[f"{name}_energy"].sum() for name in ("plastic", "wave", "other", "scheme"))
     assert lost == pytest.approx(0.5 * MASS * SPEED**2 - path[-1, 0], rel=1e-9)
     receded = bool(first["restitution"] < 0.0)
     assert bool(first["flags"] & cl.Validity.STRIKES_AGAIN) == receded
