@@ -170,7 +170,7 @@ def state(lmp):
     return {name: lmp.numpy.extract_atom(name)[:n][order].copy() for name in names}
 
 
-def shower(lmp):
+def shower(lmp, **contacts):
     """Three plates that lean and meet, for the beads of `rain`; many cross ranks.
 
     Where two meet is an edge of either.
@@ -178,7 +178,12 @@ def shower(lmp):
     lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3, edges="supported")
     wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
     plates = [flat(0.5e-3, width=0.05, edges="free"), lean, wall]
-    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
+    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3, **contacts)
+
+
+def softened(lmp):
+    """The shower with softened contacts, of parcels."""
+    return shower(lmp, softening=20.0, parcel=1.5)
 
 
 def drum(lmp):
@@ -229,7 +234,8 @@ def in_chunks(path, walls_of, chunks):
 def main(path, chunks):
     """Run the scenes, then errors."""
     walls = in_chunks(Path(path), shower, chunks)
-    in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
+    for name, walls_of in (("drum", drum), ("softened", softened)):
+        in_chunks(Path(path).with_name(f"{name}.npz"), walls_of, chunks)
     style.png = lambda figure: b""  # the other rank would wait, and take all of its core
     walls.report(Path(path).with_name("report"))
     lmp, _ = scene(cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1")
