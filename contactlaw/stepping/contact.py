@@ -504,8 +504,8 @@ def _ask(
     row, status, x = bead.contacts[k], scene.status[0], contact.touch.x
     if x > status.overlap * bead.r:
         status.overlap, status.speed = x / bead.r, row.approach_speed
-    soft = softened_of(state_of(row))
-    if state.force == 0.0 or not (begins or u > FASTER * soft.speed):
+    soft, deeper = softened_of(state_of(row)), state.largest_compression > row.largest_compression
+    if state.force == 0.0 or not (begins or (deeper and u > FASTER * soft.speed)):
         return
     if not u > 0.0:  # a bead that was put down
         keep(row, Softened(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, soft.stored, HELD))

@@ -28,6 +28,8 @@ RADIUS, THICKNESS = 0.9e-3, 1e-3  # [m]
 LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the beads at the start
 OVERLAP = 1e-7  # [m] of the lowest layer and the wall
 STEPS, ROUNDS = 50, 15
+SOFTENINGS = ("", 1.0), (" softened", 1000.0)
+FRICTIONS = ("frictionless", 0.0), ("sliding", 0.2)
 OWN_WALL = "granular hertz/material {modulus} 0.9 0.21 tangential linear_nohistory 0 0 damping coeff_restitution"
 
 
@@ -56,6 +58,11 @@ def rows() -> Iterator[Row]:
         1 / 1.3,
         f"{one['touching']:.0f} slide on the plate",
     )
+    for kind, most in (("", 0.7), (" softened", 0.4)):
+        for name, _ in FRICTIONS:
+            each = (one[f"{name}{kind}"] - one["bare"]) / one["touching"]
+            words = f"LAMMPS, a contact in a step, {name}{kind}"
+            yield Row(words, each, "us", most if name == "frictionless" else None)
     yield Row(
         "weak scaling, 2 ranks over 1",
         weak["plate"] / one["plate"],
@@ -180,8 +187,9 @@ def main(beads: int) -> dict[str, float]:
     found = times(simulations, 1000)  # so that some beads are in contact
     impacts = walls.gather()
     found["impacts"] = 0 if impacts is None else len(impacts)
-    slides = {name: pressed(beads) for name in ("frictionless", "sliding")}
-    held = [attach(lmp, paper(), plate, friction=mu) for lmp, mu in zip(slides.values(), (0.0, 0.2), strict=True)]
+    contacts = {f"{name}{kind}": (mu, soft) for kind, soft in SOFTENINGS for name, mu in FRICTIONS}
+    slides = {name: pressed(beads) for name in ("bare", *contacts)}
+    held = [attach(slides[name], paper(), plate, friction=mu, softening=soft) for name, (mu, soft) in contacts.items()]
     found |= times(slides, 10)
     assert not any(len(one.collisions()) for one in held)
     return found | {"touching": touching(slides["sliding"])}
