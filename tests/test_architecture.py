@@ -88,7 +88,7 @@ FILES = {
         "inverse",
     ],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface", "rest"],
-    "stepping": ["edge", "spring", "energy", "friction", "plate_rows", "contact", "bead"],
+    "stepping": ["edge", "spring", "energy", "friction", "bounce", "softened", "plate_rows", "contact", "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes", "fit"],
     "emit": ["types", "languages", "program", "function"],
     "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],

@@ -33,17 +33,18 @@ Numba's carray does the same, but compiles two functions for each type of elemen
 """
 
 
-@intrinsic
-def borrowed(typing_context: Any, array: Any) -> Any:
-    """Give an array that somebody else keeps alive, without a count of its users.
-
-    Numba counts whenever an array, or a tuple that has one, is passed to a kernel; with the dozen
-    arrays of a bead and its walls that took longer than their contact.
-    """
-
+def _borrowed(typing_context: Any, array: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         found = context.make_array(signature.args[0])(context, builder, arguments[0])
         found.meminfo = cgutils.get_null_value(found.meminfo.type)  # type: ignore[no-untyped-call]
         return found._getvalue()
 
     return array(array), generate
+
+
+borrowed: Any = intrinsic(_borrowed)
+"""Array that somebody else keeps alive, without a count of its users.
+
+Numba counts whenever an array, or a tuple that has one, is passed to a kernel; with the dozen
+arrays of a bead and its walls that took longer than their contact.
+"""
