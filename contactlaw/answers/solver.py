@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError, refuse_to_yield, renumbered, too_fast, too_thin
 from contactlaw.equation import edge, force, outcome, zener
@@ -21,9 +21,6 @@ from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.scaling import edges_of, numbers_of, yield_share
 from contactlaw.table import slides
 from contactlaw.table.grid import Settings
-
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user gave
 
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does

@@ -38,11 +38,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # x_s/sqrt(d_Y/R): beyond it x is constant in eta

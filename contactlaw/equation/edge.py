@@ -24,11 +24,9 @@ import math
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""

@@ -51,11 +51,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)

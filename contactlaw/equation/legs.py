@@ -13,14 +13,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.force import UnloadingCurve
-
-Array = NDArray[np.float64]
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
 # loading; unloading above, along and below the cap

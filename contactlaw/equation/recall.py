@@ -8,13 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.edge import Memory, weighted
-
-Array = NDArray[np.float64]
 
 
 class Recalled(NamedTuple):

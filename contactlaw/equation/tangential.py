@@ -30,13 +30,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.outcome import History
-
-Array = NDArray[np.float64]
 
 # What a tangential force changes at the contact point of a solid sphere, beside its centre: 1 for
 # the centre and m R^2/I = 5/2 for the spin.

@@ -10,8 +10,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import zener
@@ -43,8 +43,6 @@ from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_fo
 from contactlaw.stepping.spring import Spring, State, impact, resized, stepped, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
-
-Array = NDArray[np.float64]
 
 EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
 NEAR_STEPS = 100  # of a contact near an edge

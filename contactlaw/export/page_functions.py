@@ -102,17 +102,7 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
         return REFUSED
     change = rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)
     after, found = size - change, exceeded(pair, hit, impact)
-    if flows(
-        page.strength,
-        page.modulus,
-        hit.peak_force,
-        hit.peak_compression,
-        hit.residual_compression,
-        hit.contact_time,
-        friction,
-        size,
-        after,
-    ):
+    if flows(page.strength, page.modulus, hit, friction, size, after):
         found |= page.flag
     return Hit(
         hit,

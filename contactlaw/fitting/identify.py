@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import percent
-
-Array = NDArray[np.float64]
 
 _VAGUE = 0.5  # standard error of a logarithm from which on a value is not known; our choice
 _SMALL = 0.05  # smaller exponents are left out of a product

@@ -11,11 +11,9 @@ from importlib.resources import files
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation.edge import KINDS
-
-Array = NDArray[np.float64]
 
 
 @functools.cache

@@ -11,8 +11,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
 from contactlaw.equation.edge import Edges
@@ -34,8 +34,6 @@ from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import SHARE, flow_with_rate
 from contactlaw.physical.responses import response_of
-
-Array = NDArray[np.float64]
 
 
 def _transit(plate: Material, thickness: Array) -> Array:

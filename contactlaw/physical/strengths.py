@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation import force
 from contactlaw.equation.force import STRENGTHS
 from contactlaw.laws import Law, Strengths, fem, laid_out_alike
@@ -26,8 +26,6 @@ from contactlaw.physical.law import pair_numbers
 from contactlaw.physical.pair import Pair
 from contactlaw.table.lookup import TERMS
 from contactlaw.table.splines import spline_coefficients
-
-Array = NDArray[np.float64]
 
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 0.01  # in ln k: distance of the places between which corners are looked for

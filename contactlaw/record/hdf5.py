@@ -17,6 +17,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Places
+
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
 # Errors that h5py raises for what it cannot read.
 _DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
@@ -64,7 +66,7 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
         raise ValueError(f"{where} is damaged: {error}") from None
 
 
-def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
+def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> Places:
     """Read a column of whole numbers from 0 to `count` - 1, or -1 for none."""
     found = numbers(parent, name, size)
     # not (...) also for NaN

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array
 
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
 PARTS = KEPT, *_ = (
@@ -85,13 +86,13 @@ def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") 
     axes.grid(visible=False, axis="x")
 
 
-def density_scale(values: Sequence[NDArray[np.float64]]) -> LogNorm:
+def density_scale(values: Sequence[Array]) -> LogNorm:
     """Scale of the colours for energies per area [J/m2]; all of the least energies are dark."""
     most = max(float(np.quantile(value, 0.999)) for value in values) or 1.0
     return LogNorm(most / _SPAN, most, clip=True)
 
 
-def sheet(axes: Axes, corners: NDArray[np.floating], value: NDArray[np.float64], scale: LogNorm) -> PolyCollection:
+def sheet(axes: Axes, corners: NDArray[np.floating], value: Array, scale: LogNorm) -> PolyCollection:
     """Draw triangles (n, 3, 2) in the colours of their energies per area [J/m2]."""
     drawn = PolyCollection(
         list(corners), array=value, cmap=DENSITY, norm=scale, edgecolors="none", antialiased=False

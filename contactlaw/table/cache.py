@@ -18,18 +18,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic
 from contactlaw import table as tables
+from contactlaw._arrays import Array
 from contactlaw._folder import folder
 from contactlaw._kept import fingerprint
 from contactlaw.laws import Law
 from contactlaw.table import file, slides
 from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
-
-Array = NDArray[np.float64]
 
 _DIGEST = 32  # bytes of a checksum
 # [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be

@@ -53,6 +53,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
@@ -69,7 +70,6 @@ from contactlaw.equation.numbers import (
 )
 from contactlaw.equation.outcome import Outcome
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 Four = tuple[float, float, float, float]
 Six = tuple[float, float, float, float, float, float]

@@ -14,16 +14,14 @@ import sys
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import quantities
+from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import bands, inverse
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
-
-Array = NDArray[np.float64]
 
 
 def add(commands: Any) -> None:

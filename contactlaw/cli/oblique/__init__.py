@@ -7,9 +7,9 @@ import sys
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic, quantities
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw._version import VERSION
@@ -20,8 +20,6 @@ from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import within
-
-Array = NDArray[np.float64]
 
 _STEEPEST = 0.01  # [deg] angle that stands for normal incidence
 _GIVEN = "angle", "speed", "thickness", "radius", "friction"  # in the order of axes

@@ -9,12 +9,8 @@ from __future__ import annotations
 
 from string import Template
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._escaped import c_comment, line
-
-Array = NDArray[np.float64]
 
 _FLUENT = Template("""\
 /* Rebound of beads from a wall, by contactlaw $version, for Ansys Fluent; not tried in Fluent.

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array, Rows
 from contactlaw.reporting.run import OTHERS, Run
 
 _BINS = 12, 40  # fewest and most
@@ -73,7 +73,7 @@ def draw(run: Run) -> Figure:
     return figure
 
 
-def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
+def _stacked(run: Run) -> list[tuple[str, Rows]]:
     """Impacts by wall; walls beyond the number of colours are one."""
     most = len(_COLOURS)
     rank = [(wall.name == OTHERS, -wall.impacts.size) for wall in run.walls]  # the rest is last
@@ -85,6 +85,6 @@ def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
     return found or [("no impact yet", run.impacts)]
 
 
-def angle(rows: NDArray[np.void]) -> NDArray[np.float64]:
+def angle(rows: Rows) -> Array:
     """Angle of each impact from the wall's normal [degrees]."""
     return np.asarray(np.degrees(np.arctan2(rows["sliding_speed"], rows["approach_speed"])))
