@@ -1,7 +1,5 @@
 """The one place where numba's options are set."""
 
-from __future__ import annotations
-
 import functools
 import time
 from collections.abc import Callable

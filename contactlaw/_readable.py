@@ -3,8 +3,6 @@
 Everything that is printed for people uses these; files for programs have every digit.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 

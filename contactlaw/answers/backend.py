@@ -4,8 +4,6 @@
 integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn, Protocol

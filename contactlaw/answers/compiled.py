@@ -1,7 +1,5 @@
 """The COR of a model as fast functions: for Python, for loops of numba, for C."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

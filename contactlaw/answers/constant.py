@@ -1,7 +1,5 @@
 """One COR for a wall, from the impacts that happen there, and what it gets wrong."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Answers near the edges of plates: these impacts are integrated, all others left as they are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Errors of each law beside finite elements that no fit has seen."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from contactlaw._arrays import Array, Mask

@@ -8,8 +8,6 @@ units of length, time and mass, so three of the eight elasticities follow from t
 but for bodies with a rate of strain, hardening or losses, whose other constants have units, too.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

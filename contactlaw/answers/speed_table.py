@@ -1,7 +1,5 @@
 """COR over speed as a table that engines interpolate: the fewest rows for an error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

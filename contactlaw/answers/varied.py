@@ -1,7 +1,5 @@
 """Answers with other inputs, as sensitivities, ranges and fits need them: each is integrated."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """``contactlaw report``: a page with figures about recorded impacts."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from typing import Any

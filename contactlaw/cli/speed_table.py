@@ -1,7 +1,5 @@
 """``contactlaw speed-table``: COR over speed in the fewest rows for linear interpolation."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Iterator

@@ -32,8 +32,6 @@ by f = 1 + 0.175 lambda + 0.18 lambda^3 in Phi, and by f^2 in g, with lambda of 
 Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

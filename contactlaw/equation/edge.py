@@ -18,8 +18,6 @@ of a complex one, p + i p'.
 Legend: f contact force, beta mobility, z memory, h step, as in `contactlaw.equation.motion`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Literal, NamedTuple, get_args
 

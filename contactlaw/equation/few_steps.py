@@ -10,8 +10,6 @@ Legend, as in `contactlaw.equation.motion`: q root compression, u speed, f force
 s, beta mobility, y yield compression; z memory.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -45,8 +45,6 @@ impact into an array of its own, of `room_for` numbers.
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -11,8 +11,6 @@ Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q roo
 u speed, t time, s the variable of integration, y yield compression.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ Legend: d compression, dr residual compression, dm largest compression, q root c
 sqrt(d - dr).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -9,8 +9,6 @@ Legend: q root compression, f contact force, dm largest compression, u0 impact s
 scale; ds = dt/(2 q).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from contactlaw._arrays import Array

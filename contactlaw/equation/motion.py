@@ -18,8 +18,6 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
     q   root compression, sqrt(d - dr)       dr     residual compression, Eq. 17
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from contactlaw._arrays import Array

@@ -14,8 +14,6 @@ Moduli of bodies with losses grow with the frequency of the impact (`ModulusGrow
 contact stiffer, too: E* grows by g, and r by g^(2/5).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -5,8 +5,6 @@ initial kinetic energy. Kernels take these NamedTuples of arrays, one entry per 
 them by name.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The numbers z of a contact follow the force by the trapezoidal rule. It is stabl
 is, and implicit in the force F' at the end of the step: z' = z0 + q F'.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from contactlaw._arrays import Array

@@ -24,8 +24,6 @@ Legend: V0 normal approach speed, T_H Hertz's time, m mass, d compression, q its
 force, y yield compression, all on Hertz's scale as in `contactlaw.equation.zener`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

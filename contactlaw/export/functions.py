@@ -4,8 +4,6 @@ The header is made of them by `contactlaw.emit`, with the numbers of one pair of
 (`Bodies`); their docstrings are its comments. Bad input gives NaN.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """What the page of a pair computes beside `contactlaw.export.functions`, as kernels; see there."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

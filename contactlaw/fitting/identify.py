@@ -1,7 +1,5 @@
 """Whether the data determine the unknowns, and which products of them if they do not."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from contactlaw._arrays import Array

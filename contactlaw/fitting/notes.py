@@ -1,7 +1,5 @@
 """Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -6,8 +6,6 @@ predicts a few rebounds on a coarse grid. Predictions are smooth, so splines int
 fine grid, on which the sum of squares shows every basin.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

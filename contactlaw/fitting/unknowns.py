@@ -1,7 +1,5 @@
 """What a fit can find: numbers of the two materials, and the sizes of bead and plate."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping

@@ -1,7 +1,5 @@
 """The formulas of a law, branch by branch: plain numpy functions, each smooth from kink to kink."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ polynomials on pieces that are halved until the last terms vanish. A `numpy.poly
 is used without expansion.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

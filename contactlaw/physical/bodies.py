@@ -1,7 +1,5 @@
 """Two bodies whose materials and law are known, and the numbers of their impacts."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ kgf/mm2 is 9.80665e6 Pa. Rockwell C is a depth, which ASTM E140-12, Table 1, rel
 non-austenitic steels; austenitic ones are read from it, too, since they have no table of their own.
 """
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

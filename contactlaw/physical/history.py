@@ -1,7 +1,5 @@
 """Force over time of single contacts, in SI units."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from contactlaw._arrays import Array, Integers

@@ -6,8 +6,6 @@ coefficient of friction, I = 2/5 m R^2. A tangential impulse changes s by 7/2 J_
 centre has 2/7 and the spin the rest.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple

@@ -7,8 +7,6 @@ pair's factor is that of the larger C and the lower rate0, so that it stands for
 one of the bodies grows stronger, and each has its own factor at that rate.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Outcomes of impacts in SI units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 They are fitted by `validation.derivations.edges` and kept in a file beside this module.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 from importlib.resources import files

@@ -5,8 +5,6 @@ and spring define the time T_H, and with it the dimensionless numbers that the t
 work with: the inelasticity lambda, and the yield compression y on Hertz's scale.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

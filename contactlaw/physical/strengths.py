@@ -4,8 +4,6 @@ Within pieces of ln k, with k the strength over that of a slow test, every numbe
 polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made at a few strengths.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import itertools

@@ -6,8 +6,6 @@ hundreds of gigabytes. Every refusal here is a ValueError with the part's name, 
 was expected.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Charts that the figures of several kinds of runs have: bars by cause, and energy on a sheet."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

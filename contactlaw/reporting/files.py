@@ -1,7 +1,5 @@
 """The folder of a report."""
 
-from __future__ import annotations
-
 import datetime
 import os
 from collections.abc import Sequence

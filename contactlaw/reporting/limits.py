@@ -1,7 +1,5 @@
 """Words that the reports of all scenes share: sizes of plates, and limits of the model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

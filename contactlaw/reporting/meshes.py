@@ -1,7 +1,5 @@
 """The walls of a record as meshes: for a record that does not know them itself."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 

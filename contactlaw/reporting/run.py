@@ -1,7 +1,5 @@
 """What a report says of a run: its impacts, and the energy that they took, wall by wall."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The surface of the walls: how much energy each part of it takes, and files for other programs."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ Functions of the first axis alone are given at the nodes of a Chebyshev series a
 elastic compression, and the kinks of later axes, which may be curves over the first.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A table is identified by the data of its law, not by the law's name: laws that d
 yield compression share one. Shapes of force histories are added when a first history is needed.
 """
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import functools

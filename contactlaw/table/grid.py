@@ -11,8 +11,6 @@ jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uni
 p, in which these terms are smooth; so they are behind all kinks of a capped law.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 import math

@@ -45,8 +45,6 @@ lam = c_lam V^(1/5) (R/H)^2, ln chi = c_chi + (4/5) ln V + ln w_m; the two const
 pair of materials and a law, `contactlaw.physical.scaling` has them.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """The table of one contact law: the equation solved at every node."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import itertools

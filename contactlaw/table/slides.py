@@ -15,8 +15,6 @@ The grid has the same kinks as the table's. All is packed into one array, as `co
 lookup` does it: a header, the coefficients, kappa.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

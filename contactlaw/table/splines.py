@@ -1,7 +1,5 @@
 """Splines through the nodes of a table, packed into the arrays that the kernels read."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from contactlaw._arrays import Array

@@ -1,7 +1,5 @@
 """The solver at many points, on all cores."""
 
-from __future__ import annotations
-
 import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """``contactlaw constant``: one COR for each wall, and its errors."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import Any

@@ -1,7 +1,5 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable, Sequence

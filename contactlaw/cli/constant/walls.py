@@ -1,7 +1,5 @@
 """One COR for each wall of a machine, one per thickness, as text or CSV."""
 
-from __future__ import annotations
-
 import csv
 from collections import Counter
 from collections.abc import Iterator

@@ -5,8 +5,6 @@
 ``contactlaw speed``: all impact speeds that give a coefficient of restitution.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

@@ -1,7 +1,5 @@
 """Bands of ``contactlaw cor``: how far a real impact may be from its COR, and why."""
 
-from __future__ import annotations
-
 import dataclasses
 import textwrap
 from collections.abc import Iterator

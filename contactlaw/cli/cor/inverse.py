@@ -1,7 +1,5 @@
 """``contactlaw thickness`` and ``contactlaw speed``: what gives a coefficient of restitution."""
 
-from __future__ import annotations
-
 import argparse
 import functools
 import itertools

@@ -1,7 +1,5 @@
 """``contactlaw fit``: strengths, sizes and more from measured rebounds, with their errors."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

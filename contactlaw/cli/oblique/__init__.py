@@ -1,7 +1,5 @@
 """``contactlaw oblique``: tangential rebound and spin of beads that come at an angle."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import Any

@@ -5,8 +5,6 @@ file does not rest on how a dialog counts it. AcuTrace: ``FINITE_MASS_BOUNDARY_C
 syntax of arrays in Altair's command reference. Neither program was at hand to try a file in it.
 """
 
-from __future__ import annotations
-
 from string import Template
 
 from contactlaw._arrays import Array

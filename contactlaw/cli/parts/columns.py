@@ -1,7 +1,5 @@
 """Text tables of named columns with units, as people and spreadsheets write them."""
 
-from __future__ import annotations
-
 import csv
 import difflib
 import math

@@ -3,8 +3,6 @@
 A table is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Iterator, Sequence

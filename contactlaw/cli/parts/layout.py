@@ -1,7 +1,5 @@
 """What a plot shows over what: which list is the axis, which the curves, and which the panels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple

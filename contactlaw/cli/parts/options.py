@@ -1,7 +1,5 @@
 """Options that subcommands share, with their help."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable, Iterable
 from typing import Any

@@ -4,8 +4,6 @@ Left: energy that all contacts took. Right: shares of what the impacts brought. 
 bending wave carries energy away for good; on a thick one plastic flow at the contact takes it.
 """
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from contactlaw import style

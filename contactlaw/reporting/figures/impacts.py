@@ -3,8 +3,6 @@
 Of the impacts alone. The angle is that from the wall's normal: 0° is straight on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -4,8 +4,6 @@ Colours show the energy per area, averaged over a neighbourhood, of all causes; 
 Without the walls' mesh, each contact is a point whose area is the energy that it took.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
