@@ -292,13 +292,11 @@ def _pools(values: Values) -> Iterator[tuple[Mask, Mask]]:
         yield few, unknown
 
 
-@dataclass(frozen=True, eq=False)
-class _State:
+class _State(NamedTuple):
     """What `Fit.curve` needs of a fit."""
 
     predictor: Predictor
     at: Array
-    error: Array  # of the values
     covariance: errors.Errors  # of the logarithms of all parameters
 
 
@@ -359,7 +357,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
-        _state=_State(predictor, at, error, found),
+        _state=_State(predictor, at, found),
     )
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from contactlaw import Validity, explain
 from contactlaw._arrays import Integers
 from contactlaw._readable import drawn
+from contactlaw.physical.validity import count_flags
 
 label = drawn  # the name of a plate, also for the demo
 
@@ -20,8 +21,7 @@ class Limit(NamedTuple):
 
 def exceeded(flags: Integers) -> list[Limit]:
     """List the limits that impacts exceed."""
-    found = [Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity]
-    return [limit for limit in found if limit.impacts]
+    return [Limit(_words(flag), explain(flag)[0], count) for flag, count in count_flags(flags).items()]
 
 
 def _words(flag: Validity) -> str:

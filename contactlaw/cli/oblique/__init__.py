@@ -46,21 +46,11 @@ def add(commands: Any) -> None:
     options.add_speed(command, quantities.values, "speed of the bead")
     options.add_name_of_law(command)
     command.set_defaults(outside="raise")  # every impact is integrated
-    add = command.add_argument
-    add(
-        "--angle",
-        required=True,
-        metavar="A",
-        type=options.reader_of(quantities.values, quantities.ANGLE),
-        help="angle of incidence from the plate's normal [deg], from 0 to below 90",
-    )
-    add(
-        "--friction",
-        required=True,
-        metavar="MU",
-        type=options.reader_of(quantities.values, quantities.FRICTION),
-        help="coefficient of friction between bead and plate",
-    )
+    for option, quantity, metavar, what in (
+        ("--angle", quantities.ANGLE, "A", "angle of incidence from the plate's normal [deg], from 0 to below 90"),
+        ("--friction", quantities.FRICTION, "MU", "coefficient of friction between bead and plate"),
+    ):
+        options.add_quantity(command, option, quantity, what, quantities.values, required=True, metavar=metavar)
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add(
