@@ -34,8 +34,8 @@ _READABLE = {
 }
 
 
-def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]], room: bool = True) -> None:
-    """Stack the shares with their numbers; those of small ones are beside, if there is room."""
+def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]]) -> None:
+    """Stack the shares with their numbers; those of small ones are beside."""
     bottom = beside = 0.0
     for (name, colour), share in parts:
         height = 100.0 * share
@@ -47,7 +47,7 @@ def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], f
         if height >= _ROOM:
             ink = "white" if colour in _DARK else style.INK
             axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
-        elif room:
+        else:
             beside = max(middle, beside + _ROOM)
             axes.text(
                 x + 0.5 * width,

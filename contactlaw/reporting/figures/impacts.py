@@ -38,7 +38,7 @@ def draw(run: Run) -> Figure:
         "coefficient of restitution": (lambda hits: hits["restitution"], None, 1.0),
         "angle of impact [°]": (angle, 0.0, 90.0),
     }
-    panels = figure.subplots(*(1, 3))
+    panels = figure.subplots(1, 3)
     for axes, (label, (column, least, most)) in zip(panels, columns.items(), strict=True):
         values = [column(hits) for _, hits in walls]
         whole = np.concatenate(values)

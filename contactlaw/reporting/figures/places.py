@@ -40,7 +40,7 @@ def draw(run: Run) -> Figure:
     figure = style.figure(
         12.0, 6.6 if thin.size else 5.8, _TITLE, f"{run.subject}; energy of all contacts per area{within}"
     )
-    panels = np.atleast_1d(figure.subplots(*(1, views)))
+    panels = np.atleast_1d(figure.subplots(1, views))
     if thin.size:
         x, y = (n for n in range(3) if n != thin[0])
         _paint(panels[0], found.corners[:, :, [x, y]], found, colours(found))
