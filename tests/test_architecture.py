@@ -154,12 +154,12 @@ BUDGETS = {
     "contactlaw/laws": 2_008,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_315,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 672,
-    "contactlaw/reporting": 1_091,
+    "contactlaw/reporting": 1_051,
     "contactlaw/stepping": 1_957,
     "contactlaw/table": 2_940,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_914,
     "contactlaw templates": 1_098,  # sources of other languages, and pages
-    "dem_demo": 4_469,
+    "dem_demo": 3_248,
     "validation": 14_062,  # finite elements are 5,529 of them
     "tests": 24_092,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
