@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from contactlaw import style
 from dem_demo.drum.scene import Drum
-from dem_demo.kit.panels import panels, source
+from dem_demo.kit.drawing import panels, source
 from dem_demo.kit.run import Runs
 
 _BINS = 36

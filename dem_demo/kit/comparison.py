@@ -20,18 +20,17 @@ from dem_demo.kit.scene import Bed
 CONSTANT = "constant.h5"
 
 
-class Plan(NamedTuple):
-    """A scene, its two models, and the time step [s]."""
+class Planned(NamedTuple):
+    """A run of a bed: its record, the model of its walls, their thickness in it [m], and the rest."""
 
-    scene: Bed
-    law: ImpactModel
-    constant: ImpactModel
-    constant_cor: float
-    step: float
+    name: str
+    model: ImpactModel
+    thickness: float
+    making: Making
 
 
-def plan(scene: Bed, law: str = laws.DEFAULT, constant_cor: float | None = None) -> Plan:
-    """Choose the models of a bed, so that arguments out of range are refused before the run.
+def plan(scene: Bed, command: str, law: str = laws.DEFAULT, constant_cor: float | None = None) -> list[Planned]:
+    """Choose the models of both runs, so that arguments out of range are refused before.
 
     The default of the constant COR is the law's COR on a half-space at the speed at which the beads
     come down: the result of a drop test on a thick block.
@@ -41,40 +40,42 @@ def plan(scene: Bed, law: str = laws.DEFAULT, constant_cor: float | None = None)
     if cor is None:
         speed = max(float(-scene.velocity[0, 2]), 0.1)
         cor = round(max(LEAST, float(model.restitution(speed, float(scene.radius.mean()), math.inf))), 3)
-    return Plan(scene, model, constant_model(pair, cor), cor, lammps.time_step(scene, model))
+    making = Making(model, command, lammps.time_step(scene, model))
+    return [
+        Planned(f"{scene.NAME}.h5", model, scene.thickness, making),
+        Planned(CONSTANT, constant_model(pair, cor), math.inf, making._replace(constant_cor=cor)),
+    ]
 
 
 def start(make: Callable[..., Bed], arguments: argparse.Namespace, command: str, own: ModuleType) -> int:
     """Simulate both runs, and write the records, figures, summary and page; `own` draws a figure."""
     with options.needing(options.LAMMPS):
+        from mpi4py import MPI
+
         lammps.version()
-        rank = lammps.rank()
     with options.refusing(arguments):
-        chosen = plan(make(**options.of(make, arguments)), **options.of(plan, arguments))
-    if rank > 0:
-        _, stop = _simulate(chosen, command, None)
+        scene = make(**options.of(make, arguments))
+        begin = partial(_simulate, scene, plan(scene, command, **options.of(plan, arguments)))
+    if MPI.COMM_WORLD.rank > 0:
+        _, stop = begin(None)
         if stop is not None:
             raise stop  # the command waits until rank 0 has kept the records
         return 0
     show = session.Show((own, energy, restitution, snapshot), drawing.gif)
-    return session.deliver(arguments.out, show, partial(_simulate, chosen, command))
+    return session.deliver(arguments.out, show, begin)
 
 
-def _simulate(chosen: Plan, command: str, folder: Path | None) -> tuple[list[Run[Any]], BaseException | None]:
+def _simulate(scene: Bed, planned: list[Planned], folder: Path | None) -> tuple[list[Run[Any]], BaseException | None]:
     """Write both records into a folder, which rank 0 knows; returns what stopped a run, if any."""
     from mpi4py import MPI
 
-    first, scene, runs = folder is not None, chosen.scene, []
+    first, runs = folder is not None, []
     folder = MPI.COMM_WORLD.bcast(folder)
     if first:
         scene.write_files(folder)
     MPI.COMM_WORLD.barrier()
-    for name, model, thickness, cor in (
-        (f"{scene.NAME}.h5", chosen.law, scene.thickness, None),
-        (CONSTANT, chosen.constant, math.inf, chosen.constant_cor),
-    ):
-        making = Making(chosen.law, command, chosen.step, cor)
-        begin = partial(lammps.Simulation, scene, model, thickness, chosen.step, folder)
+    for name, model, thickness, making in planned:
+        begin = partial(lammps.Simulation, scene, model, thickness, making.time_step, folder)
         with signals.held():  # a signal has to stop all ranks at the same step
             run, stop = simulate(begin, scene, making, folder / name if first else None)
         if stop is not None:

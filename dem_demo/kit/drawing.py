@@ -1,4 +1,4 @@
-"""Drawings and films of a bed from the side, beads coloured by the COR of their last impact."""
+"""What figures of scenes share: subtitles, panels; and drawings and films of beds, from the side."""
 
 from __future__ import annotations
 
@@ -11,21 +11,47 @@ from matplotlib.figure import Figure
 
 from contactlaw import style
 from dem_demo.kit import film
-from dem_demo.kit.panels import MM, panels, restitution_range
-from dem_demo.kit.run import B, Run, Runs
+from dem_demo.kit.run import B, Run, Runs, S
 from dem_demo.kit.scene import FLYING
 
+MM = 1e3
 _WIDTH, _ROOM = 9.0, 0.75  # [inches]: width of a film, and height of a panel's title and labels
 
 
+def source(runs: Runs[S]) -> str:
+    """Subtitle: beads and walls."""
+    scene = runs[0].scene
+    return f"{scene.radius.size} beads of {scene.sphere_material.name} on {scene.sheet}"
+
+
+def panels(
+    figure: Figure, runs: Runs[B], *, stacked: bool = False, projection: str | None = None
+) -> list[tuple[Axes, Run[B]]]:
+    """Make a panel for each run, titled with the name of the run; all have the same scale."""
+    shape = (len(runs), 1) if stacked else (1, len(runs))
+    kind = {"projection": projection}
+    grid = figure.subplots(*shape, sharex=True, sharey=True, squeeze=False, subplot_kw=kind)
+    found = list(zip(grid.flat, runs, strict=True))
+    for axes, run in found:
+        kind_of_run = "contactlaw," if run.making.constant_cor is None else "constant"
+        axes.set_title(f"{kind_of_run} {run.name}")
+    return found
+
+
+def restitution_range(run: Run[Any]) -> tuple[float, float]:
+    """Range of the colour scale: from the 2 % quantile of the COR, at most 0.9, to 1."""
+    found = run.impacts["restitution"]
+    low = float(np.quantile(found, 0.02)) if found.size else 0.9
+    return max(0.0, min(low, 0.9)), 1.0
+
+
 class Drawing:
-    """Walls and beads of one run; `show` moves them."""
+    """Walls and beads of one run, coloured by the COR of their last impact; `show` moves them."""
 
     def __init__(self, axes: Axes, run: Run[Any], colours: tuple[float, float]) -> None:
         self.run, scene = run, run.scene
         left, right, bottom, top = np.multiply(scene.window, MM)
         axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-        axes.set_anchor("W" if scene.STACKED else "C")
         axes.set(xlabel="x [mm]", ylabel="height [mm]")
         axes.label_outer()
         axes.grid(visible=False)
@@ -60,6 +86,7 @@ def drawings(figure: Figure, runs: Runs[B]) -> list[Drawing]:
     found = [Drawing(axes, run, colours) for axes, run in shown]
     bar = figure.colorbar(found[0].beads, ax=[axes for axes, _ in shown], pad=0.02, fraction=0.03)
     bar.set_label("COR of the last impact")
+    figure.draw_without_rendering()  # once more, or panels of a fixed shape leave no room for labels
     return found
 
 

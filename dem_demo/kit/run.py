@@ -7,6 +7,7 @@ halfway nor close a file that the disk has no room for.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -108,6 +109,11 @@ class Run(Generic[S]):
         return lost
 
     @property
+    def mean_cor(self) -> float:
+        """Mean COR of the impacts on walls, which is not known beforehand; NaN without any."""
+        return float(self.impacts["restitution"].mean()) if self.impacts.size else math.nan
+
+    @property
     def law(self) -> str:
         """Name of the contact law; with a constant COR, of the law to compare it with."""
         return bodies_of(self.making.law).law
@@ -147,10 +153,10 @@ class Run(Generic[S]):
         """Write the record; without room for all, an `OSError` after the contacts alone are tried."""
         scene, making = self.scene, self.making
         on_wall, sphere = bodies_of(making.law), scene.sphere_material
-        numbers = {one.name: getattr(scene, one.name) for one in fields(scene)}
+        values = {one.name: getattr(scene, one.name) for one in fields(scene)}
         made = {
             **self.record.made,
-            **{name: number for name, number in numbers.items() if isinstance(number, (int, float))},
+            **{name: value for name, value in values.items() if isinstance(value, (int, float))},
             "scene": scene.NAME,
             "command": making.command,
             "law": on_wall.law,
@@ -222,8 +228,7 @@ def simulate(
             record = None if simulation is None else simulation.record()
             if path is not None and record is not None:
                 by_time = record.part(np.argsort(record.rows["time"], kind="stable"))
-                empty = Frame(*np.empty((5, 0)))
-                stacked = zip(*frames, strict=True) if frames else empty
+                stacked = zip(*frames, strict=True) if frames else np.empty((len(Frame._fields), 0))
                 columns: dict[str, Any] = dict(zip(Frame._fields, map(np.array, stacked), strict=True))
                 run = Run(scene=scene, making=making, record=by_time, **columns)
                 run.save(path)

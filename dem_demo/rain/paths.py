@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from dem_demo.kit.run import Run
 from dem_demo.kit.scene import FLYING, GRAVITY, Floats
-from dem_demo.rain.measure import hits, one_for_all
 from dem_demo.rain.scene import Shower
 
 # One piece: from `start` to `end` [s] at x + u t, y + v t - fall t^2/2 with t since its start.
@@ -32,16 +31,28 @@ _PLACE = 5e-5  # [m], invisible difference of two positions
 _STILL = 2.0
 
 
+def hits(run: Run[Shower]) -> tuple[NDArray[np.int64], Floats, NDArray[np.int64]]:
+    """List the collisions of each bead by time, also those that are no impacts.
+
+    Returns bead, time [s] and row of the record; a collision of two beads is listed for both.
+    """
+    rows = run.record.rows
+    bead, time = np.r_[rows["bead"], rows["other"]], np.tile(rows["time"], 2)
+    order = np.lexsort((time, bead))
+    order = order[bead[order] >= 0]
+    return bead[order], time[order], order % max(1, rows.size)
+
+
 @functools.lru_cache(maxsize=1)  # shared by film and page
 def pieces(run: Run[Shower]) -> NDArray[np.void]:
     """Cut the paths of beads into parabolas, and into pieces at rest.
 
     A piece is what fits consecutive frames; the collisions between two frames say when it ends.
     """
-    struck, found = hits(run), []
+    (struck, times, _), found = hits(run), []
     for bead in drawn(run).tolist():
-        a, b = np.searchsorted(struck.bead, [bead, bead + 1])
-        found += _flight(run, bead, struck.time[a:b])
+        a, b = np.searchsorted(struck, [bead, bead + 1])
+        found += _flight(run, bead, times[a:b])
     made = np.zeros(len(found), PIECE)
     made[list(PIECE.names or ())[:9]] = np.array(found, PIECE.descr[:9])
     turned = np.r_[0.0, np.cumsum(made["spin"] * (made["end"] - made["start"]))]
@@ -119,4 +130,4 @@ def _mark(made: NDArray[np.void], run: Run[Shower]) -> None:
     hit = (n >= 0) & (last["bead"] == made["bead"])
     began = hit & (last["time"] == made["start"])
     made["restitution"][hit], made["outside"][hit] = last["restitution"][hit], last["flags"][hit] != 0
-    made["other_v"][began] = one_for_all(run) * last["approach_speed"][began]
+    made["other_v"][began] = run.mean_cor * last["approach_speed"][began]

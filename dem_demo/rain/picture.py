@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw.reporting.limits import label
 from dem_demo.kit import film
-from dem_demo.kit.panels import MM, restitution_range
+from dem_demo.kit.drawing import MM, restitution_range
 from dem_demo.kit.run import Run, Runs
 from dem_demo.rain import paths
 from dem_demo.rain.scene import Shower
@@ -134,5 +134,4 @@ def _times(run: Run[Shower], made: NDArray[np.void]) -> list[float]:
     within = np.ones(max(1, round(length * run.scene.FRAME_RATE)))
     middle = run.time[np.argmax(np.convolve(counts, within, "same"))]
     begin = min(max(0.0, middle - 0.5 * length), max(0.0, end - length))
-    shown = np.linspace(begin, min(begin + length, end), _FRAMES, endpoint=False)
-    return [float(time) for time in shown]
+    return list(map(float, np.linspace(begin, min(begin + length, end), _FRAMES, endpoint=False)))

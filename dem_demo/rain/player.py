@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from contactlaw import edge_distance
 from contactlaw.reporting.limits import label
-from dem_demo.kit.panels import restitution_range
+from dem_demo.kit.drawing import restitution_range
 from dem_demo.kit.run import Run, Runs
 from dem_demo.rain import paths, picture
-from dem_demo.rain.measure import one_for_all
 from dem_demo.rain.scene import Shower
 
 _SAMPLES = 96  # points of the force curve of a contact
@@ -32,7 +31,7 @@ def data(runs: Runs[Shower]) -> Mapping[str, Any]:
     return {
         "data": json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         "sample": f" {shown} of the {every} beads are shown." if shown < every else "",
-        "cor": f"{one_for_all(run):.2f}" if run.impacts.size else "",
+        "cor": f"{run.mean_cor:.2f}" if run.impacts.size else "",
         "turning": f"{picture.TURNING:g}" if run.scene.friction else "",
         "marked": ", and ringed in the animation and in the figures",
     }
@@ -92,7 +91,7 @@ def _hardest(run: Run[Shower], plate: int) -> dict[str, object] | None:
         "displacement": _rounded(contact.plate_displacement),
         "spread": spread,
         "model": float(row["restitution"]),
-        "constant": one_for_all(run),
+        "constant": run.mean_cor,
     }
 
 

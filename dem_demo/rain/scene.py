@@ -130,11 +130,16 @@ def rain(
     from contactlaw import material
 
     check(Shower, beads=beads, seed=seed, duration=duration, positive={}, not_negative={"friction": (friction, "1")})
-    _check_range("radius", radius, "m", positive=True)
+    for name, (low, high), unit, least in (
+        ("radius", radius, "m", "positive"),
+        ("speed", speed, "m/s", "not negative"),
+    ):
+        if not 0.0 <= low <= high < math.inf or (low == 0.0 and least == "positive"):
+            reason = f"needs MIN,MAX [{unit}], {least}, finite and ascending, got {low!r},{high!r}"
+            raise ArgumentError(name, None, reason)
     if radius[1] > _LARGEST:
         reason = f"{radius[1]:g} m is above {_LARGEST} m; with units: 1mm,2mm"
         raise ArgumentError("radius", None, reason)
-    _check_range("speed", speed, "m/s", positive=False)
     for thickness in plates:
         if not thickness > 0.0:
             raise ArgumentError("plates", thickness, "thickness must be positive [m], or inf")
@@ -170,14 +175,6 @@ def rain(
         duration=duration,
         seed=seed,
     )
-
-
-def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive: bool) -> None:
-    low, high = limits
-    if not ((0.0 < low if positive else 0.0 <= low) and low <= high < math.inf):
-        least = "positive" if positive else "not negative"
-        reason = f"needs MIN,MAX [{unit}], {least}, finite and ascending, got {low!r},{high!r}"
-        raise ArgumentError(name, None, reason)
 
 
 def _check_crowd(n: int, plates: int, radius: float, speed: float, period: float) -> None:

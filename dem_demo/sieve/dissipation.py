@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from contactlaw import style
 from contactlaw.reporting.charts import density_bar, density_scale, sheet
 from contactlaw.reporting.surface import EnergyMap, energy_map
-from dem_demo.kit.panels import MM, panels, source
+from dem_demo.kit.drawing import MM, panels, source
 from dem_demo.kit.run import Run, Runs
 from dem_demo.sieve.scene import Sieve
 

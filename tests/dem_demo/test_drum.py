@@ -83,9 +83,9 @@ def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
 
 def test_the_default_of_the_constant_is_the_law_on_a_thick_block():
     scene = scenes.drum()
-    plan = comparison.plan(scene, "hertz")
-    thick = plan.law.restitution(0.5, scene.radius.mean(), np.inf)
-    assert plan.constant_cor == pytest.approx(float(thick), abs=5e-4)
+    law, constant = comparison.plan(scene, "", "hertz")
+    thick = law.model.restitution(0.5, scene.radius.mean(), np.inf)
+    assert constant.making.constant_cor == pytest.approx(float(thick), abs=5e-4)
 
 
 def test_beads_are_in_the_drum_and_do_not_overlap():

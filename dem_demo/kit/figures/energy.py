@@ -9,7 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.kit.panels import panels, source
+from dem_demo.kit.drawing import panels, source
 from dem_demo.kit.run import B, Runs
 
 _PARTS = (

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
-from dem_demo.kit.panels import source
+from dem_demo.kit.drawing import source
 from dem_demo.kit.run import B, Runs
 
 _SHOWN = 6000  # most points that are drawn of each kind

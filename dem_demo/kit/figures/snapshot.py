@@ -8,8 +8,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.kit.drawing import drawings, height
-from dem_demo.kit.panels import MM, source
+from dem_demo.kit.drawing import MM, drawings, height, source
 from dem_demo.kit.run import B, Runs
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw.reporting.charts import wall_axis
 from contactlaw.reporting.limits import label
-from dem_demo.kit.panels import source
+from dem_demo.kit.drawing import source
 from dem_demo.kit.run import Runs
 from dem_demo.kit.scene import Floats
 from dem_demo.rain.scene import Shower

@@ -16,7 +16,6 @@ from contactlaw import style
 from dem_demo.kit.run import Runs
 from dem_demo.kit.scene import Floats
 from dem_demo.rain.figures import _columns
-from dem_demo.rain.measure import one_for_all
 from dem_demo.rain.scene import Shower
 
 _HALO = withStroke(linewidth=3.0, foreground="white")
@@ -24,7 +23,7 @@ _HALO = withStroke(linewidth=3.0, foreground="white")
 
 def draw(runs: Runs[Shower]) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
-    rows, cor = runs[0].impacts, one_for_all(runs[0])
+    rows, cor = runs[0].impacts, runs[0].mean_cor
     # a share of the impact's energy, not of the rebound's: a COR may be nearly 0
     error = 100.0 * (cor**2 - rows["restitution"] ** 2)
     points = "bar: median, points: the mean of all impacts against the model for the same impacts"

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from contactlaw import style
 from contactlaw.reporting.limits import label
-from dem_demo.kit.panels import source
+from dem_demo.kit.drawing import source
 from dem_demo.kit.run import Run, Runs
 from dem_demo.rain.figures._columns import ring, ringed
 from dem_demo.rain.scene import Shower
