@@ -101,8 +101,8 @@ class Shower(Scene):
         rows = run.record.impacts[run.record.impacts["other"] >= 0]
         found = [("impacts of bead on bead", f"{rows.size}")]
         if rows.size:
-            speed, cor = rows["approach_speed"].mean(), rows["restitution"]
-            found += [("  mean approach speed", f"{speed:.2f} m/s"), ("  COR", f"{cor.min():.3f} - {cor.max():.3f}")]
+            found += [("mean speed of these", f"{rows['approach_speed'].mean():.2f} m/s")]
+            found += [("COR of these", f"{rows['restitution'].min():.3f} - {rows['restitution'].max():.3f}")]
         return found
 
 
