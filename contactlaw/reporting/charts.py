@@ -14,7 +14,7 @@ from contactlaw import style
 from contactlaw._arrays import Array
 
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
-PARTS = KEPT, *_ = (
+PARTS = (
     ("kept by the bead", style.PALE),
     ("bending wave in the plate", style.BLUE),
     ("plastic flow at the contact", style.ORANGE),
@@ -23,42 +23,6 @@ PARTS = KEPT, *_ = (
 )
 _DARK = style.BLUE, style.MUTED, style.GREEN
 _WIDE = 6.0  # [%], the width of a number with room around it
-_ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
-_READABLE = {
-    style.BLUE: style.BLUE,
-    style.ORANGE: "#9A6700",
-    style.GREEN: "#00694D",
-    style.SKY: "#1F6E9C",
-    style.PALE: style.INK,
-    style.MUTED: style.INK,
-}
-
-
-def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]]) -> None:
-    """Stack the shares with their numbers; those of small ones are beside."""
-    bottom = beside = 0.0
-    for (name, colour), share in parts:
-        height = 100.0 * share
-        if height < 0.05:
-            continue
-        axes.bar(x, height, width, bottom, color=colour, label=name, edgecolor="white")
-        middle = bottom + 0.5 * height
-        text = f"{height:.0f}" if height >= 9.5 else f"{height:.1f}"
-        if height >= _ROOM:
-            ink = "white" if colour in _DARK else style.INK
-            axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
-        else:
-            beside = max(middle, beside + _ROOM)
-            axes.text(
-                x + 0.5 * width,
-                beside,
-                f" {text}",
-                va="center",
-                color=_READABLE[colour],
-                fontsize=11,
-                fontweight="bold",
-            )
-        bottom += height
 
 
 def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> None:
