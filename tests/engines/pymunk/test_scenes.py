@@ -436,21 +436,6 @@ def test_a_bead_on_a_seam_hits_once_and_rebounds_as_from_one_plate(at, turn, rad
         assert two == pytest.approx(one, abs=1e-9)
 
 
-def test_a_bead_that_rolls_over_seams_is_not_lost():
-    """One plate has the contact at a time: contacts with seams would brake or lift the bead."""
-    space = make_space()
-    circle = make_bead(space, (-0.015, 0.999 * R), (0.2, 0))
-    places = [-0.02 + 0.004 * n for n in range(10)]
-    plates = [make_plate(space, (x, 0), (x + 0.004, 0)) for x in places]
-    impacts = room.registered(space, Stub(0.4), [circle], plates)
-    for _ in range(1500):
-        space.step(DT)
-        assert circle.body.position.y > 0.9 * R
-    assert circle.body.position.x == pytest.approx(-0.015 + 0.2 * 0.15, abs=1e-9)
-    assert circle.body.velocity.x == pytest.approx(0.2, abs=1e-9)
-    assert len(impacts.collisions()) == 0
-
-
 def test_a_corner_between_two_plates_is_still_hit_on_both_sides():
     space = make_space(0.0)
     circle = make_bead(space, (1.01 * R, 1.01 * R), (-2, -2))
