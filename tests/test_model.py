@@ -18,17 +18,6 @@ from contactlaw.physical.bodies import TwoSpheres
 from contactlaw.physical.law import law_of
 
 R, H = 0.9e-3, 1e-3
-FIELDS = (
-    "contact_time",
-    "peak_force",
-    "peak_compression",
-    "residual_compression",
-    "plastic_fraction",
-    "wave_fraction",
-    "other_fraction",
-    "inelasticity",
-    "overload",
-)
 NOT_POSITIVE = [-1.0, 0.0, math.nan, -math.inf, "5", "five", None, True, 1j, [1.0, -1.0]]
 NOT_POSITIVE += [np.ma.masked_array([5.0, 6.0], mask=[0, 1])]
 
@@ -57,7 +46,7 @@ def test_shapes(model):
     assert model.restitution(np.float32([5.0]), R, H).dtype == np.float64
     assert model.restitution(np.empty(0), R, H).shape == (0,)
     hit = model.lookup([[5.0], [6.0]], R, H)
-    assert {np.shape(getattr(hit, name)) for name in (*FIELDS, "restitution", "flags")} == {(2, 1)}
+    assert {np.shape(values) for values in vars(hit).values()} == {(2, 1)}
     assert isinstance(model.lookup(5.0, R, H).flags, cl.Validity)
 
 
