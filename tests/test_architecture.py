@@ -95,7 +95,7 @@ BUDGETS = {
     "contactlaw templates": 1_098,  # sources of other languages, and pages
     "dem_demo": 4_469,
     "validation": 14_062,  # finite elements are 5,529 of them
-    "tests": 23_472,  # 22,000 was asked; a fact is held at the level nearest to the user
+    "tests": 23_443,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

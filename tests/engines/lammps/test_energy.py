@@ -63,23 +63,6 @@ def test_and_in_a_field_of_gravity(name):
     assert np.array(energies) == pytest.approx(0.5 * np.dot(velocity, velocity) + gravity * place[2], rel=error)
 
 
-@pytest.mark.parametrize("thickness", [math.inf, 1e-3])  # parted in the last step, or not quite
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_a_run_in_pieces_gives_the_last_push_once(friction, thickness):
-    """The set-up of a run computes the last forces again, also of a bead that has left."""
-    ends = []
-    dt = float(MYC.solve(5.0, R, thickness).contact_time) / 40
-    for pieces in (1, 120):
-        options = {"friction": friction, "dt": dt}
-        lmp, walls = scene(MYC, [flat(thickness)], above(3.3 * dt * 5), (3, 0, -5), **options)
-        for _ in range(pieces):
-            lmp.command(f"run {120 // pieces}")
-        own = state(lmp)
-        ends.append((*own["x"][0], *own["v"][0], walls.collisions()["restitution"][0]))
-        assert not own["d2_contactlaw"][0, PLATE:].any()
-    assert ends[0] == ends[1]
-
-
 def changed(model, thickness, speed, steps, after, command):
     """COR of a bead when a command is given after some steps of the contact, and what it should be.
 
