@@ -39,99 +39,33 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": [
-        "force",
-        "outcome",
-        "tangential",
-        "corrections",
-        "edge",
-        "recall",
-        "numbers",
-        "plate",
-        "legs",
-        "losses",
-        "motion",
-        "integrator",
-        "zener",
-        "few_steps",
-    ],
-    "table": [
-        "lookup",
-        "axes",
-        "grid",
-        "splines",
-        "shapes",
-        "sweep",
-        "certificate",
-        "nodes",
-        "slides",
-        "file",
-        "cache",
-    ],
-    "answers": [
-        "few",
-        "backend",
-        "solver",
-        "tabulated",
-        "edges",
-        "beads",
-        "compiled",
-        "constant",
-        "histories",
-        "loads",
-        "oblique",
-        "varied",
-        "sensitivity",
-        "speed_table",
-        "law_errors",
-        "uncertainty",
-        "inverse",
-    ],
-    "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface", "rest"],
-    "stepping": ["edge", "spring", "energy", "friction", "plate_rows", "contact", "bead"],
-    "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes", "fit"],
-    "emit": ["types", "languages", "program", "function"],
-    "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
-    "record": ["columns", "hdf5", "file"],
-    "reporting": ["limits", "gallery", "page", "surface", "meshes", "run", "summary", "charts", "figures", "files"],
-    "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
-    "engines/pymunk": [
-        "handlers",
-        "models",
-        "record",
-        "registry",
-        "seams",
-        "edges",
-        "lookahead",
-        "contacts",
-        "impacts",
-        "attachment",
-    ],
-    "cli/parts": ["wording", "columns", "impacts", "options", "plots", "own", "chosen", "layout", "figure"],
-    "cli/constant": ["records", "walls", "lines"],
-    "cli/cor": ["bands", "inverse"],
-    "cli/fit": ["measured", "printed", "figure"],
-    "physical": [
-        "arguments",
-        "kind",
-        "hardness",
-        "flow",
-        "materials",
-        "pair",
-        "rate",
-        "responses",
-        "law",
-        "strengths",
-        "scaling",
-        "measured",
-        "validity",
-        "history",
-        "impacts",
-        "bodies",
-        "rebound",
-        "oblique",
-    ],
+    "equation": (
+        "force outcome tangential corrections edge recall numbers plate legs losses motion integrator zener few_steps"
+    ),
+    "table": "lookup axes grid splines shapes sweep certificate nodes slides file cache",
+    "answers": (
+        "few backend solver tabulated edges beads compiled constant histories loads oblique varied "
+        "sensitivity speed_table law_errors uncertainty inverse"
+    ),
+    "walls": "memory edges motion plate mesh grid frame facet surface rest",
+    "stepping": "edge spring energy friction plate_rows contact bead",
+    "fitting": "measurements unknowns predictions errors identify search notes fit",
+    "emit": "types languages program function",
+    "export": "functions page_functions c_header liggghts_wall web_page",
+    "record": "columns hdf5 file",
+    "reporting": "limits gallery page surface meshes run summary charts figures files",
+    "engines/lammps": "beads commands memory errors callback attachment",
+    "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
+    "cli/parts": "wording columns impacts options plots own chosen layout figure",
+    "cli/constant": "records walls lines",
+    "cli/cor": "bands inverse",
+    "cli/fit": "measured printed figure",
+    "physical": (
+        "arguments kind hardness flow materials pair rate responses law strengths scaling measured validity "
+        "history impacts bodies rebound oblique"
+    ),
 }
+FILES = {folder: names.split() for folder, names in FILES.items()}
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),
     *(ROOT / f"table/{name}.py" for name in ("lookup", "shapes", "splines", "axes", "grid")),
@@ -161,7 +95,7 @@ BUDGETS = {
     "contactlaw templates": 1_098,  # sources of other languages, and pages
     "dem_demo": 3_200,
     "validation": 14_062,  # finite elements are 5,529 of them
-    "tests": 24_074,  # 22,000 was asked; a fact is held at the level nearest to the user
+    "tests": 23_425,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
