@@ -1,7 +1,5 @@
 """The error about an argument: every layer raises it, and whoever took the argument can name it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

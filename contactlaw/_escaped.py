@@ -1,7 +1,5 @@
 """Texts of users in files of other programs, a function for each format; of HTML `html.escape`."""
 
-from __future__ import annotations
-
 import re
 
 

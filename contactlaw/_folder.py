@@ -5,8 +5,6 @@ The folder is that of the platform (``~/.cache/contactlaw`` on Linux). The envir
 Files may be deleted at any time.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import os

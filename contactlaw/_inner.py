@@ -3,8 +3,6 @@
 With what numba offers to all, first processes would take half as long again.
 """
 
-from __future__ import annotations
-
 import gc
 from typing import Any
 

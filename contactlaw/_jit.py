@@ -1,7 +1,5 @@
 """The one place where numba's options are set."""
 
-from __future__ import annotations
-
 import functools
 import time
 from collections.abc import Callable
@@ -12,8 +10,8 @@ import numba.core.config
 import numpy as np
 from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._inner import Inner, InnerCompiler
 from contactlaw._kept import keep
 
@@ -158,7 +156,7 @@ def at_first_as_python(function: _F, seconds: float) -> _F:
     return called  # type: ignore[return-value]
 
 
-def in_memory(values: NDArray[np.float64]) -> Callable[[], NDArray[np.float64]]:
+def in_memory(values: Array) -> Callable[[], Array]:
     """Make a kernel that returns this array by its address, for kernels that read only this array.
 
     An array that a kernel holds as a constant has another type in numba, for which everything that
@@ -181,8 +179,8 @@ def in_memory(values: NDArray[np.float64]) -> Callable[[], NDArray[np.float64]]:
     size = values.size
 
     @kernel(inline=True)
-    def array() -> NDArray[np.float64]:
-        found: NDArray[np.float64] = carray(pointer(), (size,))  # type: ignore[call-arg]
+    def array() -> Array:
+        found: Array = carray(pointer(), (size,))  # type: ignore[call-arg]
         return found
 
     return array

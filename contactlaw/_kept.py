@@ -5,8 +5,6 @@ the CPU: numba itself notices an edit only in a function's own file, and would k
 functions that it calls in other files. Laws are data, so no kernel takes a function from outside.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import io

@@ -3,8 +3,6 @@
 Everything that is printed for people uses these; files for programs have every digit.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 
@@ -113,7 +111,7 @@ def with_error(value: float, error: float, unit: str) -> str:
     return f"{_at(value, last)} +- {_at(error, last)} {name}"
 
 
-def percent(share: float, digits: int = 2) -> str:
+def percent(share: float) -> str:
     """Write a share in percent; shares of ten and more as a multiple.
 
     Examples
@@ -124,8 +122,8 @@ def percent(share: float, digits: int = 2) -> str:
     if share and abs(share) < 1e-4:
         return "below 0.01 %"
     if abs(share) >= 10.0:
-        return f"{rounded(share, digits)} times"
-    return f"{rounded(100.0 * share, digits) if share else 0} %"
+        return f"{rounded(share)} times"
+    return f"{rounded(100.0 * share) if share else 0} %"
 
 
 def relative(error: float, form: str = ".1%") -> str:

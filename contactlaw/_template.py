@@ -1,7 +1,5 @@
 """Templates of pages, filled by jinja2, which escapes all that is no HTML already."""
 
-from __future__ import annotations
-
 from importlib import resources
 
 import jinja2

@@ -15,12 +15,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import checked, shaped
-
-Array = NDArray[np.float64]
 
 _CRITICAL = 2.0  # -ln e at zeta = 1
 

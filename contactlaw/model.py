@@ -11,8 +11,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
@@ -154,7 +155,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-    ) -> float | NDArray[np.float64]:
+    ) -> float | Array:
         """Coefficient of restitution, from the table.
 
         Parameters
@@ -317,9 +318,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         """
         return self._beads(other).rebounds(speed, radius, other_radius)
 
-    def yield_speed(
-        self, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None
-    ) -> float | NDArray[np.float64]:
+    def yield_speed(self, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None) -> float | Array:
         """Speed V_Y [m/s] from which bead or plate yields, whichever is first; ``inf`` for neither.
 
         The thinner the plate, the more it gives way and the later the bead yields (Peng et al.

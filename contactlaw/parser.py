@@ -1,7 +1,5 @@
 """The parser of a command line, of ``contactlaw`` and of ``dem-demo``; no slow imports."""
 
-from __future__ import annotations
-
 import argparse
 import difflib
 import itertools

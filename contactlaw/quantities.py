@@ -4,8 +4,6 @@ A library of units such as pint would be one more dependency for two dozen units
 ranges would still have to be read here.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from decimal import Decimal, DecimalException

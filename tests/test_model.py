@@ -1,6 +1,5 @@
 """ImpactModel: SI in, SI out, from the table and from the solver."""
 
-import ctypes
 import dataclasses
 import math
 import pickle
@@ -10,8 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import contactlaw as cl
 from contactlaw import laws, table
@@ -21,17 +18,6 @@ from contactlaw.physical.bodies import TwoSpheres
 from contactlaw.physical.law import law_of
 
 R, H = 0.9e-3, 1e-3
-FIELDS = (
-    "contact_time",
-    "peak_force",
-    "peak_compression",
-    "residual_compression",
-    "plastic_fraction",
-    "wave_fraction",
-    "other_fraction",
-    "inelasticity",
-    "overload",
-)
 NOT_POSITIVE = [-1.0, 0.0, math.nan, -math.inf, "5", "five", None, True, 1j, [1.0, -1.0]]
 NOT_POSITIVE += [np.ma.masked_array([5.0, 6.0], mask=[0, 1])]
 
@@ -43,22 +29,6 @@ def small_table():
     )
 
 
-def test_lookup_agrees_with_solve(model):
-    rng = np.random.default_rng(11)
-    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.05), np.log(100), 2000))
-    radius = rng.uniform(0.1e-3, 5e-3, 2000)
-    thickness = radius / rng.uniform(0.0, 4.0, 2000)
-    looked, solved = (f(speed, radius, thickness) for f in (model.lookup, model.solve))
-    np.testing.assert_allclose(looked.restitution, solved.restitution, rtol=0, atol=1e-6)
-    for name in FIELDS:
-        ours, exact = getattr(looked, name), getattr(solved, name)
-        np.testing.assert_allclose(ours, exact, rtol=1e-5, atol=1e-300, err_msg=name)
-    np.testing.assert_array_equal(looked.flags, solved.flags)
-    # the batch's logarithms and roots are good to 2e-11
-    fast = model.restitution(speed, radius, thickness)
-    np.testing.assert_allclose(fast, looked.restitution, rtol=0, atol=2e-11)
-
-
 def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     radius, thickness = np.array([0.5e-3, 0.9e-3, 2e-3]), np.array([0.5e-3, 0.5e-3, 5e-3])
     hit = model.solve(model.yield_speed(radius, thickness), radius, thickness)
@@ -66,18 +36,6 @@ def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     # the table's w_m is good to 3e-11
     assert hit.peak_compression == pytest.approx(0.68 * strain**2 * radius, rel=1e-9)
     assert hit.overload == pytest.approx(1.0, rel=1e-9)
-
-
-@settings(deadline=None, max_examples=200)
-@given(speed=st.floats(1e-6, 500), radius=st.floats(1e-5, 1e-2), ratio=st.floats(0, 5))
-def test_energy_is_shared_out(speed, radius, ratio):
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    thickness = radius / ratio if ratio > 1e-6 else math.inf
-    hit = model.lookup(speed, radius, thickness)
-    assert 0.0 < hit.restitution <= 1.0 + 1e-6
-    # the fields are interpolated one by one, so they add up to the table's 1e-5
-    total = hit.restitution**2 + hit.plastic_fraction + hit.wave_fraction
-    assert total == pytest.approx(1.0, abs=1e-5)
 
 
 def test_shapes(model):
@@ -88,7 +46,7 @@ def test_shapes(model):
     assert model.restitution(np.float32([5.0]), R, H).dtype == np.float64
     assert model.restitution(np.empty(0), R, H).shape == (0,)
     hit = model.lookup([[5.0], [6.0]], R, H)
-    assert {np.shape(getattr(hit, name)) for name in (*FIELDS, "restitution", "flags")} == {(2, 1)}
+    assert {np.shape(values) for values in vars(hit).values()} == {(2, 1)}
     assert isinstance(model.lookup(5.0, R, H).flags, cl.Validity)
 
 
@@ -253,18 +211,12 @@ def test_solve_refuses_a_tolerance_out_of_range(model, rtol):
         model.solve(5.0, R, H, rtol=rtol)
 
 
-def test_curve_is_restitution(model):
-    curve = model.curve(R, H)
-    for speed in (0.1, 5.0, 7.8, 30.0, 70.0):
-        assert curve(speed) == pytest.approx(model.restitution(speed, R, H), abs=2e-11)
-    with pytest.raises(ValueError, match="radius"):
-        model.curve(-1.0, H)
-
-
 @pytest.mark.parametrize("bad", [[5.0, 6.0], [], np.array([5.0])], ids=repr)
 def test_a_curve_is_for_one_number(model, bad):
     with pytest.raises(ValueError, match="speed: got .*expected one number"):
         model.curve(R, H)(bad)
+    with pytest.raises(ValueError, match="radius: got -1.0"):
+        model.curve(-1.0, H)
     with pytest.raises(ValueError, match="radius: got .*expected one number"):
         model.curve(bad, H)
     with pytest.raises(ValueError, match="other_radius: got .*expected one number"):
@@ -282,12 +234,6 @@ def test_what_was_given_cannot_be_changed(model):
     for name in ("pair", "law", "outside"):
         with pytest.raises(AttributeError):
             setattr(model, name, getattr(model, name))
-
-
-def test_a_model_travels_to_another_process(model):
-    twin = pickle.loads(pickle.dumps(model))
-    assert (twin.pair, twin.law, twin.outside) == (model.pair, model.law, model.outside)
-    assert twin.restitution(5.0, R, H) == model.restitution(5.0, R, H)
 
 
 def test_a_callers_disk_cache_keeps_no_table(tmp_path):
@@ -364,23 +310,6 @@ def test_sphere_on_sphere_is_symmetric():
         cl.restitution_sphere_sphere("glass", "glass", 5.0, R, R, law="myc")
     with pytest.raises(ValueError, match="other_radius: got"):
         cl.restitution_sphere_sphere("gamma-alumina", "glass", 5.0, R, -R)
-
-
-def test_kernel_is_restitution(model):
-    cor = model.kernel
-    for speed, thickness in ((0.1, 0.6e-3), (8.0, H), (60.0, math.inf)):
-        expected = model.restitution(speed, R, thickness)
-        assert cor(speed, R, thickness) == pytest.approx(expected, abs=1e-15)
-    for bad in ((-1.0, R, H), (math.nan, R, H), (5.0, 0.0, H), (5.0, R, -H), (1e4, R, H)):
-        assert math.isnan(cor(*bad))  # what it is documented to give where it cannot raise
-
-
-def test_address_through_ctypes(model):
-    double = ctypes.c_double
-    f = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
-    for speed in (0.1, 8.0, 60.0):
-        assert f(speed, R, H) == model.kernel(speed, R, H)
-    assert math.isnan(f(-1.0, R, H))
 
 
 def test_batches_of_every_length(model):

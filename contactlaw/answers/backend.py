@@ -4,21 +4,17 @@
 integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.rebound import Rebound
-
-Array = NDArray[np.float64]
 
 
 class Backend(Protocol):
@@ -111,7 +107,7 @@ def _above(value: float, limit: float) -> str:
     return " is above ".join(next(pair for pair in pairs if pair[0] != pair[1]))
 
 
-def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -> NoReturn:
+def refuse_to_yield(impacts: Impacts, beyond: Mask, limit: float) -> NoReturn:
     """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
     n = int(np.argmax(beyond))
     heavy = "" if impacts.mass is None else f" and mass={impacts.mass[n]:g} kg"
@@ -121,7 +117,7 @@ def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -
 
 
 @contextmanager
-def renumbered(some: NDArray[np.intp], mass: NDArray[np.float64] | None = None) -> Iterator[None]:
+def renumbered(some: Places, mass: Array | None = None) -> Iterator[None]:
     """Make errors about one of some impacts name it by its number among all, and the mass given."""
     try:
         yield

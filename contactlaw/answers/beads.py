@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._jit import enable_caching
 from contactlaw.answers.solver import RTOL, solved_within
 from contactlaw.answers.tabulated import Border, TableLookup, extent
@@ -22,7 +23,6 @@ from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import reduced
 from contactlaw.table import Table
 
-Array = NDArray[np.float64]
 Other = Material | str | None  # material of the other bead; None: that of the first
 
 

@@ -1,17 +1,14 @@
 """The COR of a model as fast functions: for Python, for loops of numba, for C."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numba
-import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _jit
+from contactlaw._arrays import Array
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers import edges
 from contactlaw.answers.beads import Beads, Other
@@ -161,7 +158,7 @@ class Compiled:
         return int(self._c_function.address)
 
 
-def _jitted(table: NDArray[np.float64], bodies: SphereOnPlate) -> Callable[..., float]:
+def _jitted(table: Array, bodies: SphereOnPlate) -> Callable[..., float]:
     """COR as a jitted function of speed, radius, thickness and mass, which belongs to one table."""
     on_plate, packed, density = lookup.restitution_on_plate, in_memory(table), bodies.constants.mass
 

@@ -1,17 +1,14 @@
 """One COR for a wall, from the impacts that happen there, and what it gets wrong."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.validity import Validity, count_flags
 
-Array = NDArray[np.float64]
 Keep = Literal["energy", "momentum"]
 
 _BEADS = 0.95  # share of the impacts whose error `rebound_error` bounds; our choice
@@ -65,7 +62,7 @@ class Constant:
     flags: dict[Validity, int]
 
 
-def constant(speed: Array, radius: Array, weights: Array, e: Array, flags: NDArray[np.int64], keep: Keep) -> Constant:
+def constant(speed: Array, radius: Array, weights: Array, e: Array, flags: Integers, keep: Keep) -> Constant:
     """Find the COR that replaces those of many impacts, see `contactlaw.ImpactModel.constant`.
 
     `e` and `flags` are the COR and the flags of each impact.

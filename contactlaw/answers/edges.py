@@ -1,15 +1,13 @@
 """Answers near the edges of plates: these impacts are integrated, all others left as they are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.solver import Solver
@@ -24,9 +22,6 @@ from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path, wave_rate
 from contactlaw.table import lookup
-
-Array = NDArray[np.float64]
-Some = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +98,9 @@ def _cor_near(
     return restitution_near(own, response, known.inelasticity, y, min(thin, 1.0), rate)
 
 
-def _each(both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]) -> list[tuple[Some, Any]]:
+def _each(
+    both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Places], Any]
+) -> list[tuple[Places, Any]]:
     """Answers of the impacts without an edge, and of those with one."""
     assert impacts.edge_distance is not None
     near, found = impacts.edge_distance < math.inf, []
@@ -116,7 +113,7 @@ def _each(both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts,
     return found
 
 
-def _merged(parts: Iterable[tuple[Some, Rebound]], impacts: Impacts) -> Rebound:
+def _merged(parts: Iterable[tuple[Places, Rebound]], impacts: Impacts) -> Rebound:
     """Put answers of some of the impacts together."""
     columns: dict[str, Any] = {}
     for some, found in parts:
@@ -128,7 +125,7 @@ def _merged(parts: Iterable[tuple[Some, Rebound]], impacts: Impacts) -> Rebound:
     return Rebound(**named, flags=flags)
 
 
-def _merged_histories(parts: Sequence[tuple[Some, ForceHistory]], impacts: Impacts) -> ForceHistory:
+def _merged_histories(parts: Sequence[tuple[Places, ForceHistory]], impacts: Impacts) -> ForceHistory:
     """Put histories of some of the impacts together."""
     samples, flags = parts[0][1].time.shape[-1], np.empty(impacts.speed.size, dtype=np.int64)
     columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))

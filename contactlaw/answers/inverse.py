@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import scale_of
 from contactlaw.answers.backend import Backend, OutsideTableError
@@ -21,8 +22,6 @@ from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
-
-Array = NDArray[np.float64]
 
 _SAMPLES = 1500  # values between which a COR is searched, 2 % apart or less
 _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the same to six digits
@@ -59,7 +58,7 @@ class Solutions:
     value: Array
     low: Array
     high: Array
-    flags: NDArray[np.int64]
+    flags: Integers
     attainable: tuple[float, float]
     attained_at: tuple[float, float]
     band: Band | None

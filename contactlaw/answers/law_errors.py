@@ -1,16 +1,12 @@
 """Errors of each law beside finite elements that no fit has seen."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Mask
 from contactlaw.laws import Law
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity
-
-Array = NDArray[np.float64]
 
 # Relative rms errors of COR, contact time and peak force, of 160 everyday impacts: of those inside
 # the limits, and of those that are `doubtful`. Errors of a COR below 0.3 are relative to 0.3.
@@ -34,7 +30,7 @@ _LEAST_COR = 0.3
 _THIN = 1.4  # R/H from which on relative errors are larger, even where absolute ones of COR are not
 
 
-def doubtful(hit: Rebound, slenderness: Array) -> NDArray[np.bool_]:
+def doubtful(hit: Rebound, slenderness: Array) -> Mask:
     """Which rebounds have a flag of accuracy or a plate so thin that errors are larger, by R/H."""
     flagged = (np.asarray(hit.flags) & Validity.ACCURACY) != 0
     return np.asarray(flagged | (slenderness > _THIN))

@@ -6,8 +6,9 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.physical.arguments import broadcast, check, number
@@ -15,7 +16,6 @@ from contactlaw.physical.arguments import broadcast, check, number
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
 
-Array = NDArray[np.float64]
 
 _SAMPLES = 65  # samples of one contact, with cubics between them
 _CHUNK = 4096  # contacts at a time, so that their histories need no more than 10 MB

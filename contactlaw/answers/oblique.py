@@ -9,8 +9,9 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend, renumbered
@@ -26,7 +27,6 @@ from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.table import lookup
 
-Array = NDArray[np.float64]
 Collide = Callable[..., tuple[Vector, Vector]]
 
 

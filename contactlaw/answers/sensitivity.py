@@ -8,21 +8,17 @@ units of length, time and mass, so three of the eight elasticities follow from t
 but for bodies with a rate of strain, hardening or losses, whose other constants have units, too.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.strengths import USUAL
-
-Array = NDArray[np.float64]
 
 # Step of central differences of ln e. They err by 2e-9 times the third derivative, which is up to
 # 3e4 next to a corner, and by 2e-9 from the solver, whose errors are alike at the two ends.

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError, refuse_to_yield, renumbered, too_fast, too_thin
 from contactlaw.equation import edge, force, outcome, zener
@@ -22,55 +22,12 @@ from contactlaw.physical.scaling import edges_of, numbers_of, yield_share
 from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user gave
-
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
 _CLOSE = 512  # samples between which the path of a sphere is a cubic
 _CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
-
-
-@dataclass(frozen=True, eq=False)
-class Integrated:
-    """Impacts that have been integrated."""
-
-    bodies: SphereOnPlate
-    impacts: Impacts
-    units: Numbers
-    outcome: Outcome
-    edges: Edges | None
-
-    def rebound(self) -> Rebound:
-        """Everything about the impacts."""
-        units, flags = self.units, np.zeros(self.impacts.speed.size, dtype=np.int64)
-        return rebound(
-            self.bodies,
-            self.impacts,
-            units.time,
-            (units.inelasticity, units.yield_ratio),
-            self.outcome,
-            flags,
-            self.edges,
-        )
-
-
-def integrate(
-    bodies: SphereOnPlate, impacts: Impacts, rtol: float = RTOL, extent: Settings | None = None, few: bool = False
-) -> Integrated:
-    """Integrate impacts."""
-    impact = bodies.impact(impacts)
-    units = bodies.numbers(impact)
-    refuse_rates(bodies, impacts, units)
-    edges = None
-    if impacts.edge_distance is not None and impacts.hole_radius is not None:
-        near = impacts.edge, impacts.edge_distance, impacts.hole_radius
-        edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
-    with renumbered(np.arange(impacts.speed.size), impacts.mass):
-        found = solved_within(bodies.data, units, rtol, extent, few, edges)
-    return Integrated(bodies, impacts, units, found, edges)
 
 
 def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> None:
@@ -100,23 +57,33 @@ class Solver:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        return self._integrated(impacts).rebound()
+        return self._integrated(impacts)[0]
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        found = self._integrated(impacts)
-        return found.rebound(), slid(self.bodies, found.outcome, psi, found.edges)
+        hit, found, _, edges = self._integrated(impacts)
+        return hit, slid(self.bodies, found, psi, edges)
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        found = self._integrated(impacts)
-        outcome, flags = found.outcome, found.rebound().flags
-        contacts, path = histories_and_path(self.bodies.data, outcome, samples, found.edges)
-        return with_units(contacts, found.units, outcome.inelasticity, impacts.shape, flags, path)
+        hit, found, units, edges = self._integrated(impacts)
+        contacts, path = histories_and_path(self.bodies.data, found, samples, edges)
+        return with_units(contacts, units, found.inelasticity, impacts.shape, hit.flags, path)
 
-    def _integrated(self, impacts: Impacts) -> Integrated:
-        few = impacts.edge_distance is not None and impacts.speed.size <= _FEW
-        return integrate(self.bodies, impacts, self.rtol, self.extent, few)
+    def _integrated(self, impacts: Impacts) -> tuple[Rebound, Outcome, Numbers, Edges | None]:
+        """Everything about impacts, and on Hertz's scale; their units, and edges near them."""
+        bodies, count, edges = self.bodies, impacts.speed.size, None
+        impact = bodies.impact(impacts)
+        units = bodies.numbers(impact)
+        refuse_rates(bodies, impacts, units)
+        if impacts.edge_distance is not None and impacts.hole_radius is not None:
+            near = impacts.edge, impacts.edge_distance, impacts.hole_radius
+            edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
+        few = edges is not None and count <= _FEW
+        with renumbered(np.arange(count), impacts.mass):
+            found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
+        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
+        return rebound(bodies, impacts, units.time, known, found, flags, edges), found, units, edges
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""

@@ -1,19 +1,15 @@
 """COR over speed as a table that engines interpolate: the fewest rows for an error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, within
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, count_flags
-
-Array = NDArray[np.float64]
 
 _CHOICE = 4000  # speeds that may become rows: 0.1 % apart over two decades
 _FINER = 4  # speeds between two neighbouring ones at which the error is measured
@@ -67,7 +63,7 @@ def speed_table(lookup: Callable[[Array], Rebound], error: float, ends: tuple[fl
     raise ArgumentError("error", error, reason)
 
 
-def fewest(x: Array, y: Array, error: float) -> NDArray[np.intp]:
+def fewest(x: Array, y: Array, error: float) -> Places:
     """Fewest points, ends included, between which straight lines miss no point by more than error.
 
     Parameters

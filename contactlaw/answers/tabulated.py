@@ -13,9 +13,9 @@ from dataclasses import replace
 from typing import Literal, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw._arrays import Array, Integers, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, renumbered, too_fast, too_thin
@@ -38,8 +38,6 @@ from contactlaw.table.grid import Settings
 from contactlaw.table.lookup import NO_MASSES
 from contactlaw.table.nodes import Table
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.int64]
 Outside = Literal["raise", "solve", "clamp"]
 TableArgument = Table | Settings | str | os.PathLike[str] | None  # what users may give as a table
 
@@ -57,7 +55,7 @@ class Border:
         self.clamped = 0
         self.lock = threading.Lock()
 
-    def look_up(self, law: Array, table: Array, units: Numbers) -> tuple[Outcome, Flags]:
+    def look_up(self, law: Array, table: Array, units: Numbers) -> tuple[Outcome, Integers]:
         """Look outcomes up, and flag with Validity.CLAMPED those that were taken at the border.
 
         The dimensionless numbers of these are the border's.
@@ -271,10 +269,10 @@ class _LookedUp(NamedTuple):
     """Outcomes of impacts, and what belongs to them."""
 
     outcome: Outcome
-    flags: Flags
+    flags: Integers
     unclamped: tuple[Array, Array]  # inelasticity and yield ratio before clamping
     time: Array  # T_H [s]
-    integrated: NDArray[np.bool_]  # those beyond the table
+    integrated: Mask  # those beyond the table
 
 
 @functools.cache

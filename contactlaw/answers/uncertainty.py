@@ -20,8 +20,9 @@ from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
@@ -32,9 +33,6 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
-
-Array = NDArray[np.float64]
-Some = NDArray[np.intp]
 
 _FIELDS = "restitution", "contact_time", "peak_force", "overload"
 _SIZES = "speed", "radius", "thickness"
@@ -252,7 +250,7 @@ class _Curves:
             probed = [self.moved((_PROBE, z), some=self.near) for z in _PROBES]
             self.probed = np.array(probed) + self.base[:, self.near]
 
-    def moved(self, *moved: tuple[Change, float], some: Some | None = None) -> Array:
+    def moved(self, *moved: tuple[Change, float], some: Places | None = None) -> Array:
         """Change of the logarithms of some impacts' answers with numbers."""
         if some is None:
             return _logs(self.variants.hit(self.impacts, *moved)) - self.base

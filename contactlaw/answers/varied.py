@@ -1,16 +1,12 @@
 """Answers with other inputs, as sensitivities, ranges and fits need them: each is integrated."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw.answers.solver import Solver
 from contactlaw.laws import Law
 from contactlaw.physical.bodies import SphereOnPlate
@@ -21,7 +17,6 @@ from contactlaw.physical.rate import REACH, flow_with_rate, scaled
 from contactlaw.physical.strengths import Fineness, by_strength, without_curves
 from contactlaw.physical.validity import alone
 
-Array = NDArray[np.float64]
 Number = tuple[str, str]  # body, "sphere" or "plate", and field of its Material, or "flow_stress"
 
 # The COR of a pair with a rate of strain is within 1e-6 of that with laws of any strength.

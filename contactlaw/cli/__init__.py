@@ -6,8 +6,6 @@ is for. Only the file of the subcommand that is called is imported, so that help
 that several subcommands share is in `parts`.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import importlib

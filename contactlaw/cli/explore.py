@@ -1,7 +1,5 @@
 """``contactlaw explore``: a page with sliders for a browser."""
 
-from __future__ import annotations
-
 import argparse
 import itertools
 from typing import Any

@@ -1,7 +1,5 @@
 """``contactlaw export``: source files for codes that do not run Python: header, liggghts."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

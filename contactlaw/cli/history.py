@@ -1,7 +1,5 @@
 """``contactlaw history``: force over time of one impact, as CSV or a plot."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """``contactlaw materials``: the catalogue, with the source of each number."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from dataclasses import asdict

@@ -1,12 +1,9 @@
 """``contactlaw report``: a page with figures about recorded impacts."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from typing import Any
 
-from contactlaw import quantities
 from contactlaw.cli.parts import options, wording
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import read_record
@@ -33,12 +30,8 @@ def add(commands: Any) -> None:
         help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; once for each wall, in "
         "the order of their numbers (default: the walls that the record has)",
     )
-    add(
-        "--scale",
-        type=options.reader_of(quantities.value, LENGTH),
-        metavar="LENGTH",
-        help="length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)",
-    )
+    what = "length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)"
+    options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH")
     add("--out", default="report", metavar="FOLDER", help="default: %(default)s")
 
 

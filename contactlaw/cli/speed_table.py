@@ -1,7 +1,5 @@
 """``contactlaw speed-table``: COR over speed in the fewest rows for linear interpolation."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Iterator
@@ -13,7 +11,6 @@ from contactlaw import quantities
 from contactlaw.answers.speed_table import SpeedTable
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import aligned, asked, explained, in_words
-from contactlaw.cli.parts.options import reader_of
 from contactlaw.quantities import SPEED
 
 
@@ -23,22 +20,10 @@ def add(commands: Any) -> None:
     command = options.command(commands, "speed-table", about, _run)
     options.add_pair(command)
     options.add_sizes(command, quantities.value)
-    speed = reader_of(quantities.value, SPEED)
+    for option, which, speed in (("--slowest", "first", 0.1), ("--fastest", "last", 10.0)):
+        what = f"{which} speed [m/s], or with a unit (default: %(default)s)"
+        options.add_quantity(command, option, SPEED, what, default=speed, metavar="V")
     add = command.add_argument
-    add(
-        "--slowest",
-        default=0.1,
-        metavar="V",
-        type=speed,
-        help="first speed [m/s], or with a unit (default: %(default)s)",
-    )
-    add(
-        "--fastest",
-        default=10.0,
-        metavar="V",
-        type=speed,
-        help="last speed [m/s], or with a unit (default: %(default)s)",
-    )
     add(
         "--error",
         default=1e-3,

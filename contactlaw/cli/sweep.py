@@ -1,7 +1,5 @@
 """``contactlaw sweep``: all fields and flags over a grid, as a file."""
 
-from __future__ import annotations
-
 import argparse
 import io
 import os

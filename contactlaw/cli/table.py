@@ -1,7 +1,5 @@
 """``contactlaw table``: lookup tables, to build, describe and check."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import secrets

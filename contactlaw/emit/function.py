@@ -1,7 +1,5 @@
 """One kernel for certain types of its arguments, written in another language."""
 
-from __future__ import annotations
-
 import ast
 import functools
 import inspect

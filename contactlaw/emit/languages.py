@@ -1,7 +1,5 @@
 """How C and JavaScript write what a kernel does."""
 
-from __future__ import annotations
-
 import inspect
 import math
 import re

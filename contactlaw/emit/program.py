@@ -1,7 +1,5 @@
 """A program in another language: the kernels that were asked for, and all that they call."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Collection, Mapping
 from typing import Any

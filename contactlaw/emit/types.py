@@ -1,7 +1,5 @@
 """Types of what kernels compute with, and values: an expression of the other language."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any, NamedTuple
 

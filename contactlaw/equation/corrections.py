@@ -32,17 +32,12 @@ by f = 1 + 0.175 lambda + 0.18 lambda^3 in Phi, and by f^2 in g, with lambda of 
 Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # x_s/sqrt(d_Y/R): beyond it x is constant in eta

@@ -18,17 +18,13 @@ of a complex one, p + i p'.
 Legend: f contact force, beta mobility, z memory, h step, as in `contactlaw.equation.motion`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""

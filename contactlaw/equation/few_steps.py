@@ -10,21 +10,17 @@ Legend, as in `contactlaw.equation.motion`: q root compression, u speed, f force
 s, beta mobility, y yield compression; z memory.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.edge import LONGEST, NO_MEMORY, SIZE
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.recall import recalled, remembered
-
-Array = NDArray[np.float64]
 
 _ERROR = 5e-5  # of q in a step, over its scale
 _FIRST = 0.05  # step, over that in which a free sphere would cover the scale of q

@@ -45,17 +45,13 @@ impact into an array of its own, of `room_for` numbers.
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-
-Array = NDArray[np.float64]
 
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)

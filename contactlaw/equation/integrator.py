@@ -11,21 +11,14 @@ Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q roo
 u speed, t time, s the variable of integration, y yield compression.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import edge, force, legs, losses, motion, plate
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
-
-Array = NDArray[np.float64]
 
 MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at

@@ -8,19 +8,13 @@ Legend: d compression, dr residual compression, dm largest compression, q root c
 sqrt(d - dr).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.force import UnloadingCurve
-
-Array = NDArray[np.float64]
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
 # loading; unloading above, along and below the cap

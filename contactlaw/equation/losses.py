@@ -9,17 +9,11 @@ Legend: q root compression, f contact force, dm largest compression, u0 impact s
 scale; ds = dt/(2 q).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-
-Array = NDArray[np.float64]
 
 
 class Losses(NamedTuple):

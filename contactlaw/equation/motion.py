@@ -18,20 +18,14 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
     q   root compression, sqrt(d - dr)       dr     residual compression, Eq. 17
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import edge, legs, plate
 from contactlaw.equation.edge import Memories
 from contactlaw.equation.legs import Leg
 from contactlaw.equation.plate import PlateMobility
-
-Array = NDArray[np.float64]
 
 
 class ScaledContact(NamedTuple):

@@ -14,19 +14,13 @@ Moduli of bodies with losses grow with the frequency of the impact (`ModulusGrow
 contact stiffer, too: E* grows by g, and r by g^(2/5).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, eta_of, is_thin, with_corrections
 from contactlaw.equation.force import growth_at
-
-Array = NDArray[np.float64]
 
 
 class ModulusGrowth(NamedTuple):

@@ -5,14 +5,11 @@ initial kinetic energy. Kernels take these NamedTuples of arrays, one entry per 
 them by name.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlaw._arrays import Array
 
 
 class Outcome(NamedTuple):

@@ -6,8 +6,6 @@ by the memory of what a near edge sends back, see `contactlaw.equation.edge`.
 Legend: f contact force, beta mobility, all in the law's scale.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel

@@ -4,17 +4,11 @@ The numbers z of a contact follow the force by the trapezoidal rule. It is stabl
 is, and implicit in the force F' at the end of the step: z' = z0 + q F'.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.edge import Memory, weighted
-
-Array = NDArray[np.float64]
 
 
 class Recalled(NamedTuple):

@@ -24,19 +24,15 @@ Legend: V0 normal approach speed, T_H Hertz's time, m mass, d compression, q its
 force, y yield compression, all on Hertz's scale as in `contactlaw.equation.zener`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.outcome import History
-
-Array = NDArray[np.float64]
 
 # What a tangential force changes at the contact point of a solid sphere, beside its centre: 1 for
 # the centre and m R^2/I = 5/2 for the spin.

@@ -17,8 +17,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel, switched_off
 from contactlaw.equation import edge, force, integrator, legs, losses, motion
 from contactlaw.equation.edge import Edges
@@ -29,8 +30,6 @@ from contactlaw.equation.losses import Losses
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 from contactlaw.equation.plate import PlateMobility
-
-Array = NDArray[np.float64]
 
 _FEW = 20  # impacts whose w_m Python integrates one by one in less time than it makes the series
 _SECANT, _STEEPEST = 1e-6, 0.9  # last relative step for w_m; largest slope over y

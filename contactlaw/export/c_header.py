@@ -4,8 +4,6 @@ The functions are the kernels of `contactlaw.export.functions`, written in C by 
 ``contactlaw.h.in`` has what is C's own: how it is used, what differs between compilers, pointers.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os

@@ -4,30 +4,18 @@ The header is made of them by `contactlaw.emit`, with the numbers of one pair of
 (`Bodies`); their docstrings are its comments. Bad input gives NaN.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.answers.solver import RTOL
-from contactlaw.equation import zener
+from contactlaw.equation import force, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
-from contactlaw.equation.force import (
-    BEGINS,
-    FIRST_ROW,
-    POWERS,
-    STRENGTHS,
-    WIDTH,
-    at_strength,
-    pieces_of,
-    room_for,
-    strongest,
-)
+from contactlaw.equation.force import at_strength
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
@@ -43,8 +31,6 @@ from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_fo
 from contactlaw.stepping.spring import Spring, State, impact, resized, stepped, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
-
-Array = NDArray[np.float64]
 
 EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
 NEAR_STEPS = 100  # of a contact near an edge
@@ -136,8 +122,8 @@ SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 def rounded(law: Array) -> Array:
     """Round the numbers of a law to 14 digits; those of several to 9 of the largest power of t."""
     digits = np.full(law.size, 14)
-    for at in range(FIRST_ROW, FIRST_ROW + pieces_of(law) * STRENGTHS, STRENGTHS):
-        begins, terms, width = (int(law[at + n]) for n in (BEGINS, POWERS, WIDTH))
+    for at in range(force.FIRST_ROW, force.FIRST_ROW + force.pieces_of(law) * force.STRENGTHS, force.STRENGTHS):
+        begins, terms, width = (int(law[at + n]) for n in (force.BEGINS, force.POWERS, force.WIDTH))
         block = slice(begins, begins + (terms + 1) * width)
         sizes = np.abs(law[block]).reshape(-1, width)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -160,8 +146,8 @@ def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
         splines[:] = splines.round(9 if packed[lookup.LAYERS] == 0.0 else 6)
     return Bodies(
         rounded(laws),
-        room_for(laws),
-        strongest(laws),
+        force.room_for(laws),
+        force.strongest(laws),
         # any yield compression for a law that never yields
         known._replace(yield_compression=min(known.yield_compression, 1.0)),
         unit_spring(model, 1.0),

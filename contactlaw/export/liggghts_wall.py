@@ -4,8 +4,6 @@ Force and friction of each contact are those of `contactlaw.export.header`, step
 their motion and ranks are LIGGGHTS's.
 """
 
-from __future__ import annotations
-
 import os
 import string
 from importlib import resources

@@ -1,7 +1,5 @@
 """What the page of a pair computes beside `contactlaw.export.functions`, as kernels; see there."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -13,17 +11,8 @@ from contactlaw.equation import zener
 from contactlaw.equation.numbers import Impact
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, SPRINGS
-from contactlaw.export.functions import (
-    NOTHING,
-    Answer,
-    Bodies,
-    exceeded,
-    followed,
-    history,
-    is_valid,
-    numbers_of,
-    rubbed,
-)
+from contactlaw.export import functions
+from contactlaw.export.functions import NOTHING, Answer, Bodies, followed, is_valid, numbers_of
 from contactlaw.physical.arguments import ROUGHEST
 from contactlaw.physical.oblique import flows
 
@@ -79,7 +68,7 @@ def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
     units = numbers_of(pair, impact)
     end = min(hit.contact_time / units.time, LONGEST)
     notes = zener.Notes(at, time, velocity, force, compression)
-    path = history(pair, units, end, notes)
+    path = functions.history(pair, units, end, notes)
     for n in range(SHOWN):
         path.time[n] *= units.time
         path.force[n] *= units.force
@@ -100,19 +89,9 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
     hit = followed(pair, impact, zener.TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and 0.0 <= friction <= ROUGHEST):
         return REFUSED
-    change = rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)
-    after, found = size - change, exceeded(pair, hit, impact)
-    if flows(
-        page.strength,
-        page.modulus,
-        hit.peak_force,
-        hit.peak_compression,
-        hit.residual_compression,
-        hit.contact_time,
-        friction,
-        size,
-        after,
-    ):
+    change = functions.rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)
+    after, found = size - change, functions.exceeded(pair, hit, impact)
+    if flows(page.strength, page.modulus, hit, friction, size, after):
         found |= page.flag
     return Hit(
         hit,

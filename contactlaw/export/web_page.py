@@ -4,8 +4,6 @@ It computes by the package's own kernels, written in JavaScript (`contactlaw.emi
 has what the pages of the demo draw with, too, and ``explore.js`` the page of ``explore.html``.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import os

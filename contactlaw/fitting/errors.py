@@ -14,14 +14,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Mask, Places
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.fitting.measurements import NORMAL
 from contactlaw.fitting.predictions import Predictor, per_slide
 from contactlaw.physical.rebound import Rebound
-
-Array = NDArray[np.float64]
 
 # Rms error of the sliding speed after an impact, over friction times speed, against finite elements
 # in three dimensions (`python -m validation.fem3d`). The tangential motion is that of any law.
@@ -60,7 +58,7 @@ class ModelCovariance(NamedTuple):
     # rms of the model's error of each value, in its units; of opposite signs for two oblique kinds
     # where one error makes one of them too large and the other too small
     size: Array
-    cell: NDArray[np.intp]  # cell of each value
+    cell: Places  # cell of each value
     correlation: Array  # (c, c) correlation of cells
 
     def propagated(self, gain: Array) -> Array:
@@ -108,9 +106,7 @@ def covariances(predictor: Predictor, slopes: Array, error: Array, model: ModelC
     return Errors(statistical, from_model)
 
 
-def freedoms(
-    predictor: Predictor, slopes: Array, error: Array, found: Sequence[tuple[NDArray[np.bool_], float]]
-) -> Array:
+def freedoms(predictor: Predictor, slopes: Array, error: Array, found: Sequence[tuple[Mask, float]]) -> Array:
     """Degrees of freedom of each parameter's variance, by Welch and Satterthwaite.
 
     Each kind of values adds a part to the variance, as uncertain as the scatter of that kind, which
@@ -170,7 +166,7 @@ def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Model
     return ModelCovariance(rms[kind, row], cell, correlation)
 
 
-def _cells(kind: NDArray[np.intp], *places: Array) -> tuple[NDArray[np.intp], Array]:
+def _cells(kind: Places, *places: Array) -> tuple[Places, Array]:
     """Find each value's cell, by number, and the kind and mean place of each cell.
 
     Values share a cell if they are at one place or, if there are more than `_CELLS` places, near

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array, Integers, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
@@ -23,8 +24,6 @@ from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.record.file import Record
-
-Array = NDArray[np.float64]
 
 _ROUNDS = 2  # rounds to estimate errors that were not given; a third changes them by less than 1 %
 _LEAST_FREEDOM = 0.5  # least degrees of freedom of a kind of values, so that it has a finite error
@@ -87,9 +86,9 @@ class Fit:
     correlation: Array
     alternatives: tuple[dict[str, float], ...]
     residuals: dict[str, Array]
-    rows: dict[str, NDArray[np.intp]]
+    rows: dict[str, Places]
     scatter: dict[str, float]
-    flags: NDArray[np.int64]
+    flags: Integers
     notes: tuple[str, ...]
     pair: Pair
     radius: Array
@@ -276,7 +275,7 @@ def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, erro
     return error, float(left.sum())
 
 
-def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+def _pools(values: Values) -> Iterator[tuple[Mask, Mask]]:
     """Values that share one unknown error, and the values from whose scatter it is found.
 
     Both are the values of one kind. Kinds with few values take the scatter of all kinds.
@@ -293,13 +292,11 @@ def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_
         yield few, unknown
 
 
-@dataclass(frozen=True, eq=False)
-class _State:
+class _State(NamedTuple):
     """What `Fit.curve` needs of a fit."""
 
     predictor: Predictor
     at: Array
-    error: Array  # of the values
     covariance: errors.Errors  # of the logarithms of all parameters
 
 
@@ -360,7 +357,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
-        _state=_State(predictor, at, error, found),
+        _state=_State(predictor, at, found),
     )
 
 

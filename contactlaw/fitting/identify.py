@@ -1,14 +1,10 @@
 """Whether the data determine the unknowns, and which products of them if they do not."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import percent
-
-Array = NDArray[np.float64]
 
 _VAGUE = 0.5  # standard error of a logarithm from which on a value is not known; our choice
 _SMALL = 0.05  # smaller exponents are left out of a product

@@ -8,13 +8,12 @@ from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.record.file import Record
-
-Array = NDArray[np.float64]
 
 
 class Measurable(NamedTuple):

@@ -1,13 +1,11 @@
 """Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw._readable import percent, rounded, scale_of
 from contactlaw.fitting import search
 from contactlaw.fitting.identify import UnidentifiedError
@@ -17,8 +15,6 @@ from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import count_flags, explain
-
-Array = NDArray[np.float64]
 
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
@@ -115,7 +111,7 @@ def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> Un
     return UnidentifiedError(message, refused.unknown, refused.known)
 
 
-def listed(rows: NDArray[np.intp]) -> str:
+def listed(rows: Places) -> str:
     """Write indices of rebounds; of three and more in a row only the ends.
 
     Examples
@@ -237,7 +233,7 @@ def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | No
         )
 
 
-def chance(thirds: list[NDArray[np.intp]], off: Array) -> float:
+def chance(thirds: list[Places], off: Array) -> float:
     """Chance that scatter alone moves the means of the thirds as far apart, by Fisher's test.
 
     Parameters take up a part of any trend, so that the chance is rather too large.

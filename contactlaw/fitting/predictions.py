@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import Solver
@@ -31,8 +31,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import REACH
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.strengths import Fineness
-
-Array = NDArray[np.float64]
 
 _RTOL = 1e-9  # error allowed per step: 1e-8 of a contact time
 # Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
@@ -56,8 +54,8 @@ class Values:
         Standard errors; NaN where they have to be found.
     """
 
-    kind: NDArray[np.intp]
-    row: NDArray[np.intp]
+    kind: Places
+    row: Places
     value: Array
     error: Array
 
@@ -76,7 +74,7 @@ class Values:
             parts.append((np.full(rows.size, n), rows, shifted, known))
         return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
-    def part(self, rows: NDArray[np.intp]) -> Values:
+    def part(self, rows: Places) -> Values:
         """Values of some rebounds, which are numbered anew."""
         place = np.full(int(self.row.max()) + 1, -1)
         place[rows] = np.arange(rows.size)

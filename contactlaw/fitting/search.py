@@ -6,22 +6,18 @@ predicts a few rebounds on a coarse grid. Predictions are smooth, so splines int
 fine grid, on which the sum of squares shows every basin.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
-
-Array = NDArray[np.float64]
 
 _ROWS = 8  # rebounds of each kind that the scan predicts, from the slowest to the fastest
 _SUBSET = 200  # most rebounds of each kind in least squares before those with all rebounds
@@ -217,7 +213,7 @@ def _few(predictor: Predictor, count: int) -> Predictor:
     return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
 
 
-def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
+def _some(values: Values, data: Measurements, count: int) -> Places:
     """Rebounds of each kind, evenly over the speeds, and over what else differs."""
     chosen: set[int] = set()
     for given in (getattr(data, name) for name in INPUTS):
@@ -232,7 +228,7 @@ def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
     return np.array(sorted(chosen))
 
 
-def _part(data: Measurements, rows: NDArray[np.intp]) -> Measurements:
+def _part(data: Measurements, rows: Places) -> Measurements:
     names = [*KINDS, *(f"{name}_error" for name in KINDS), *INPUTS]
     given = {name: getattr(data, name) for name in names}
     return Measurements(**{name: v[rows] for name, v in given.items() if v is not None})

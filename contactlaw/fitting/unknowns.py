@@ -1,7 +1,5 @@
 """What a fit can find: numbers of the two materials, and the sizes of bead and plate."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping
@@ -9,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.varied import Number, with_numbers
 from contactlaw.equation.corrections import CONTACT_TIME
@@ -20,8 +18,6 @@ from contactlaw.physical.arguments import number
 from contactlaw.physical.flow import CONSTRAINT
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import unit_time
-
-Array = NDArray[np.float64]
 
 _MOST = 3  # unknowns at once
 

@@ -15,8 +15,6 @@ Users give laws of their own to `contactlaw.ImpactModel`: `Law.of` makes them fr
 `contactlaw.measured_law` from measured points.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 import functools

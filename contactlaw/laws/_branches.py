@@ -1,16 +1,14 @@
 """The formulas of a law, branch by branch: plain numpy functions, each smooth from kink to kink."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlaw._arrays import Array as Array  # also for the laws
+
 Formula = Callable[[Array], Array]
 
 END = 1e5  # [d_Y]; a law without a range follows its formulas up to here; for more see `Law.of`

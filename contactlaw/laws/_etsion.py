@@ -11,8 +11,6 @@ Hertz's curve, and from dm < 1.11 it returns more work than loading took, up to 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; x = dr/dm.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from contactlaw.laws._branches import Array, Unloading, bisect

@@ -5,8 +5,6 @@ polynomials on pieces that are halved until the last terms vanish. A `numpy.poly
 is used without expansion.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence
@@ -15,11 +13,11 @@ from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw.equation import force as _force
-from contactlaw.laws._branches import HERTZ, Array, Formula, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Formula, Loading, Unloading
 
 _FUNCTIONS = _force.FUNCTIONS
 _TERMS = 18  # Chebyshev terms per piece
@@ -125,7 +123,7 @@ def _lengths(rows: Array) -> list[int]:
     return [int(size) for size in sizes]
 
 
-def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> tuple[Array, NDArray[np.bool_]]:
+def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> tuple[Array, Mask]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
     if isinstance(part, float):
         return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlaw._arrays import Array
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
-from contactlaw.laws._branches import END, Array, Loading, Unloading
+from contactlaw.laws._branches import END, Loading, Unloading
 from contactlaw.laws._expansion import Cuts, check_yield, expanded, packed
 
 

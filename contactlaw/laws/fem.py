@@ -60,12 +60,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
-from contactlaw.laws._branches import Loading, Unloading, bisect
+from contactlaw.laws._branches import Array, Loading, Unloading, bisect
 from contactlaw.laws._law import Law
-
-Array = NDArray[np.float64]
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
 _FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but v, the second for v

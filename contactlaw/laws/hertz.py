@@ -1,7 +1,5 @@
 """Hertz: elastic at every compression (Johnson, Contact Mechanics, 1985, Eq. 4.23)."""
 
-from __future__ import annotations
-
 from contactlaw.laws._branches import HERTZ, Loading
 from contactlaw.laws._law import Law
 

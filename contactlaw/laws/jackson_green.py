@@ -16,8 +16,6 @@ Fitted for e_y from 0.001 to 0.008 or so; the paper's pair has 0.043.
 Legend: d compression in units of d_Y; forces in units of F_Y.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 

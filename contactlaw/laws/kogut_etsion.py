@@ -15,8 +15,6 @@ for an elastic one.
 Legend: d compression in units of d_Y; forces in units of F_Y.
 """
 
-from __future__ import annotations
-
 import functools
 
 from contactlaw.laws import _etsion

@@ -9,8 +9,6 @@ units of F_Y; q = sqrt(d); P = d_P/d_Y, where loading leaves Hertz's curve along
 Between d = 1 and P only the unloading is plastic.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -23,8 +23,6 @@ Legend: d compression, dm the largest so far, dr what remains of it, all in unit
 units of F_Y; s = 2 d - 1; k = fm/(dm - dr)^1.5, the stiffness of the printed unloading curve.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -12,8 +12,6 @@ Legend: d compression, dm the largest so far, dr what remains of it, all in unit
 units of F_Y; g = sqrt(dm).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.polynomial import Polynomial
 

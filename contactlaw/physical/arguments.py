@@ -8,12 +8,11 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
-
-Array = NDArray[np.float64]
 
 # Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
 _SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")

@@ -1,14 +1,12 @@
 """Two bodies whose materials and law are known, and the numbers of their impacts."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants
 from contactlaw.laws import Law
@@ -17,8 +15,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import constants_of, numbers_of, without_plate
 from contactlaw.physical.strengths import by_strength
 from contactlaw.physical.validity import Limits, all_mass_flags, limits, limits_by_strength
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +72,14 @@ class SphereOnPlate:
         """Dimensionless numbers and units of impacts."""
         return numbers_of(self.constants, self.data, impact)
 
-    def mass_flags(self, impacts: Impacts) -> NDArray[np.int64]:
+    def mass_flags(self, impacts: Impacts) -> Integers:
         """Limits that masses exceed."""
         flags = np.empty(impacts.speed.size, dtype=np.int64)
         all_mass_flags(self.impact(impacts).mass, flags)
         return flags
 
 
-def beside(mass: Array, solid: Array) -> NDArray[np.bool_]:
+def beside(mass: Array, solid: Array) -> Mask:
     """Whether masses are such as the model is for, beside those of solid spheres."""
     return np.asarray((mass >= LIGHTEST * solid) & (mass <= HEAVIEST * solid))
 
@@ -107,6 +103,6 @@ class TwoSpheres(SphereOnPlate):
         """Constants from which the dimensionless numbers of impacts follow."""
         return without_plate(constants_of(self.pair, self.law))
 
-    def mass_flags(self, impacts: Impacts) -> NDArray[np.int64]:
+    def mass_flags(self, impacts: Impacts) -> Integers:
         """None: the mass is that of both."""
         return np.zeros(impacts.speed.size, dtype=np.int64)

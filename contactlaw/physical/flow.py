@@ -5,8 +5,6 @@ Johnson and Cook's flow stress without temperature (Proc. 7th Int. Symp. Ballist
     sigma = (A + B eps^n) (1 + C ln(rate/rate0)),    rates below rate0 count as rate0.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

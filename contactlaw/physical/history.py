@@ -1,17 +1,11 @@
 """Force over time of single contacts, in SI units."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array, Integers
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History
 from contactlaw.physical.validity import Validity
-
-Array = NDArray[np.float64]
 
 
 class _Samples(NamedTuple):
@@ -47,7 +41,7 @@ class ForceHistory(_Samples):
         they have no samples.
     """
 
-    flags: Validity | NDArray[np.int64]
+    flags: Validity | Integers
 
 
 def with_units(
@@ -55,7 +49,7 @@ def with_units(
     units: Numbers,
     inelasticity: Array,
     shape: tuple[int, ...] | None,
-    flags: Validity | NDArray[np.int64],
+    flags: Validity | Integers,
     path: Array | None = None,
 ) -> ForceHistory:
     """Give contacts (n, samples) their units and the shape of the answer.

@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.edge import KINDS
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
-
-Array = NDArray[np.float64]
 
 _ENDLESS = np.array([math.inf])  # distance from an edge, and radius of a hole, where there is none
 
@@ -52,7 +51,7 @@ class Impacts:
         check(speed=v, radius=r, thickness=h, **known)
         return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), **known)
 
-    def part(self, some: NDArray[np.intp]) -> Impacts:
+    def part(self, some: Places) -> Impacts:
         """Choose some of the impacts."""
         arrays: dict[str, Any] = {
             name: value[some] for name, value in vars(self).items() if isinstance(value, np.ndarray)

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Mask
+
 
 class Kind(enum.IntEnum):
     """What a row of the record is; a coefficient of restitution has a meaning for impacts only."""
@@ -19,7 +21,7 @@ class Kind(enum.IntEnum):
     IN_CLUMP = 5  # it is a part of a rigid body; the wall answered it as if it flew alone
 
 
-def only_impacts(kinds: NDArray[Any]) -> tuple[NDArray[np.bool_], str]:
+def only_impacts(kinds: NDArray[Any]) -> tuple[Mask, str]:
     """Pick the rows of a record that are impacts; every reader of CORs and speeds does so.
 
     Parameters

@@ -1,7 +1,5 @@
 """The law that a user chose for a pair, with the numbers that it takes from the materials."""
 
-from __future__ import annotations
-
 import dataclasses
 
 from contactlaw import laws

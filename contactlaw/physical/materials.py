@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import quantities
+from contactlaw._arrays import Array
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import refuse_units
@@ -64,7 +64,7 @@ _QUANTITIES = {
 _ALIKE = ("kind", "youngs_modulus", "poissons_ratio", "density")
 
 
-T = TypeVar("T", float, NDArray[np.float64])
+T = TypeVar("T", float, Array)
 
 
 def sphere_mass(density: Any, radius: T) -> T:

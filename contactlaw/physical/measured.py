@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.laws.myc import C_YIELD
@@ -13,8 +14,6 @@ from contactlaw.laws.myc import residual as myc_residual
 from contactlaw.physical.arguments import broadcast, scalars
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import yield_scales
-
-Array = NDArray[np.float64]
 
 _DEGREE = 3  # degree of the polynomials in ln d that smooth the points; our choice
 _FEWEST = 4  # least number of points beyond yield

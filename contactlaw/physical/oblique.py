@@ -6,15 +6,13 @@ coefficient of friction, I = 2/5 m R^2. A tangential impulse changes s by 7/2 J_
 centre has 2/7 and the spin the rest.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._jit import kernel
 from contactlaw.equation.numbers import Impact
 from contactlaw.equation.tangential import POINT
@@ -26,7 +24,6 @@ from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
 
-Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 # Limits of `Validity.SLIDING_FLOW`.
@@ -211,18 +208,18 @@ def rebound_all(
                 velocity[i, k], spin[i, k] = v[k], omega[k]
 
 
-def flows(
-    strength: Any, modulus: float, force: Any, deepest: Any, left: Any, time: Any, friction: Any, size: Any, after: Any
-) -> Any:
+def flows(strength: Any, modulus: float, hit: Any, friction: Any, size: Any, after: Any) -> Any:
     """Whether friction makes a body flow along the surface; numbers, or arrays of them.
 
+    `hit` is the answer of the normal impact, `size` and `after` the sliding speeds [m/s].
     Finite elements in three dimensions: the loss of COR is some 0.5 of the product of the two
     ratios, so it is below 1 % up to 0.02.
     """
     # F ~ d^1.4 of unloading, with the slope 2 E* a
-    contact = _UNLOADING * force / (deepest - left) / (2.0 * modulus)
+    force, left = hit.peak_force, hit.residual_compression
+    contact = _UNLOADING * force / (hit.peak_compression - left) / (2.0 * modulus)
     sliding = np.maximum(abs(size) + abs(after), _AT_REST)
-    slide = 0.5 * (size * size + after * after) / sliding * time / contact
+    slide = 0.5 * (size * size + after * after) / sliding * hit.contact_time / contact
     traction = friction * force / (math.pi * contact * contact) / strength
     beyond = (traction >= _TRACTION) | (slide > _SLIDE) | (traction * slide > _PRODUCT)
     return beyond & (left > 0.0)
@@ -235,29 +232,19 @@ def of(
     pair, mass = bodies.pair, bodies.mass(impacts)
     with np.errstate(invalid="ignore", divide="ignore"):
         part = changed / size  # NaN without sliding
-    e, after = np.ravel(normal.restitution), size - changed
+    flat, after = Rebound(*map(np.ravel, vars(normal).values())), size - changed
     found: dict[str, Any] = {
         "sliding_speed": after,
         "tangential_restitution": 1.0 - part / POINT,
         "rotational_restitution": part - 1.0,
-        "impulse_ratio": changed / POINT / ((1.0 + e) * impacts.speed),
+        "impulse_ratio": changed / POINT / ((1.0 + flat.restitution) * impacts.speed),
         "friction_energy": mass / (2.0 * POINT) * changed * (size + after),
     }
     check_finite(pair, impacts, found["impulse_ratio"], found["friction_energy"])
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
     strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
-    flow = flows(
-        strength,
-        pair.effective_modulus,
-        np.ravel(normal.peak_force),
-        np.ravel(normal.peak_compression),
-        np.ravel(normal.residual_compression),
-        np.ravel(normal.contact_time),
-        friction,
-        size,
-        after,
-    )
-    beyond: NDArray[np.int64] = np.where(flow, int(Validity.SLIDING_FLOW), 0)
-    flags = np.ravel(normal.flags) | beyond
+    flow = flows(strength, pair.effective_modulus, flat, friction, size, after)
+    beyond: Integers = np.where(flow, int(Validity.SLIDING_FLOW), 0)
+    flags = flat.flags | beyond
     found["flags"] = shaped_flags(flags, impacts.shape)
     return ObliqueRebound(**vars(normal) | found)

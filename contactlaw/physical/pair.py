@@ -1,7 +1,5 @@
 """Two materials in contact: the sphere's and the plate's."""
 
-from __future__ import annotations
-
 import cmath
 import math
 

@@ -7,21 +7,17 @@ pair's factor is that of the larger C and the lower rate0, so that it stands for
 one of the bodies grows stronger, and each has its own factor at that rate.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.laws import Law
 from contactlaw.laws.fem import fitted
 from contactlaw.physical.flow import Flow
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-
-Array = NDArray[np.float64]
 
 SHARE: float = fitted()["rate"]  # representative rate over V0/R
 # V0/R [1/s] up to which tables reach, 100 m/s at 10 micrometres, and up to which laws do.

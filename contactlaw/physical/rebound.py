@@ -1,13 +1,11 @@
 """Outcomes of impacts in SI units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
@@ -17,8 +15,6 @@ from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,7 @@ class Rebound:
     other_fraction: float | Array
     inelasticity: float | Array
     overload: float | Array
-    flags: Validity | NDArray[np.int64]
+    flags: Validity | Integers
 
 
 class Units(NamedTuple):
@@ -72,7 +68,7 @@ class Units(NamedTuple):
     overload: Array
 
 
-def shaped_flags(flags: NDArray[np.int64], shape: tuple[int, ...] | None) -> Validity | NDArray[np.int64]:
+def shaped_flags(flags: Integers, shape: tuple[int, ...] | None) -> Validity | Integers:
     """Undo `broadcast` for flags, which of a single impact have a type of their own."""
     return Validity(int(flags[0])) if shape is None else flags.reshape(shape)
 
@@ -89,7 +85,7 @@ def _with_units(
     outcome: Outcome,
     extremes: Extremes,
     out: Units,
-    flags: NDArray[np.int64],
+    flags: Integers,
 ) -> float:
     """Convert outcomes to SI units, those of `extremes` in place; `unclamped_y` as in `rebound`.
 
@@ -122,7 +118,7 @@ def rebound(
     time: Array,
     unclamped: tuple[Array, Array],
     outcome: Outcome,
-    flags: NDArray[np.int64],
+    flags: Integers,
     edges: Edges | None = None,
 ) -> Rebound:
     """Convert outcomes to SI units, with T_H [s], and complete them.

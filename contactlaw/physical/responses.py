@@ -3,19 +3,15 @@
 They are fitted by `validation.derivations.edges` and kept in a file beside this module.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 from importlib.resources import files
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation.edge import KINDS
-
-Array = NDArray[np.float64]
 
 
 @functools.cache

@@ -5,37 +5,23 @@ and spring define the time T_H, and with it the dimensionless numbers that the t
 work with: the inelasticity lambda, and the yield compression y on Hertz's scale.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
+from contactlaw.equation import numbers
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.numbers import (
-    ELASTIC,
-    NO_RATE,
-    Impact,
-    ModulusGrowth,
-    Numbers,
-    PairConstants,
-    PlateConstants,
-    RateOfStrain,
-    fill,
-    relaxes,
-)
+from contactlaw.equation.numbers import Impact, ModulusGrowth, Numbers, PairConstants, PlateConstants, RateOfStrain
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import SHARE, flow_with_rate
 from contactlaw.physical.responses import response_of
-
-Array = NDArray[np.float64]
 
 
 def _transit(plate: Material, thickness: Array) -> Array:
@@ -147,7 +133,7 @@ def rate_of_strain(pair: Pair, law: Law) -> RateOfStrain:
     """How the strength of a pair grows with the rate of an impact."""
     flow = flow_with_rate(pair, law)
     if flow is None or law.scale is None:
-        return NO_RATE
+        return numbers.NO_RATE
     return RateOfStrain(flow.rate, SHARE / flow.rate0 * law.scale)
 
 
@@ -158,7 +144,7 @@ def modulus_growth(pair: Pair, law: Law) -> ModulusGrowth:
     the modulus, an exponent a of the modulus becomes a/(1 - 0.4 a).
     """
     if pair.frequency is None or not law.parameters.get("loss_factor"):
-        return ELASTIC
+        return numbers.ELASTIC
     share = pair.effective_modulus / pair.plate.plane_modulus  # of the plate in the compliance
     modulus = (1.0 - share) * pair.sphere.relaxation + share * pair.plate.relaxation
     again = 1.0 - 0.4 * modulus
@@ -187,7 +173,7 @@ def numbers_of(constants: PairConstants, laws: Array, impact: Impact) -> Numbers
     # copies: kernels are compiled for writeable arrays, and broadcast ones are not
     flat = Impact(*(np.array(one, dtype=float).ravel() for one in given))
     out = Numbers(*np.empty((len(Numbers._fields), flat.speed.size)))
-    fill(constants, laws, flat, out)
+    numbers.fill(constants, laws, flat, out)
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
@@ -246,7 +232,7 @@ def edges_of(
         response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness)),
         # of bodies with losses both mobilities have those of the impact
         np.ones(rate.size)
-        if relaxes(constants.plate)
+        if numbers.relaxes(constants.plate)
         else np.minimum(plate_mobility(plate, thickness) * mass / (units.time * units.inelasticity), 1.0),
         rate,
         np.zeros(rate.size),

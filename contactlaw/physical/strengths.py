@@ -4,8 +4,6 @@ Within pieces of ln k, with k the strength over that of a slow test, every numbe
 polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made at a few strengths.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import itertools
@@ -14,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation import force
 from contactlaw.equation.force import STRENGTHS
 from contactlaw.laws import Law, Strengths, fem, laid_out_alike
@@ -26,8 +24,6 @@ from contactlaw.physical.law import pair_numbers
 from contactlaw.physical.pair import Pair
 from contactlaw.table.lookup import TERMS
 from contactlaw.table.splines import spline_coefficients
-
-Array = NDArray[np.float64]
 
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 0.01  # in ln k: distance of the places between which corners are looked for

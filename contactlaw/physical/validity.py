@@ -7,8 +7,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._jit import kernel
 from contactlaw.laws import Law
 from contactlaw.laws.fem import ALONE, RATIOS
@@ -18,8 +19,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import REACH, flow_with_rate, largest_factor, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
 from contactlaw.physical.strengths import without_curves
-
-Array = NDArray[np.float64]
 
 SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _SLENDER_FEM = 5.8  # R/H for "fem"; TARGETS of `validation.accuracy.acceptance` has its errors
@@ -212,7 +211,7 @@ def limits_in_words(flags: int) -> tuple[str, ...]:
     return tuple(limit for flag, (limit, _) in _WORDS.items() if flags & flag)
 
 
-def count_flags(flags: NDArray[np.int64]) -> dict[Validity, int]:
+def count_flags(flags: Integers) -> dict[Validity, int]:
     """Count the impacts beyond each limit; limits that none exceeds are left out.
 
     Examples
@@ -410,7 +409,7 @@ def mass_flags(mass: float) -> int:
 
 
 @kernel(cache=True)
-def all_mass_flags(mass: Array, out: NDArray[np.int64]) -> None:
+def all_mass_flags(mass: Array, out: Integers) -> None:
     """`mass_flags` of many impacts."""
     for n in range(mass.size):
         out[n] = mass_flags(mass[n])

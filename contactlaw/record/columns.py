@@ -6,8 +6,8 @@ import enum
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Rows
 from contactlaw.equation.losses import DESCRIPTIONS
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.physical.kind import Kind as Kind  # for readers of a record
@@ -76,7 +76,7 @@ _NAMES = tuple(column.name for column in COLUMNS)
 OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 
 
-def typed(rows: NDArray[np.void]) -> NDArray[np.void]:
+def typed(rows: Rows) -> Rows:
     """Give the columns of a record from a file the types of `IMPACT`; refuse what has no such."""
     names = [name for name in rows.dtype.names or () if name in _NAMES]
     found = np.empty(rows.size, [(name, IMPACT[name]) for name in names])
@@ -92,7 +92,7 @@ def typed(rows: NDArray[np.void]) -> NDArray[np.void]:
     return found
 
 
-def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) -> None:
+def fill(rows: Rows, rebound: Rebound, energy: Array) -> None:
     """Complete impacts whose observed columns are known.
 
     Parameters

@@ -25,9 +25,9 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._arrays import Array, Integers, Mask, Rows
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
@@ -37,10 +37,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import Validity
 from contactlaw.record import hdf5
 from contactlaw.record.columns import COLUMNS, IMPACT, typed
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Rows = NDArray[np.void]
 
 FORMAT, SCHEMA = "contactlaw record", 1
 HDF5 = ".h5", ".hdf5"
@@ -95,10 +91,10 @@ class Surface(NamedTuple):
         The contact point on it, shape (n, 3) [m]; None if unknown, as on walls that move.
     """
 
-    corners: Floats
+    corners: Array
     wall: Integers
     triangle: Integers
-    point: Floats | None
+    point: Array | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +135,7 @@ class Record:
             object.__setattr__(self, "which", np.full(self.rows.size, known))
 
     @cached_property
-    def impact(self) -> NDArray[np.bool_]:
+    def impact(self) -> Mask:
         """Whether each row is an impact: of other contacts COR and speed mean nothing."""
         return self._only_impacts[0]
 
@@ -155,7 +151,7 @@ class Record:
         return self._only_impacts[1]
 
     @cached_property
-    def _only_impacts(self) -> tuple[NDArray[np.bool_], str]:
+    def _only_impacts(self) -> tuple[Mask, str]:
         known = "kind" in (self.rows.dtype.names or ())  # else a table of an older version
         return only_impacts(self.rows["kind"] if known else np.zeros(self.rows.size))
 
@@ -168,7 +164,7 @@ class Record:
         return "; ".join(parts + ([] if self.surface else ["the surface of the walls"]))
 
     @property
-    def points(self) -> Floats:
+    def points(self) -> Array:
         """Contact points, shape (n, 3) [m]."""
         return np.stack([self.rows[name] for name in "xyz"], axis=1)
 
@@ -343,7 +339,7 @@ def _read(path: Path) -> Record:
         raise ValueError(f"{path}: {error}") from None
 
 
-def saved(content: bytes) -> NDArray[np.void]:
+def saved(content: bytes) -> Rows:
     """Read rows with named columns from the content of a file of ``np.save``.
 
     Raises
@@ -362,7 +358,7 @@ def saved(content: bytes) -> NDArray[np.void]:
             f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
             "columns, as the record of an engine has"
         )
-    found: NDArray[np.void] = rows
+    found: Rows = rows
     return found
 
 
@@ -430,5 +426,5 @@ def _read_surface(group: h5py.Group, size: int) -> Surface:
     return Surface(corners, wall, triangle, point)
 
 
-def _points(group: h5py.Group, names: Sequence[tuple[str, str]], size: int) -> Floats:
+def _points(group: h5py.Group, names: Sequence[tuple[str, str]], size: int) -> Array:
     return np.stack([hdf5.numbers(group, name, size) for name, _ in names], axis=1)

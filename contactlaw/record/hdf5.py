@@ -6,8 +6,6 @@ hundreds of gigabytes. Every refusal here is a ValueError with the part's name, 
 was expected.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,6 +14,8 @@ from typing import Any
 import h5py
 import numpy as np
 from numpy.typing import NDArray
+
+from contactlaw._arrays import Places
 
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
 # Errors that h5py raises for what it cannot read.
@@ -64,7 +64,7 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
         raise ValueError(f"{where} is damaged: {error}") from None
 
 
-def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
+def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> Places:
     """Read a column of whole numbers from 0 to `count` - 1, or -1 for none."""
     found = numbers(parent, name, size)
     # not (...) also for NaN

@@ -1,7 +1,5 @@
 """Charts that the figures of several kinds of runs have: bars by cause, and energy on a sheet."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,9 +11,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array
 
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
-PARTS = KEPT, *_ = (
+PARTS = (
     ("kept by the bead", style.PALE),
     ("bending wave in the plate", style.BLUE),
     ("plastic flow at the contact", style.ORANGE),
@@ -24,42 +23,6 @@ PARTS = KEPT, *_ = (
 )
 _DARK = style.BLUE, style.MUTED, style.GREEN
 _WIDE = 6.0  # [%], the width of a number with room around it
-_ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
-_READABLE = {
-    style.BLUE: style.BLUE,
-    style.ORANGE: "#9A6700",
-    style.GREEN: "#00694D",
-    style.SKY: "#1F6E9C",
-    style.PALE: style.INK,
-    style.MUTED: style.INK,
-}
-
-
-def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]], room: bool = True) -> None:
-    """Stack the shares with their numbers; those of small ones are beside, if there is room."""
-    bottom = beside = 0.0
-    for (name, colour), share in parts:
-        height = 100.0 * share
-        if height < 0.05:
-            continue
-        axes.bar(x, height, width, bottom, color=colour, label=name, edgecolor="white")
-        middle = bottom + 0.5 * height
-        text = f"{height:.0f}" if height >= 9.5 else f"{height:.1f}"
-        if height >= _ROOM:
-            ink = "white" if colour in _DARK else style.INK
-            axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
-        elif room:
-            beside = max(middle, beside + _ROOM)
-            axes.text(
-                x + 0.5 * width,
-                beside,
-                f" {text}",
-                va="center",
-                color=_READABLE[colour],
-                fontsize=11,
-                fontweight="bold",
-            )
-        bottom += height
 
 
 def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> None:
@@ -85,13 +48,13 @@ def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") 
     axes.grid(visible=False, axis="x")
 
 
-def density_scale(values: Sequence[NDArray[np.float64]]) -> LogNorm:
+def density_scale(values: Sequence[Array]) -> LogNorm:
     """Scale of the colours for energies per area [J/m2]; all of the least energies are dark."""
     most = max(float(np.quantile(value, 0.999)) for value in values) or 1.0
     return LogNorm(most / _SPAN, most, clip=True)
 
 
-def sheet(axes: Axes, corners: NDArray[np.floating], value: NDArray[np.float64], scale: LogNorm) -> PolyCollection:
+def sheet(axes: Axes, corners: NDArray[np.floating], value: Array, scale: LogNorm) -> PolyCollection:
     """Draw triangles (n, 3, 2) in the colours of their energies per area [J/m2]."""
     drawn = PolyCollection(
         list(corners), array=value, cmap=DENSITY, norm=scale, edgecolors="none", antialiased=False

@@ -1,7 +1,5 @@
 """The folder of a report."""
 
-from __future__ import annotations
-
 import datetime
 import os
 from collections.abc import Sequence
@@ -12,7 +10,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
 from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
-from contactlaw.reporting.limits import exceeded
 from contactlaw.reporting.meshes import with_meshes
 from contactlaw.reporting.run import Run
 from contactlaw.reporting.surface import ply, vtk
@@ -77,11 +74,8 @@ def _page(run: Run, pictures: dict[str, bytes]) -> str:
     return page.template(__package__, "report.html").render(
         subject=run.subject,
         facts=[summary.counts(run), *[run.left_out] * bool(run.left_out)],
-        impacts=summary.impacts(run),
-        constant=summary.CONSTANT,
-        limits=exceeded(run.impacts["flags"]),
-        energies=summary.energies(run),
-        energy=summary.ENERGY,
+        run=run,
+        summary=summary,
         figures=page.shown(figures.module, pictures),
         map=run.map is not None,
         made=page.made(made, {"contactlaw": VERSION}),

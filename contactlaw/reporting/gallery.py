@@ -4,8 +4,6 @@ The file has a function ``draw(run) -> Figure``, and its name is the name of the
 figure, add a file.
 """
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 from collections.abc import Sequence

@@ -1,15 +1,12 @@
 """Words that the reports of all scenes share: sizes of plates, and limits of the model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contactlaw import Validity, explain
+from contactlaw._arrays import Integers
 from contactlaw._readable import drawn
+from contactlaw.physical.validity import count_flags
 
 label = drawn  # the name of a plate, also for the demo
 
@@ -22,10 +19,9 @@ class Limit(NamedTuple):
     impacts: int
 
 
-def exceeded(flags: NDArray[np.int64]) -> list[Limit]:
+def exceeded(flags: Integers) -> list[Limit]:
     """List the limits that impacts exceed."""
-    found = [Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity]
-    return [limit for limit in found if limit.impacts]
+    return [Limit(_words(flag), explain(flag)[0], count) for flag, count in count_flags(flags).items()]
 
 
 def _words(flag: Validity) -> str:

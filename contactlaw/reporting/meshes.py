@@ -1,18 +1,14 @@
 """The walls of a record as meshes: for a record that does not know them itself."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw.record.file import Record, Surface
 from contactlaw.walls.mesh import Mesh
-
-Floats = NDArray[np.float64]
 
 _TOO_LARGE = 300.0  # [extent of the contacts on it]: a mesh in millimetres is 1000 times as large
 _APART = 1e-3  # [extent of the mesh]; contacts farther from their triangles are of walls that move
@@ -32,8 +28,8 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
     if plates.size != len(meshes):
         reason = f"got {len(meshes)} for the {plates.size} walls of the record that are meshes"
         raise ArgumentError("meshes", None, reason)
-    corners: list[Floats] = []
-    wall: list[NDArray[np.int64]] = []
+    corners: list[Array] = []
+    wall: list[Integers] = []
     triangle = np.full(rows.size, -1)
     for plate, mesh in zip(plates.tolist(), meshes, strict=True):
         here = np.flatnonzero(rows["plate"] == plate)
@@ -56,7 +52,7 @@ def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
     return dataclasses.replace(record, surface=surface if still else surface._replace(point=None))
 
 
-def _still(surface: Surface, point: Floats, apart: float) -> bool:
+def _still(surface: Surface, point: Array, apart: float) -> bool:
     """Whether the contact points are on their triangles, as on walls that do not move."""
     hit = surface.triangle >= 0
     a, b, c = np.moveaxis(surface.corners[surface.triangle[hit]], 1, 0)

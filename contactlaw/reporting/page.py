@@ -3,8 +3,6 @@
 ``page.html`` is the frame of such a page, and ``parts.html`` has tables, limits and figures.
 """
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Callable, Mapping
 from types import ModuleType

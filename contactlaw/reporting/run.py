@@ -1,15 +1,13 @@
 """What a report says of a run: its impacts, and the energy that they took, wall by wall."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Rows
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
@@ -20,27 +18,8 @@ from contactlaw.reporting.surface import EnergyMap, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
 from contactlaw.walls.motion import FARTHEST
 
-Floats = NDArray[np.float64]
-Rows = NDArray[np.void]
-
 CAUSES = "wave", "plastic", "other", "friction"
 _CAUSED = tuple(f"{cause}_energy" for cause in CAUSES)
-_NEEDED = (
-    "approach_speed",
-    "restitution",
-    "sliding_speed",
-    "kind",
-    "plate",
-    "triangle",
-    "x",
-    "y",
-    "z",
-    "flags",
-    "radius",
-    "mass",
-    "thickness",
-    *_CAUSED,
-)
 # Least and largest numbers that can be; in contacts that are no impacts of the energies alone.
 _LIMITS = {
     "approach_speed": (V_MIN, V_MAX),
@@ -52,6 +31,7 @@ _LIMITS = {
     **dict.fromkeys("xyz", (-FARTHEST, FARTHEST)),
     **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
 }
+_NEEDED = *_LIMITS, "kind", "plate", "triangle", "flags"
 _MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
 OTHERS = "other walls"
 
@@ -79,7 +59,7 @@ class Shares(NamedTuple):
     friction: float
 
 
-def shares(rows: Rows, mass: Floats, friction: bool) -> Shares:
+def shares(rows: Rows, mass: Array, friction: bool) -> Shares:
     """Find where the energy of impacts went; `mass` is that of the bead of each [kg]."""
     total = 0.5 * float((mass * rows["approach_speed"] ** 2).sum())
     if friction:
@@ -88,7 +68,7 @@ def shares(rows: Rows, mass: Floats, friction: bool) -> Shares:
     return Shares(1.0 - sum(lost), *lost)
 
 
-def by_cause(rows: Rows) -> Floats:
+def by_cause(rows: Rows) -> Array:
     """Energy that contacts took from the beads by each of the causes [J]."""
     return np.array([np.nansum(rows[f"{cause}_energy"]) for cause in CAUSES])
 
@@ -190,9 +170,9 @@ class Run:
         return energy_map(surface, taken(self.record.rows))
 
 
-def taken(rows: Rows) -> Floats:
+def taken(rows: Rows) -> Array:
     """Energy that each contact took from the bead [J], by all causes."""
-    found: Floats = np.nansum([rows[f"{cause}_energy"] for cause in CAUSES], axis=0)
+    found: Array = np.nansum([rows[f"{cause}_energy"] for cause in CAUSES], axis=0)
     return found
 
 

@@ -1,7 +1,5 @@
 """The numbers of a run in words: two tables, for the text and the page."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from contactlaw._readable import relative, rounded, scale_of

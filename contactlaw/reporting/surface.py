@@ -1,17 +1,13 @@
 """The surface of the walls: how much energy each part of it takes, and files for other programs."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw.record.file import Surface
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _FEW = 3.0  # impacts in a square whose side is the reach of the average
 _FINEST, _COARSEST = 1.0 / 60.0, 1.0 / 12.0  # limits of this reach [largest extent of the walls]
@@ -25,13 +21,13 @@ class EnergyMap(NamedTuple):
     contacts whose points are unknown each part of their triangle has its share, by its area.
     """
 
-    corners: Floats
-    impacts: Floats  # number of contacts on each triangle
-    energy: Floats  # that these took [J]
-    density: Floats
+    corners: Array
+    impacts: Array  # number of contacts on each triangle
+    energy: Array  # that these took [J]
+    density: Array
 
 
-def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
+def energy_map(surface: Surface, energy: Array) -> EnergyMap:
     """Sum up energies [J] by parts of a surface, which are small where triangles are large."""
     corners, hit = surface.corners, surface.triangle >= 0
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
@@ -46,7 +42,7 @@ def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
     count, wall = len(corners), surface.wall[whole]
     share = areas(corners) / areas(surface.corners)[whole]
 
-    def summed(values: Floats) -> Floats:
+    def summed(values: Array) -> Array:
         if surface.point is None:
             on = np.bincount(surface.triangle[hit], values, len(surface.corners))
             return np.asarray(on[whole] * share)
@@ -59,14 +55,14 @@ def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
     return EnergyMap(corners, summed(np.ones(hit.sum())), taken, density)
 
 
-def areas(corners: NDArray[np.floating]) -> Floats:
+def areas(corners: NDArray[np.floating]) -> Array:
     """Areas of triangles [m2], from their corners (n, 3, 3) [m]."""
     edge = np.diff(corners.astype(float), axis=1)
-    area: Floats = 0.5 * np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1)
+    area: Array = 0.5 * np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1)
     return area
 
 
-def refined(corners: Floats, triangle: Integers, point: Floats, longest: float) -> tuple[Floats, Integers, Integers]:
+def refined(corners: Array, triangle: Integers, point: Array, longest: float) -> tuple[Array, Integers, Integers]:
     """Halve triangles until no side is longer than `longest`; find that of each point again.
 
     Returns the corners, the triangle of each point, and the number of the triangle of which each
@@ -97,7 +93,7 @@ def refined(corners: Floats, triangle: Integers, point: Floats, longest: float) 
         whole = np.concatenate((whole, whole[long]))
 
 
-def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Floats:
+def averaged(corners: NDArray[np.floating], energy: Array, reach: float) -> Array:
     """Energy per area [J/m2] of triangles, averaged over their neighbourhood.
 
     It is energy over area, both weighted by a Gaussian whose standard deviation is `reach` [m].
@@ -112,7 +108,7 @@ def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Flo
     window = np.arange(-math.ceil(3.0 / grid), math.ceil(3.0 / grid) + 1)
     weight = np.exp(-0.5 * (window * grid) ** 2)
 
-    def spread(values: Floats) -> Floats:
+    def spread(values: Array) -> Array:
         found = np.zeros(shape)
         np.add.at(found, tuple(cell.T), values)
         for axis in range(3):
@@ -123,7 +119,7 @@ def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Flo
     return spread(energy) / spread(areas(corners))
 
 
-def vtk(found: EnergyMap, colours: Floats) -> bytes:
+def vtk(found: EnergyMap, colours: Array) -> bytes:
     """Write a map in VTK's legacy text format, which ParaView and OVITO read.
 
     OVITO shows the colours, red, green and blue from 0 to 1, shape (k, 3).
@@ -140,7 +136,7 @@ def vtk(found: EnergyMap, colours: Floats) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def ply(found: EnergyMap, colours: Floats) -> bytes:
+def ply(found: EnergyMap, colours: Array) -> bytes:
     """Write a map as PLY text, with the colours of `vtk`, for viewers of meshes."""
     n = len(found.corners)
     corner = [f"property {kind}" for kind in ("double x", "double y", "double z")]

@@ -8,19 +8,15 @@ Functions of the first axis alone are given at the nodes of a Chebyshev series a
 elastic compression, and the kinks of later axes, which may be curves over the first.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Places
 from contactlaw.table.lookup import ELASTIC, STRETCHED
-
-Array = NDArray[np.float64]
 
 SERIES = 48  # nodes of the series along the first axis
 FEWEST = 4  # nodes of a segment; splines with not-a-knot ends need as many
@@ -87,7 +83,7 @@ class Axis:
             parts.append(np.clip(values, start, end))  # rounding must not go beyond
         return np.concatenate(parts, axis=1)
 
-    def segment_of(self, values: Array, along: Array) -> NDArray[np.intp]:
+    def segment_of(self, values: Array, along: Array) -> Places:
         """Find the segments that values lie in, by number."""
         starts = [_from_series(segment.start, along) for segment in self.segments[1:]]
         return np.asarray(np.sum([values > start for start in starts], axis=0, dtype=np.intp))

@@ -4,8 +4,6 @@ A table is identified by the data of its law, not by the law's name: laws that d
 yield compression share one. Shapes of force histories are added when a first history is needed.
 """
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import functools
@@ -18,18 +16,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic
 from contactlaw import table as tables
+from contactlaw._arrays import Array
 from contactlaw._folder import folder
 from contactlaw._kept import fingerprint
 from contactlaw.laws import Law
 from contactlaw.table import file, slides
 from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
-
-Array = NDArray[np.float64]
 
 _DIGEST = 32  # bytes of a checksum
 # [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be

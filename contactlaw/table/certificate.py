@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import FIELDS, Outcome
@@ -17,8 +17,6 @@ from contactlaw.table.axes import TableGrid
 from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.shapes import Shapes
 from contactlaw.table.sweep import Progress
-
-Array = NDArray[np.float64]
 
 BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-4}
 """Promised errors: absolute for COR, relative to the peak for force histories, else relative."""

@@ -6,8 +6,6 @@ altered is refused with a sentence, whatever HDF5 would have made of it. The che
 not intent: a file that fits it is checked for the datasets below and what kernels rely on, no more.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import hashlib

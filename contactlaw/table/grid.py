@@ -11,16 +11,14 @@ jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uni
 p, in which these terms are smooth; so they are behind all kinks of a capped law.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.equation import force, zener
 from contactlaw.laws import Law, Strengths
@@ -28,8 +26,6 @@ from contactlaw.laws._branches import END
 from contactlaw.table import axes as _axes
 from contactlaw.table.axes import SERIES, Axis, Segment, TableGrid, chebyshev_nodes, power_series, series_values
 from contactlaw.table.lookup import ELASTIC, ROWS, STRETCHED, TERMS
-
-Array = NDArray[np.float64]
 
 AXES = "inelasticity", "log_overload", "log_strength"
 FEWEST = 5  # nodes of a segment along the first two axes, our choice

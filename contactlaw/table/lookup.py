@@ -45,14 +45,13 @@ lam = c_lam V^(1/5) (R/H)^2, ln chi = c_chi + (4/5) ln V + ln w_m; the two const
 pair of materials and a law, `contactlaw.physical.scaling` has them.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
@@ -69,7 +68,6 @@ from contactlaw.equation.numbers import (
 )
 from contactlaw.equation.outcome import Outcome
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 Four = tuple[float, float, float, float]
 Six = tuple[float, float, float, float, float, float]

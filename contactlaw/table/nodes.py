@@ -1,7 +1,5 @@
 """The table of one contact law: the equation solved at every node."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import itertools
@@ -12,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
@@ -21,8 +20,6 @@ from contactlaw.table.axes import TableGrid
 from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes, random_points
 from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.sweep import Progress, no_progress
-
-Array = NDArray[np.float64]
 
 POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared

@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Mask
 from contactlaw._jit import kernel
 from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.force import UnloadingCurve
@@ -33,7 +34,6 @@ from contactlaw.equation.outcome import History, Outcome
 from contactlaw.table import lookup, splines
 from contactlaw.table.axes import TableGrid
 
-Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
 
 STATES = 24  # on either side of the top
@@ -101,7 +101,7 @@ def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
 
 
 @kernel(cache=True)
-def _sample(law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History) -> None:
+def _sample(law: Array, shapes: Shapes, found: Outcome, along_cap: Mask, out: History) -> None:
     """Sample contacts; mark those in `along_cap` that unload along the cap, and skip them."""
     samples, room = out.time.shape[1], np.empty(force.room_for(law))
     inner = np.empty(2 * SIZE)

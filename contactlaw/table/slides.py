@@ -15,14 +15,12 @@ The grid has the same kinks as the table's. All is packed into one array, as `co
 lookup` does it: a header, the coefficients, kappa.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome, tangential, zener
 from contactlaw.equation.edge import Edges
@@ -31,8 +29,6 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.table import grid as grids
 from contactlaw.table import lookup, splines, sweep
 from contactlaw.table.nodes import Table
-
-Array = NDArray[np.float64]
 
 _CHANGE_AT, _KAPPA_AT = lookup.COR_AT, lookup.OTHERS_AT  # entries of the header
 _NODES = 49  # of each range of psi

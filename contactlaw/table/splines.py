@@ -1,16 +1,12 @@
 """Splines through the nodes of a table, packed into the arrays that the kernels read."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
 from contactlaw.table.axes import TableGrid, power_series
 from contactlaw.table.lookup import BLOCK, DEGREE, HEADER
-
-Array = NDArray[np.float64]
 
 
 def spline_coefficients(values: Array) -> Array:

@@ -1,7 +1,5 @@
 """The solver at many points, on all cores."""
 
-from __future__ import annotations
-
 import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -9,13 +7,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 
-Array = NDArray[np.float64]
 Progress = Callable[[Iterator[Any], int], Iterable[Any]]
 _T = TypeVar("_T")
 

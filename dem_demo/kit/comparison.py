@@ -4,91 +4,81 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from contactlaw import ImpactModel, Pair, laws
-from dem_demo.kit import drawing, lammps, recorder, session, signals, tale
-from dem_demo.kit.bed import Bed
+from dem_demo.kit import drawing, lammps, options, session, signals
 from dem_demo.kit.constant import LEAST, constant_model
-from dem_demo.kit.recorder import Making
-from dem_demo.kit.runs import CONSTANT, bed_recorder, read
-from dem_demo.kit.tale import Tale
+from dem_demo.kit.figures import energy, restitution, snapshot
+from dem_demo.kit.run import Making, Run, simulate
+from dem_demo.kit.scene import Bed
+
+CONSTANT = "constant.h5"
 
 
-class Plan(NamedTuple):
-    """A scene, its two models, and the time step [s]."""
+class Planned(NamedTuple):
+    """A run of a bed: its record, the model of its walls, their thickness in it [m], and the rest."""
 
-    scene: Bed
-    law: ImpactModel
-    constant: ImpactModel
-    constant_cor: float
-    step: float
-
-
-def engine() -> None:
-    """Import the engine; raises `ModuleNotFoundError` if it is missing."""
-    lammps.version()
-    lammps.rank()
+    name: str
+    model: ImpactModel
+    thickness: float
+    making: Making
 
 
-def plan(arguments: argparse.Namespace, scene: Bed, speed: float) -> Plan:
-    """Choose the models of a bed, so that arguments out of range are refused before the run.
+def plan(scene: Bed, command: str, law: str = laws.DEFAULT, constant_cor: float | None = None) -> list[Planned]:
+    """Choose the models of both runs, so that arguments out of range are refused before.
 
-    The default of the constant COR is the law's COR on a half-space at a speed [m/s]: the result of
-    a drop test on a thick block.
+    The default of the constant COR is the law's COR on a half-space at the speed at which the beads
+    come down: the result of a drop test on a thick block.
     """
     pair = Pair(scene.sphere_material, scene.plate_material)
-    law = ImpactModel(pair, getattr(arguments, "law", laws.DEFAULT), outside="clamp")
-    cor = getattr(arguments, "constant_cor", None)
+    model, cor = ImpactModel(pair, law, outside="clamp"), constant_cor
     if cor is None:
-        thick = law.restitution(max(speed, 0.1), float(scene.radius.mean()), math.inf)
-        cor = round(max(LEAST, float(thick)), 3)
-    constant = constant_model(pair, cor)
-    return Plan(scene, law, constant, cor, lammps.time_step(scene, law))
+        speed = max(float(-scene.velocity[0, 2]), 0.1)
+        cor = round(max(LEAST, float(model.restitution(speed, float(scene.radius.mean()), math.inf))), 3)
+    making = Making(model, command, lammps.time_step(scene, model))
+    return [
+        Planned(f"{scene.NAME}.h5", model, scene.thickness, making),
+        Planned(CONSTANT, constant_model(pair, cor), math.inf, making._replace(constant_cor=cor)),
+    ]
 
 
-def start(
-    arguments: argparse.Namespace, command: str, chosen: Plan, texts: Tale, drawn: type[drawing.Drawing[Any]]
-) -> int:
-    """Simulate both runs, and write the records, figures, summary and page."""
-    kind = type(chosen.scene)
-    show = session.Show(
-        kind.NAME,
-        texts.figures,
-        partial(read, scene=kind),
-        partial(tale.summary, texts),
-        partial(tale.page, texts),
-        partial(drawing.gif, drawn),
-    )
-    if lammps.rank() > 0:
-        stop = _simulate(chosen, command, None)
+def start(make: Callable[..., Bed], arguments: argparse.Namespace, command: str, own: ModuleType) -> int:
+    """Simulate both runs, and write the records, figures, summary and page; `own` draws a figure."""
+    with options.needing(options.LAMMPS):
+        from mpi4py import MPI
+
+        lammps.version()
+    with options.refusing(arguments):
+        scene = make(**options.of(make, arguments))
+        begin = partial(_simulate, scene, plan(scene, command, **options.of(plan, arguments)))
+    if MPI.COMM_WORLD.rank > 0:
+        _, stop = begin(None)
         if stop is not None:
             raise stop  # the command waits until rank 0 has kept the records
         return 0
-    return session.deliver(arguments.out, show, partial(_simulate, chosen, command))
+    show = session.Show((own, energy, restitution, snapshot), drawing.gif)
+    return session.deliver(arguments.out, show, begin)
 
 
-def _simulate(chosen: Plan, command: str, folder: Path | None) -> BaseException | None:
+def _simulate(scene: Bed, planned: list[Planned], folder: Path | None) -> tuple[list[Run[Any]], BaseException | None]:
     """Write both records into a folder, which rank 0 knows; returns what stopped a run, if any."""
     from mpi4py import MPI
 
-    first, scene = folder is not None, chosen.scene
+    first, runs = folder is not None, []
     folder = MPI.COMM_WORLD.bcast(folder)
     if first:
         scene.write_files(folder)
     MPI.COMM_WORLD.barrier()
-    for name, model, thickness, cor in (
-        (f"{scene.NAME}.h5", chosen.law, scene.thickness, None),
-        (CONSTANT, chosen.constant, math.inf, chosen.constant_cor),
-    ):
-        making = Making(chosen.law, command, chosen.step, cor)
-        writes = bed_recorder(folder / name, scene, making, MPI.COMM_WORLD.size) if first else None
-        begin = partial(lammps.Simulation, scene, model, thickness, chosen.step, folder)
-        title = "law" if cor is None else f"COR {cor:g}"
+    for name, model, thickness, making in planned:
+        begin = partial(lammps.Simulation, scene, model, thickness, making.time_step, folder)
         with signals.held():  # a signal has to stop all ranks at the same step
-            stop = recorder.run(begin, scene.frames, title, writes)
+            run, stop = simulate(begin, scene, making, folder / name if first else None)
         if stop is not None:
-            return stop
-    return None
+            return [], stop
+        runs += [run] if run is not None else []
+    return runs, None

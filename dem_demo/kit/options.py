@@ -1,15 +1,37 @@
-"""Options with units that the commands share, and their errors. No slow imports."""
+"""The options of a scene, made from the parameters of the function that makes it. No slow imports."""
 
 from __future__ import annotations
 
 import argparse
 import inspect
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from types import ModuleType
+from functools import partial
+from pathlib import Path
 from typing import Any
 
+from contactlaw import quantities
+from contactlaw.quantities import Quantity
 from dem_demo.kit import signals
+
+# Parameters that may have units.
+_QUANTITIES = {"speed": quantities.SPEED}
+_QUANTITIES |= dict.fromkeys(
+    ("radius", "thickness", "plates", "opening", "amplitude", "drum", "length"), quantities.LENGTH
+)
+LAMMPS = "demo,lammps"  # the extras that beds need
+_RANGE, _LIST = "MIN,MAX", "H,..."  # placeholders of options that take two values, or any number
+# Placeholder and help of the options that scenes share; a scene may have words of its own.
+_ABOUT = {
+    "beads": ("N", "number of beads"),
+    "radius": (_RANGE, "bead radii [m], or with units"),
+    "thickness": ("H", "thickness of the sheet metal [m], or with a unit"),
+    "sphere": ("NAME", "material of the beads"),
+    "plate": ("NAME", "material of the walls"),
+    "friction": ("MU", "coefficient of friction, on the walls and of beads on each other"),
+    "duration": ("T", "simulated time [s]"),
+    "seed": ("S", "the same seed gives the same beads"),
+}
 
 
 class Refused(Exception):
@@ -43,103 +65,71 @@ def refusing(arguments: argparse.Namespace) -> Iterator[None]:
 
 def of(make: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any]:
     """Pick the arguments of the command line that a function takes."""
-    return {name: getattr(arguments, name) for name in inspect.signature(make).parameters}
+    given = vars(arguments)
+    return {name: given[name] for name in inspect.signature(make).parameters if name in given}
 
 
-def text(numbers: Sequence[float]) -> str:
-    """Write numbers as an option takes them.
+def add_scene(
+    commands: Any,
+    make: Callable[..., Any],
+    about: Mapping[str, tuple[str, str]],
+    start: Callable[[argparse.Namespace, str], int],
+    *,
+    help: str,
+    description: str,
+) -> argparse.ArgumentParser:
+    """Add a scene to the commands, with an option for each parameter of the function that makes it.
 
-    Examples
-    --------
-    >>> text((0.5e-3, 1.0))
-    '0.0005,1'
+    `about` has a placeholder and a help text for each parameter that scenes do not share.
     """
-    return ",".join(f"{number:g}" for number in numbers)
-
-
-def quantity(
-    add: Any, name: str, read: Callable[[str], Any], metavar: str, default: float | Sequence[float], about: str
-) -> None:
-    """Add an option for one number or several, with units, which one of the functions below reads."""
-    numbers = default if isinstance(default, Sequence) else (default,)
-    add(name, type=read, metavar=metavar, default=text(numbers), help=about)
-
-
-def lengths(words: str) -> tuple[float, ...]:
-    """Read lengths [m], or with units."""
-    return _values(words, "LENGTH")
-
-
-def length(words: str) -> float:
-    """Read one length [m], or with a unit."""
-    return _one(words, lengths(words))
-
-
-def speed(words: str) -> float:
-    """Read one speed [m/s], or with a unit."""
-    return _one(words, _values(words, "SPEED"))
-
-
-def radii(words: str) -> tuple[float, float]:
-    """Read two lengths [m], or with units."""
-    return _two(words, lengths(words))
-
-
-def speeds(words: str) -> tuple[float, float]:
-    """Read two speeds [m/s], or with units."""
-    return _two(words, _values(words, "SPEED"))
-
-
-def _values(words: str, quantity: str) -> tuple[float, ...]:
-    from contactlaw import quantities
-
-    try:
-        return quantities.values(words, getattr(quantities, quantity))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
-def _one(words: str, found: tuple[float, ...]) -> float:
-    if len(found) != 1:
-        raise argparse.ArgumentTypeError(f"expected one number, got {words!r}")
-    return found[0]
-
-
-def _two(words: str, found: tuple[float, ...]) -> tuple[float, float]:
-    if len(found) != 2:
-        raise argparse.ArgumentTypeError(f"expected two numbers MIN,MAX, got {words!r}")
-    return found[0], found[1]
-
-
-def add_law(add: Any) -> None:
-    """Add the option for the law."""
-    add(
-        "--law",
-        metavar="NAME",
-        default=argparse.SUPPRESS,
-        help="contact law, of those that contactlaw cor --help lists (default: the one there)",
+    name = make.__name__
+    what = (
+        f"Writes {name}.h5, index.html, figures (PNG), {name}.gif and summary.txt. What has been computed is kept "
+        "if it is stopped. All numbers are in SI units."
     )
-
-
-def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
-    """Add the options of every bed; `wall` and `beads` are its words in the help texts."""
-    quantity(add, "--thickness", length, "H", defaults.THICKNESS, "thickness of the sheet metal [m], or with a unit")
-    add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
-    add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet metal")
-    add(
-        "--friction",
-        type=float,
-        metavar="MU",
-        default=defaults.FRICTION,
-        help=f"coefficient of friction, on the {wall} and of beads on each other",
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=help, description=f"{description} {what}", formatter_class=argparse.ArgumentDefaultsHelpFormatter
     )
-    add("--duration", type=float, metavar="T", default=defaults.DURATION, help="simulated time [s]")
-    add("--seed", type=int, metavar="S", default=defaults.SEED, help=f"the same seed gives the same {beads}")
-    add_law(add)
-    add(
+    for key, parameter in inspect.signature(make).parameters.items():
+        metavar, words = {**_ABOUT, **about}[key]
+        default = parameter.default
+        kind: Callable[[str], Any] = type(default)
+        if key in _QUANTITIES:
+            values = default if isinstance(default, tuple) else (default,)
+            default, kind = ",".join(f"{one:g}" for one in values), partial(_read, _QUANTITIES[key], metavar)
+        elif default is None:
+            default, kind = argparse.SUPPRESS, float
+        command.add_argument(f"--{key}", type=kind, metavar=metavar, default=default, help=words)
+    law = "contact law, of those that contactlaw cor --help lists (default: the one there)"
+    command.add_argument("--law", metavar="NAME", default=argparse.SUPPRESS, help=law)
+    command.add_argument("--out", type=Path, metavar="DIR", default=Path(name), help="folder for the results")
+    command.set_defaults(start=start)
+    return command
+
+
+def add_bed(commands: Any, make: Callable[..., Any], *, description: str, **scene: Any) -> None:
+    """Add a scene that runs twice in LAMMPS."""
+    twice = (
+        f"{description} It is simulated twice: under the law, and with one COR for all impacts on the walls, which "
+        "constant.h5 records. Writes a dump for OVITO, too. Works under mpirun."
+    )
+    add_scene(commands, make, description=twice, **scene).add_argument(
         "--constant-cor",
         type=float,
         metavar="E",
         default=argparse.SUPPRESS,
-        help=f"COR of the other run (default: the law's for a thick block, at the speed of the {beads})",
+        help="COR of the other run (default: the law's for a thick block, at the speed of --speed)",
     )
+
+
+def _read(quantity: Quantity, metavar: str, words: str) -> float | tuple[float, ...]:
+    """Read one number, two, or several, each with its unit or all in SI units."""
+    try:
+        found = quantities.values(words, quantity)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    count = {_RANGE: 2, _LIST: len(found)}.get(metavar, 1)
+    if len(found) != count:
+        expected = "one number" if count == 1 else f"two numbers {_RANGE}"
+        raise argparse.ArgumentTypeError(f"expected {expected}, got {words!r}")
+    return found if metavar in (_RANGE, _LIST) else found[0]

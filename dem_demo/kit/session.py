@@ -1,32 +1,42 @@
-"""From a command to its folder: simulate, read the record, print, draw, and move all files."""
+"""From a command to its folder: simulate, print, draw, and move all files."""
 
 from __future__ import annotations
 
+import base64
+import datetime
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from contactlaw import _atomic
+import numpy as np
+
+from contactlaw import _atomic, style
+from contactlaw._readable import scale_of
+from contactlaw._version import VERSION
+from contactlaw.reporting import page as common
+from contactlaw.reporting import run as of_any_run
+from contactlaw.reporting import summary as tables
+from dem_demo.kit.run import Run, Runs
+from dem_demo.kit.scene import Facts
 from dem_demo.kit.signals import Interrupted
 
 FORESEEN = Interrupted, OSError, ValueError, RuntimeError  # their messages suffice: no traceback
+_WIDTH = 42
 
 
 class Show(NamedTuple):
-    """How a scene makes its files. A run is what `read` returns."""
+    """What draws a scene, and what its page has beside that of other scenes."""
 
-    name: str  # of the scene; its record is NAME.h5, its film NAME.gif
-    figures: ModuleType  # package with the `names` and `draw` of a `Gallery`
-    read: Callable[[Path], Any]  # reads the records in a folder
-    summary: Callable[[Any], str]
-    page: Callable[[Any, Mapping[str, bytes], bytes], str]
+    figures: Sequence[ModuleType]  # each has `draw(runs)`; its docstring is the caption
     film: Callable[[Any], bytes]
+    package: str = "dem_demo.kit"  # that has the template page.html
+    data: Callable[[Any], Mapping[str, Any]] = lambda runs: {}  # for the template
 
 
-def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | None]) -> int:
+def deliver(out: Path, show: Show, simulate: Callable[[Path], tuple[list[Run[Any]], BaseException | None]]) -> int:
     """Simulate a scene and write its files.
 
     Of a run that has not come to its end, with all its figures, the records alone are kept, as
@@ -34,12 +44,12 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     it is. The next one that comes to its end removes them.
     """
     with _atomic.folder(out) as folder:
-        text, stop = "", simulate(folder)
+        text = ""
+        runs, stop = simulate(folder)
         if stop is None:
             try:
-                run = show.read(folder)
-                text = f"{show.summary(run)}\n"
-                make(show, run, text, folder)
+                text = f"{summary(runs)}\n"
+                make(show, runs, text, folder)
             except (Exception, Interrupted) as error:
                 text, stop = "", error
         if stop is not None:
@@ -64,15 +74,8 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     return int(getattr(stop, "exit_status", 1))
 
 
-def make(show: Show, run: Any, summary: str, folder: Path) -> None:
-    """Make all files of a run, the summary first."""
-    (folder / "summary.txt").write_text(summary, encoding="utf-8")
-    pictures = {name: show.figures.draw(name, run) for name in show.figures.names()}
-    film = show.film(run)
-    (folder / "index.html").write_text(show.page(run, pictures, film), encoding="utf-8")
-    for name, picture in pictures.items():
-        (folder / f"{name}.png").write_bytes(picture)
-    (folder / f"{show.name}.gif").write_bytes(film)
+def _partial(record: Path) -> Path:
+    return record.with_stem(f"{record.stem}-partial")
 
 
 def sentence(error: BaseException) -> str:
@@ -82,5 +85,81 @@ def sentence(error: BaseException) -> str:
     return f"{where}: {text}" if where else text
 
 
-def _partial(record: Path) -> Path:
-    return record.with_stem(f"{record.stem}-partial")
+def make(show: Show, runs: Runs[Any], text: str, folder: Path) -> None:
+    """Make all files of a run but the records, the summary first."""
+    (folder / "summary.txt").write_text(text, encoding="utf-8")
+    modules, pictures = {module.__name__.rpartition(".")[2]: module for module in show.figures}, {}
+    for name, module in sorted(modules.items()):
+        with style.applied():
+            pictures[name] = style.png(module.draw(runs))
+        (folder / f"{name}.png").write_bytes(pictures[name])
+    film = show.film(runs)
+    (folder / f"{runs[0].scene.NAME}.gif").write_bytes(film)
+    run = runs[0]
+    made, engine = run.record.made, run.record.made["engine"]
+    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    page = common.template(show.package, "page.html").render(
+        run.scene.PAGE,
+        title=f"{run.scene.PAGE['heading']}: what contactlaw gives a particle simulation",
+        facts=title(run),
+        name=run.scene.NAME,
+        film=f"data:image/gif;base64,{base64.b64encode(film).decode('ascii')}",
+        measured=_columns(runs),
+        impacts=of_any_run.Run(run.record),
+        summary=tables,
+        figures=common.shown(modules.__getitem__, pictures),
+        command=run.making.command,
+        law=run.law,
+        source=run.model.force_law.source,
+        made=common.made(now, {"contactlaw": VERSION, engine: made["version_engine"]}),
+        **show.data(runs),
+    )
+    (folder / "index.html").write_text(page, encoding="utf-8")
+
+
+def title(run: Run[Any]) -> tuple[str, str]:
+    """Title in two lines: beads and walls; duration or motion, engine, law and seed."""
+    (what, how), made = run.scene.title(), run.record.made
+    ranks = made.get("ranks", 1)
+    engine = f"in {made['engine']}" + f" on {ranks} ranks" * (ranks > 1)
+    return what, f"{how}, friction {run.scene.friction:g}, {engine}, law {run.law}, seed {run.scene.seed}"
+
+
+def summary(runs: Runs[Any]) -> str:
+    """Write the summary: each run, and that under the law as `contactlaw report` has it."""
+    columns = [[name.ljust(_WIDTH), *(f"{value:>18}" for value in values)] for name, *values in _columns(runs)]
+    return "\n".join([*title(runs[0]), "", *map("".join, columns), "", tables.text(of_any_run.Run(runs[0].record))])
+
+
+def _columns(runs: Runs[Any]) -> list[list[str]]:
+    """Names of the facts, and their values in each run."""
+    columns = [dict(facts(run)) for run in runs]
+    return [[name, *(column.get(name, "-") for column in columns)] for name in columns[0]]
+
+
+def facts(run: Run[Any]) -> Facts:
+    """Names and values of all facts of a run."""
+    wall, energy = run.scene.WALL, run.account
+    unit, scale = scale_of(energy.start[-1], "J")  # the same for all runs
+
+    def written(part: float) -> str:
+        return f"{part / scale:z.1f} {unit}".replace("u", "µ")
+
+    middle = np.median(run.impacts["restitution"]) if run.impacts.size else np.nan
+    return [
+        ("", run.name),
+        (f"impacts on the {wall}", f"{run.impacts.size}"),
+        ("  median COR", f"{middle:.3f}"),
+        (f"dissipated at the {wall}", written(run.dissipated.sum())),
+        ("  bending wave in the plate", written(energy.wave[-1])),
+        ("  lost at the contact", written(energy.plastic[-1])),
+        (f"friction on the {wall}", written(energy.friction[-1])),
+        ("beads on beads", written(energy.others[-1])),
+        (f"work of the {wall} on the beads", written(energy.walls[-1])),
+        ("work of gravity on the beads", written(energy.gravity[-1])),
+        ("kinetic energy at the start", written(energy.start[-1])),
+        ("kinetic energy at the end", written(energy.moving[-1])),
+        *run.scene.facts(run),
+        ("simulated", f"{run.time[-1] * 1e3:.0f} ms"),
+        ("computed in", f"{run.elapsed[-1]:.0f} s"),
+    ]

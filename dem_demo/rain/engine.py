@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import time
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
 from contactlaw.engines import pymunk as adapter
 from dem_demo.kit import signals
-from dem_demo.kit.beads import FLYING, GONE, GRAVITY, WAITING, Floats
-from dem_demo.rain.scene import Scene
+from dem_demo.kit.run import Frame
+from dem_demo.kit.scene import FLYING, GONE, GRAVITY, WAITING
+from dem_demo.rain.scene import Shower
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel, Record
-
-
-class Frame(NamedTuple):
-    """One instant of every bead.
-
-    Position (N, 2) [m], velocity (N, 2) [m/s], status (N,), and spin (N,) [rad/s],
-    counterclockwise in the figures.
-    """
-
-    position: Floats
-    velocity: Floats
-    status: NDArray[np.uint8]
-    spin: Floats
 
 
 class Rain:
@@ -35,37 +23,34 @@ class Rain:
 
     Parameters
     ----------
-    scene : Scene
+    scene : Shower
         Beads and plates.
     model : ImpactModel
         Where each collision's COR comes from.
     """
 
-    def __init__(self, scene: Scene, model: ImpactModel) -> None:
+    def __init__(self, scene: Shower, model: ImpactModel) -> None:
         self.scene = scene
         self.space = pymunk.Space()
         self.space.gravity = (0.0, -GRAVITY)
-        self.space.collision_slop = 0.01 * float(scene.beads.radius.min())
+        self.space.collision_slop = 0.01 * float(scene.radius.min())
         # For fast small beads far apart a step takes 0.1 ms with the hash, 0.5 ms with the tree.
-        cell, cells = 4.0 * float(scene.beads.radius.max()), 10 * scene.beads.radius.size
+        cell, cells = 4.0 * float(scene.radius.max()), 10 * scene.radius.size
         self.space.use_spatial_hash(cell, cells)
         self.impacts = adapter.attach(self.space, model)
-        for plate in scene.plates:
-            ends = (plate.x0, plate.y), (plate.x1, plate.y)
-            segment = pymunk.Segment(self.space.static_body, *ends, radius=0.0)
+        for (left, right), thickness in zip(scene.ends.tolist(), scene.plates, strict=True):
+            segment = pymunk.Segment(self.space.static_body, (left, 0.0), (right, 0.0), radius=0.0)
             self.space.add(segment)
-            friction = scene.friction or None
-            self.impacts.add_plate(segment, plate.thickness, friction=friction, edge="free")
-        self.mass = scene.beads.mass(scene.sphere_material.density)
+            self.impacts.add_plate(segment, thickness, friction=scene.friction or None, edge="free")
+        self.mass = scene.mass
         # First step of each bead: the one that begins after its emission.
-        self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()
+        self.first_step = np.ceil(scene.emission_time / scene.time_step).astype(int).tolist()
         self.flying: dict[int, tuple[pymunk.Body, pymunk.Circle]] = {}
         self.steps = 0
         self.emitted = 0
-        n = scene.beads.radius.size
-        self.now = Frame(
-            scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8), np.zeros(n)
-        )
+        n, self.began = scene.radius.size, time.perf_counter()
+        status = np.full(n, WAITING, np.uint8)
+        self.now = Frame(scene.position.copy(), scene.velocity.copy(), np.zeros((n, 1)), status, 0.0)
 
     def advance(self) -> None:
         """Simulate one frame, emitting beads when their time has come."""
@@ -79,11 +64,11 @@ class Rain:
             self.steps += 1
 
     def _emit(self, n: int) -> None:
-        beads = self.scene.beads
-        mass, radius = float(self.mass[n]), float(beads.radius[n])
+        scene = self.scene
+        mass, radius = float(self.mass[n]), float(scene.radius[n])
         body = pymunk.Body(mass, 0.4 * mass * radius**2)  # moment of inertia of a solid sphere
-        body.position = tuple(beads.position[n].tolist())
-        body.velocity = tuple(beads.velocity[n].tolist())
+        body.position = tuple(scene.position[n].tolist())
+        body.velocity = tuple(scene.velocity[n].tolist())
         circle = pymunk.Circle(body, radius)
         self.space.add(body, circle)
         # Registered in the order of emission, beads have the same index in adapter and scene.
@@ -94,15 +79,16 @@ class Rain:
     def look(self) -> Frame:
         """Read the bodies, and take those below the floor out of the space."""
         for n, (body, circle) in list(self.flying.items()):
-            self.now.position[n] = body.position
-            self.now.velocity[n] = body.velocity
-            self.now.spin[n] = body.angular_velocity
-            if self.now.position[n, 1] < self.scene.floor:
+            if body.position.y < self.scene.floor:
                 self.now.status[n] = GONE
-                self.now.velocity[n] = self.now.spin[n] = 0.0
                 self.space.remove(circle, body)
                 del self.flying[n]
-        return self.now
+                continue
+            self.now.position[n] = body.position
+            self.now.velocity[n] = body.velocity
+            if self.scene.friction:  # without it, the spin is rounding
+                self.now.spin[n] = body.angular_velocity
+        return self.now._replace(elapsed=time.perf_counter() - self.began)
 
     def record(self) -> Record:
         """All impacts so far."""

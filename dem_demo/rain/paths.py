@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dem_demo.kit.beads import FLYING, GRAVITY, Floats
-from dem_demo.rain.measure import one_for_all, outside
-from dem_demo.rain.record import Run
+from dem_demo.kit.run import Run
+from dem_demo.kit.scene import FLYING, GRAVITY, Floats
+from dem_demo.rain.scene import Shower
 
 # One piece: from `start` to `end` [s] at x + u t, y + v t - fall t^2/2 with t since its start.
 PIECE = np.dtype(
@@ -31,27 +29,42 @@ _MOST = 3000  # most beads on a page; a thousand take some 0.2 MB
 _PLACE = 5e-5  # [m], invisible difference of two positions
 # A bead at rest is slower than this many times the speed that gravity adds in a frame.
 _STILL = 2.0
-_UNMARKED = 0.0, math.nan, math.nan, 0
 
 
-@functools.lru_cache(maxsize=1)  # shared by snapshot, film and page
-def pieces(run: Run) -> NDArray[np.void]:
-    """Cut the paths of beads into parabolas, and into pieces at rest."""
-    found: list[tuple[float, ...]] = []
-    hits = _hits(run)
+def hits(run: Run[Shower]) -> tuple[NDArray[np.int64], Floats, NDArray[np.int64]]:
+    """List the collisions of each bead by time, also those that are no impacts.
+
+    Returns bead, time [s] and row of the record; a collision of two beads is listed for both.
+    """
+    rows = run.record.rows
+    bead, time = np.r_[rows["bead"], rows["other"]], np.tile(rows["time"], 2)
+    order = np.lexsort((time, bead))
+    order = order[bead[order] >= 0]
+    return bead[order], time[order], order % max(1, rows.size)
+
+
+@functools.lru_cache(maxsize=1)  # shared by film and page
+def pieces(run: Run[Shower]) -> NDArray[np.void]:
+    """Cut the paths of beads into parabolas, and into pieces at rest.
+
+    A piece is what fits consecutive frames; the collisions between two frames say when it ends.
+    """
+    (struck, times, _), found = hits(run), []
     for bead in drawn(run).tolist():
-        found += _flight(run, bead, hits[bead])
-    made = np.array(found, dtype=PIECE) if found else np.empty(0, PIECE)
+        a, b = np.searchsorted(struck, [bead, bead + 1])
+        found += _flight(run, bead, times[a:b])
+    made = np.zeros(len(found), PIECE)
+    made[list(PIECE.names or ())[:9]] = np.array(found, PIECE.descr[:9])
     turned = np.r_[0.0, np.cumsum(made["spin"] * (made["end"] - made["start"]))]
     made["angle"] = turned[:-1] - turned[np.searchsorted(made["bead"], made["bead"])]
     _mark(made, run)
     return made
 
 
-def drawn(run: Run) -> NDArray[np.int64]:
-    """Choose the beads that are drawn, by index: all, or `_MOST` of them evenly."""
-    every = run.scene.beads.radius.size
-    return np.unique(np.linspace(0, every - 1, min(every, _MOST)).round().astype(int))
+def drawn(run: Run[Shower]) -> NDArray[np.int64]:
+    """Beads that are drawn: all, or an even sample of very many."""
+    count = run.scene.radius.size
+    return np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
 
 
 def at(made: NDArray[np.void], time: float) -> NDArray[np.void]:
@@ -67,93 +80,54 @@ def places(made: NDArray[np.void], time: float | Floats) -> Floats:
     return np.column_stack((made["x"] + made["u"] * t, height))
 
 
-def _hits(run: Run) -> list[Floats]:
-    """Find the times of the recorded collisions of each bead, ascending."""
-    rows = run.collisions
-    bead = np.r_[rows["bead"], rows["other"]]
-    time = np.r_[rows["time"], rows["time"]]
-    order = np.lexsort((time, bead))
-    bead, time = bead[order], time[order]
-    ends = np.searchsorted(bead, np.arange(run.scene.beads.radius.size + 1))
-    return [time[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
-
-
-class _Free(NamedTuple):
-    """State of a bead in free flight, or at rest, at one instant."""
-
-    time: float
-    x: float
-    y: float
-    u: float
-    v: float
-    fall: float
-    spin: float
-
-    def later(self, time: float) -> _Free:
-        """State at another time of the same flight."""
-        t = time - self.time
-        y = self.y + self.v * t - 0.5 * self.fall * t * t
-        v = self.v - self.fall * t
-        return self._replace(time=time, x=self.x + self.u * t, y=y, v=v)
-
-    def meets(self, other: _Free, slow: float) -> bool:
-        """Whether another state at the same time is part of the same flight."""
-        return (
-            math.hypot(self.x - other.x, self.y - other.y) < _PLACE
-            and math.hypot(self.u - other.u, self.v - other.v) < slow
-        )
-
-
-def _flight(run: Run, bead: int, hits: Floats) -> list[tuple[float, ...]]:
-    states = _states(run, bead)
-    if not states:
-        return []
-    begin, now, found = float(run.scene.beads.emission_time[bead]), states[0], []
-    slow = _STILL * GRAVITY / run.scene.frame_rate
-    for before, new in itertools.pairwise(states):
-        if now.later(new.time).meets(new, slow):
-            continue
-        between = hits[(hits > before.time) & (hits <= new.time)].tolist()
-        between = between or [0.5 * (before.time + new.time)]
-        found.append((begin, between[0], now))
-        if len(between) > 1:  # between unknown impacts: a straight line
-            found.append((between[0], between[-1], _straight(now, new, between)))
-        lies = math.hypot(new.u, new.v) < slow
-        begin, now = between[-1], new._replace(fall=0.0) if lies else new
-    found.append((begin, states[-1].time + 1.0 / run.scene.frame_rate, now))
-    return [(bead, a, b, *free.later(a)[1:], *_UNMARKED) for a, b, free in found]
-
-
-def _states(run: Run, bead: int) -> list[_Free]:
+def _flight(run: Run[Shower], bead: int, times: Floats) -> list[tuple[float, ...]]:
+    """Cut the path of a bead into pieces; its collisions have these times."""
     frames = np.flatnonzero(run.status[:, bead] == FLYING)
-    spin = np.zeros(frames.size) if run.spin is None else run.spin[frames, bead]
-    columns = run.time[frames], run.position[frames, bead], run.velocity[frames, bead], spin
-    return [
-        _Free(time, x, y, u, v, GRAVITY, turn)
-        for time, (x, y), (u, v), turn in zip(*(one.tolist() for one in columns), strict=True)
-    ]
+    if not frames.size:
+        return []
+    dt = 1.0 / run.scene.FRAME_RATE
+    slow = _STILL * GRAVITY * dt
+    time, spin = run.time[frames], run.spin[frames, bead, 0]
+    place, speed = (one[frames, bead].astype(float) for one in (run.position, run.velocity))
+    # A bead lies if it is slow and gravity does not change that until the next frame.
+    change = np.diff(speed, axis=0, append=speed[-1:])
+    still = (np.hypot(*speed.T) < slow) & (np.abs(change[:, 1]) < 0.5 * GRAVITY * dt)
+    fall = np.where(still, 0.0, GRAVITY)
+
+    def moved(n: int, at: float) -> tuple[float, float, float, float]:
+        """Place and velocity at a time of the flight that the bead has in a frame."""
+        (x, y), (u, v), t = place[n], speed[n], at - time[n]
+        return x + u * t, y + v * t - 0.5 * fall[n] * t**2, u, v - fall[n] * t
+
+    down = np.array([0.0, 1.0])
+    missed = np.diff(place, axis=0) - speed[:-1] * dt + 0.5 * np.outer(fall[:-1], down) * dt**2
+    turned = change[:-1] + np.outer(fall[:-1], down) * dt
+    other = (np.hypot(*missed.T) > _PLACE) | (np.hypot(*turned.T) > slow) | (np.diff(fall) != 0.0)
+    begin, n, found = float(run.scene.emission_time[bead]), 0, []
+    for new in (np.flatnonzero(other) + 1).tolist():
+        before, after = time[new - 1], time[new]
+        between = times[(times > before) & (times <= after)].tolist() or [0.5 * (before + after)]
+        found.append((bead, begin, between[0], *moved(n, begin), fall[n], spin[n]))
+        begin = between[-1]
+        if len(between) > 1:  # between unknown impacts: a straight line
+            (x, y, *_), (to_x, to_y, *_) = moved(n, between[0]), moved(new, begin)
+            t = max(begin - between[0], 1e-9)
+            found.append((bead, between[0], begin, x, y, (to_x - x) / t, (to_y - y) / t, 0.0, spin[new]))
+        n = new
+    return [*found, (bead, begin, time[-1] + dt, *moved(n, begin), fall[n], spin[n])]
 
 
-def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
-    a, b = old.later(between[0]), new.later(between[-1])
-    t = max(b.time - a.time, 1e-9)
-    return _Free(a.time, a.x, a.y, (b.x - a.x) / t, (b.y - a.y) / t, 0.0, b.spin)
-
-
-def _mark(made: NDArray[np.void], run: Run) -> None:
+def _mark(made: NDArray[np.void], run: Run[Shower]) -> None:
     """Write the last impact on a plate, and the rebound with the other COR, into the pieces."""
-    rows = run.on_plates
-    constant = one_for_all(run)
-    far = outside(run)
-    order = np.lexsort((rows["time"], rows["bead"]))
-    key = rows["bead"][order], rows["time"][order]
-    for piece in made:
-        first, last = np.searchsorted(key[0], [piece["bead"], piece["bead"] + 1])
-        n = first + int(np.searchsorted(key[1][first:last], piece["start"], side="right")) - 1
-        if n < first:
-            continue
-        hit = order[n]
-        piece["restitution"] = rows["restitution"][hit]
-        piece["outside"] = far[hit]
-        if rows["time"][hit] == piece["start"]:
-            piece["other_v"] = constant * rows["approach_speed"][hit]
+    made["restitution"] = made["other_v"] = math.nan
+    if not run.impacts.size:
+        return
+    order = np.lexsort((run.impacts["time"], run.impacts["bead"]))
+    rows, span = run.impacts[order], 2.0 * run.time[-1]  # longer than the run: sorts by bead first
+    keys = rows["bead"] * span + rows["time"]
+    n = np.searchsorted(keys, made["bead"] * span + made["start"], side="right") - 1
+    last = rows[n]
+    hit = (n >= 0) & (last["bead"] == made["bead"])
+    began = hit & (last["time"] == made["start"])
+    made["restitution"][hit], made["outside"][hit] = last["restitution"][hit], last["flags"][hit] != 0
+    made["other_v"][began] = run.mean_cor * last["approach_speed"][began]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from dem_demo.kit.beads import Floats
+from dem_demo.kit.scene import Floats
 
 FORM = "deck.stl"
 _PITCH = 2.0  # [opening], distance of openings: they take 20 % of the area
@@ -70,6 +71,10 @@ class Deck:
             for where, cell in ((margin, _cell(0.0)), (~margin, _cell(0.5 / _PITCH)))
         ]
         return np.concatenate([*parts, *self._walls()])
+
+    def on_sheet(self) -> NDArray[np.bool_]:
+        """Whether each triangle belongs to the sheet, not to a wall."""
+        return np.asarray(np.ptp(self.triangles()[:, :, 2], axis=1) == 0.0)
 
     def _walls(self) -> list[Floats]:
         """Walls whose lower edges have the corners of the cells above them."""

@@ -1,5 +1,6 @@
 """Oblique impacts: table against integration, mechanics that hold whatever the law, refusals."""
 
+import kinds
 import numba
 import numpy as np
 import polymer
@@ -12,6 +13,7 @@ PAIRS = {
     "fem": cl.ImpactModel(cl.Pair("alumina", "aluminium-6061-t6")),
     "hertz": cl.ImpactModel(cl.Pair("alumina", "glass"), law="hertz"),
     "losses and flow": polymer.WEAK_MODEL,
+    "rate": kinds.model("rate of the sphere"),
 }
 REST = np.zeros(3)
 
@@ -87,7 +89,7 @@ def random_beads(count):
     return velocity, generator.normal(size=(count, 3)) * 500, normal
 
 
-@pytest.mark.parametrize("law", ["myc", "losses and flow"])
+@pytest.mark.parametrize("law", ["myc", "losses and flow", "rate"])
 def test_collide_keeps_momenta_and_agrees_with_oblique(law):
     model, count = PAIRS[law], 1000
     velocity, spin, normal = random_beads(count)

@@ -14,15 +14,7 @@ from contactlaw.equation.numbers import Impact
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import law_of, pair_numbers
 
-SPEED = np.array([3.0, 12.0, 25.0, 40.0, 55.0])
-THICKNESS = np.array([0.4e-3, 0.7e-3, 1e-3, 3e-3, 0.5e-3])
 RADIUS = 0.9e-3
-
-
-def solved(pair, speed=1.0, radius=1.0, thickness=1.0):
-    """Compute ln(COR) with sizes changed by these factors."""
-    impacts = SPEED * speed, RADIUS * radius, THICKNESS * thickness
-    return np.log(cl.ImpactModel(pair, law="myc").solve(*impacts, rtol=1e-13).restitution)
 
 
 def integrated(name, pair, speed, thickness):
@@ -70,18 +62,6 @@ INPUTS = {
 }
 # next to a corner of the loading curve
 CORNERS = {"stronge": 8.46, "kogut_etsion": 72.8, "jackson_green": 17.7}
-
-
-@pytest.fixture(scope="module")
-def moved(model):
-    return model.sensitivity(SPEED, RADIUS, THICKNESS)
-
-
-@pytest.mark.parametrize("name", INPUTS)
-def test_elasticities_are_those_of_the_solver(pair, moved, name):
-    expected = quotient(functools.partial(INPUTS[name], solved, pair))
-    assert getattr(moved, name) == pytest.approx(expected, abs=2e-6)
-    assert np.abs(expected).max() > 0.02  # there was something to compare
 
 
 @pytest.fixture(scope="module", params=laws.names())
@@ -165,6 +145,7 @@ def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
         return np.log(found.restitution)
 
     ours = model.sensitivity(*impacts)
+    assert set(INPUTS) == {field.name for field in dataclasses.fields(ours)}
     for field, way in INPUTS.items():
         # a law's numbers are rounded to six digits, which such a step makes 2e-3 of a derivative
         # by one of them at most; most take no such number, and err by the step alone
@@ -214,14 +195,6 @@ def test_the_strength_is_the_whole_flow_stress(flow):
     found = cl.ImpactModel(cl.Pair(metal, plate)).sensitivity(*impact)
     assert found.yield_strength == pytest.approx(expected, rel=1e-3)
     assert expected > 0.1
-
-
-def test_every_input_is_compared(moved):
-    assert set(INPUTS) == {field.name for field in dataclasses.fields(moved)}
-
-
-def test_other_units_change_nothing(moved):
-    assert_units_change_nothing(moved)
 
 
 def test_on_a_half_space_the_plate_does_not_bend(model):

@@ -6,6 +6,7 @@ import io
 import h5py
 import numpy as np
 import pytest
+from command_line import misused, refused
 
 import contactlaw as cl
 from contactlaw import _atomic
@@ -183,12 +184,7 @@ def test_a_speed_table(model, capsys):
 )
 def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(argv) == 1
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith("contactlaw: ")
-    assert len(captured.err.splitlines()) == 1
-    assert message in captured.err
+    refused(argv, message, capsys=capsys)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -203,7 +199,4 @@ def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, m
     ],
 )
 def test_wrong_usage_is_status_2(argv, capsys):
-    with pytest.raises(SystemExit) as stop:
-        main(argv)
-    assert stop.value.code == 2
-    assert "usage:" in capsys.readouterr().err
+    misused(argv, "", capsys)

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from command_line import refused
 
 import contactlaw as cl
 from contactlaw.cli import main
@@ -83,8 +84,7 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
-    assert main(["cor", "--sphere", text, *IMPACT]) == 1
-    assert message in capsys.readouterr().err
+    refused(["cor", "--sphere", text, *IMPACT], message, capsys=capsys)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Runs of the demo that several files of tests read."""
 
 import os
+import pickle
 
 import pytest
 from demos import DRUM, RAIN, SIEVE
@@ -8,6 +9,7 @@ from filelock import FileLock
 from unrendered import blank
 
 from dem_demo import cli
+from dem_demo.kit import session
 
 
 def made(name, *options, rendered=False):
@@ -24,6 +26,12 @@ def made(name, *options, rendered=False):
         out = base / name / "out"
         with FileLock(base / f"{name}.lock"), pytest.MonkeyPatch.context() as patch:
             out.parent.mkdir(exist_ok=True)
+
+            def keep(show, runs, *to, make=session.make):
+                make(show, runs, *to)
+                (base / f"{name}.pickle").write_bytes(pickle.dumps(runs))
+
+            patch.setattr(session, "make", keep)
             if not rendered:
                 patch.setattr("contactlaw.style.png", blank)
             if not out.exists():
@@ -40,6 +48,16 @@ sieve = made("sieve", *SIEVE, rendered=True)
 
 
 @pytest.fixture
+def kept(monkeypatch):
+    """Runs of each command, in a list."""
+    found, make = [], session.make
+    monkeypatch.setattr(session, "make", lambda show, runs, *to: (found.append(runs), make(show, runs, *to)))
+    return found
+
+
+@pytest.fixture
 def nothing_drawn(monkeypatch):
-    """Runs leave their record and summary alone: to draw takes most of a short one."""
-    monkeypatch.setattr("dem_demo.kit.session.make", lambda *_: None)
+    """Runs of each command, which leaves its record alone: to draw takes most of a short one."""
+    found = []
+    monkeypatch.setattr(session, "make", lambda show, runs, *to: found.append(runs))
+    return found

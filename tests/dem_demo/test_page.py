@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 from browser import WIDE
+from demos import runs_of
 from unrendered import blank
 
 from dem_demo import cli
 from dem_demo.rain import paths
-from dem_demo.rain.record import read
 
 PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
@@ -62,7 +62,7 @@ def test_nothing_moves_for_those_who_prefer_that(folder, page):
 
 def test_the_animation_goes_where_the_beads_went(folder):
     """The pieces of flight on the page pass through every recorded frame."""
-    run = read(folder / "rain.h5")
+    (run,) = runs_of(folder)
     made = paths.pieces(run)
     seen = 0
     for n, time in enumerate(run.time.tolist()):
@@ -73,13 +73,12 @@ def test_the_animation_goes_where_the_beads_went(folder):
         off = abs(paths.places(now, time + 1e-9) - where)[flying]
         assert off.max(initial=0.0) < 1e-4  # [m]; the smallest radius is 5e-4
         seen += off.size
-        if run.spin is not None:
-            assert (now["spin"] == run.spin[n, now["bead"]])[flying].all()
+        assert (now["spin"] == run.spin[n, now["bead"], 0])[flying].all()
     assert seen > 1000
 
 
 def test_a_bead_turns_on_from_piece_to_piece(folder):
-    made = paths.pieces(read(folder / "rain.h5"))
+    made = paths.pieces(*runs_of(folder))
     one, two = made[:-1], made[1:]
     turned = one["angle"] + one["spin"] * (one["end"] - one["start"])
     np.testing.assert_allclose(two["angle"], np.where(one["bead"] == two["bead"], turned, 0.0), atol=1e-6)

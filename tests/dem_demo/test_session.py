@@ -5,8 +5,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
-from typing import NamedTuple
+from types import ModuleType, SimpleNamespace
 
 import h5py
 import numpy as np
@@ -17,14 +16,11 @@ import contactlaw as cl
 from contactlaw.engines.record import IMPACT
 from dem_demo import cli
 from dem_demo.kit import session, signals
-from dem_demo.kit.recorder import Dataset, Making, Recorder, run
+from dem_demo.kit.run import Frame, Making, simulate
+from dem_demo.rain.scene import rain
 
 FRAMES, IMPACTS = 50, 20
-FILES = {"dust.h5", "summary.txt", "index.html", "dust.gif", "one.png", "two.png"}
-
-
-class Frame(NamedTuple):
-    noise: np.ndarray  # does not compress
+FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif", "one.png", "two.png"}
 
 
 class Dust:
@@ -33,10 +29,10 @@ class Dust:
     def __init__(self):
         self.random, self.frames = np.random.default_rng(1), 0
         self.before, self.middle = lambda: None, lambda: None
-        self.figures = SimpleNamespace(names=lambda: ["one", "two"], draw=self.draw)
-
-    def draw(self, name, run):
-        return b"picture" * 6000
+        self.draw = lambda: b"picture" * 6000
+        self.figures = ModuleType("one", "First."), ModuleType("two", "Second.")
+        for figure in self.figures:
+            figure.draw = lambda runs: self.draw()
 
     def advance(self):
         self.frames += 1
@@ -44,29 +40,24 @@ class Dust:
             self.middle()
 
     def look(self):
-        return Frame(self.random.random(1000))
+        noise = self.random.random((1000, 2))  # does not compress
+        return Frame(noise, 0.0 * noise, 0.0 * noise, np.ones(1000), 0.0)
 
     def record(self):
-        return cl.Record(np.zeros(IMPACTS, IMPACT))
+        rows = np.zeros(IMPACTS, IMPACT)
+        rows["plate"] = -1
+        return cl.Record(rows, made={"engine": "none", "version_engine": "0"})
 
     def start(self, arguments, command):
         self.before()
-        show = session.Show(
-            "dust",
-            self.figures,
-            lambda folder: self,
-            lambda run: "Dust.",
-            lambda run, pictures, film: "<p>Dust</p>",
-            lambda run: b"film" * 10_000,
-        )
+        scene = rain(beads=1000, duration=FRAMES / 200)
 
-        def simulate(folder):
-            making = Making(cl.ImpactModel(cl.Pair("glass", "glass")), command, 1.0)
-            noise = [Dataset("noise", "f8", "1", "noise")]
-            recorder = Recorder(folder / "dust.h5", making, {}, lambda file: file.create_group("dust"), noise, 100.0)
-            return run(lambda: self, FRAMES, "dust", recorder)
+        def simulated(folder):
+            making = Making(cl.ImpactModel(cl.Pair("glass", "glass"), "fem"), command, 1.0)
+            run, stop = simulate(lambda: self, scene, making, folder / "rain.h5")
+            return [run], stop
 
-        return session.deliver(arguments.out, show, simulate)
+        return session.deliver(arguments.out, session.Show(self.figures, lambda runs: b"film" * 10_000), simulated)
 
 
 @pytest.fixture
@@ -75,6 +66,7 @@ def dust(monkeypatch):
     made = Dust()
     given = SimpleNamespace(parse_args=lambda argv: SimpleNamespace(start=made.start, out=Path(argv[-1])))
     monkeypatch.setattr(cli, "parser", lambda: given)
+    monkeypatch.setattr("contactlaw.style.png", lambda picture: picture)
     return made
 
 
@@ -106,18 +98,18 @@ def test_what_ends_a_run_in_the_middle_keeps_the_record_until_then(
     """An earlier run in the folder stays."""
     out = tmp_path / "out"
     assert main(out) == 0
-    before = (out / "dust.h5").read_bytes()
+    before = (out / "rain.h5").read_bytes()
     dust.frames, dust.middle = 0, stop
     assert main(out) == status
     errors = capsys.readouterr().err
     assert ("Traceback" in errors) is traceback
     why = "interrupted by " + request.node.callspec.id if status > 1 else "in the middle"
     assert "dem-demo: stopped: " in errors.splitlines()[-1] and why in errors.splitlines()[-1]
-    assert names(tmp_path) == {"out"} and names(out) == FILES | {"dust-partial.h5"}
-    assert (out / "dust.h5").read_bytes() == before
-    with h5py.File(out / "dust-partial.h5") as file:
+    assert names(tmp_path) == {"out"} and names(out) == FILES | {"rain-partial.h5"}
+    assert (out / "rain.h5").read_bytes() == before
+    with h5py.File(out / "rain-partial.h5") as file:
         assert file["trajectories/time"].size == FRAMES // 2
-    assert cl.read_record(out / "dust-partial.h5").rows.size == IMPACTS
+    assert cl.read_record(out / "rain-partial.h5").rows.size == IMPACTS
 
 
 class Dropped:
@@ -131,7 +123,7 @@ def test_an_interrupt_that_python_drops_ends_the_run(dust, tmp_path, monkeypatch
     dust.middle = lambda: Dropped() and None
     dust.advance = lambda: (signals.check(), Dust.advance(dust))
     assert main(tmp_path / "out") == 130
-    with h5py.File(tmp_path / "out/dust-partial.h5") as file:
+    with h5py.File(tmp_path / "out/rain-partial.h5") as file:
         assert file["trajectories/time"].size == FRAMES // 2 + 1
 
 
@@ -153,16 +145,16 @@ def test_an_error_that_a_dropped_interrupt_leaves_is_an_interrupt(while_it_runs,
 @pytest.mark.parametrize("error", [KeyError("drawing"), signal.SIGINT])
 def test_what_fails_while_figures_are_drawn_keeps_the_record_apart(error, dust, tmp_path, capsys):
     """The page in the folder stays that of the record beside it, until a run comes to its end."""
-    out, draw = tmp_path / "out", dust.figures.draw
+    out, draw = tmp_path / "out", dust.draw
     assert main(out) == 0
-    before = (out / "dust.h5").read_bytes()
+    before = (out / "rain.h5").read_bytes()
     raise_it = signal.raise_signal if isinstance(error, int) else fails(error)
-    dust.figures.draw = lambda name, run: raise_it(error)
+    dust.draw = lambda: raise_it(error)
     assert main(out) == (130 if isinstance(error, int) else 1)
     assert "dem-demo: stopped: " in capsys.readouterr().err
-    assert names(out) == FILES | {"dust-partial.h5"} and (out / "dust.h5").read_bytes() == before
-    assert cl.read_record(out / "dust-partial.h5").rows.size == IMPACTS
-    dust.figures.draw = draw
+    assert names(out) == FILES | {"rain-partial.h5"} and (out / "rain.h5").read_bytes() == before
+    assert cl.read_record(out / "rain-partial.h5").rows.size == IMPACTS
+    dust.draw = draw
     assert main(out) == 0
     assert names(out) == FILES
 
@@ -171,7 +163,7 @@ def test_a_run_that_stops_before_its_first_frame_keeps_its_contacts(dust, tmp_pa
     dust.look = fails(RuntimeError("no frame"))
     assert main(tmp_path / "out") == 1
     assert capsys.readouterr().err == "dem-demo: stopped: no frame\n"
-    assert cl.read_record(tmp_path / "out/dust-partial.h5").rows.size == IMPACTS
+    assert cl.read_record(tmp_path / "out/rain-partial.h5").rows.size == IMPACTS
 
 
 def test_files_that_may_not_grow_keep_the_impacts_without_the_frames(dust, tmp_path, capsys):
@@ -182,19 +174,19 @@ def test_files_that_may_not_grow_keep_the_impacts_without_the_frames(dust, tmp_p
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert "dem-demo: stopped: [Errno 27] File too large" in capsys.readouterr().err
-    assert names(tmp_path) == {"out"} and names(tmp_path / "out") == {"dust-partial.h5"}
-    assert cl.read_record(tmp_path / "out/dust-partial.h5").rows.size == IMPACTS
+    assert names(tmp_path) == {"out"} and names(tmp_path / "out") == {"rain-partial.h5"}
+    assert cl.read_record(tmp_path / "out/rain-partial.h5").rows.size == IMPACTS
 
 
 def test_an_earlier_run_is_replaced_and_other_files_stay(dust, tmp_path):
     out = tmp_path / "out"
     assert main(out) == 0
     (out / "notes.txt").write_text("mine")
-    before = (out / "dust.h5").read_bytes()
+    before = (out / "rain.h5").read_bytes()
     assert main(out) == 0
     assert names(out) == FILES | {"notes.txt"}
     assert (out / "notes.txt").read_text() == "mine"
-    assert (out / "dust.h5").read_bytes() != before
+    assert (out / "rain.h5").read_bytes() != before
 
 
 def test_a_file_in_the_way(dust, tmp_path, capsys):
@@ -219,8 +211,8 @@ def test_help_loads_neither_an_engine_nor_what_takes_long():
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize(("scene", "beads"), [("drum", "beads"), ("sieve", "feed")])
-def test_help_says_whose_speed_the_constant_cor_is_for(scene, beads, capsys):
+@pytest.mark.parametrize("scene", ["drum", "sieve"])
+def test_help_says_which_speed_the_constant_cor_is_for(scene, capsys):
     with pytest.raises(SystemExit):
         cli.main([scene, "--help"])
-    assert f"at the speed of the {beads})" in " ".join(capsys.readouterr().out.split())
+    assert "at the speed of --speed)" in " ".join(capsys.readouterr().out.split())

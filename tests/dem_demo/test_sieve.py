@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -14,7 +15,7 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 
 import trimesh  # noqa: E402
 import unrendered  # noqa: E402
-from demos import SIEVE  # noqa: E402
+from demos import SIEVE, runs_of  # noqa: E402
 from verlet import fallen  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
@@ -23,12 +24,8 @@ from contactlaw.reporting.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
 from dem_demo.kit.constant import constant_model  # noqa: E402
-from dem_demo.kit.measure import kept  # noqa: E402
-from dem_demo.kit.runs import read  # noqa: E402
-from dem_demo.sieve import measure  # noqa: E402
 from dem_demo.sieve import scene as scenes  # noqa: E402
 from dem_demo.sieve.deck import FORM, Deck, write_stl  # noqa: E402
-from dem_demo.sieve.scene import Sieve  # noqa: E402
 
 PAIR, LAW = cl.Pair("gamma-alumina", "glass"), "myc"
 HOLE = 2.5e-3 * 16 / math.pi * math.sin(math.pi / 16)  # [m], of a circle as long as the rim
@@ -36,7 +33,7 @@ HOLE = 2.5e-3 * 16 / math.pi * math.sin(math.pi / 16)  # [m], of a circle as lon
 
 @pytest.fixture(scope="module")
 def runs(sieve):
-    return read(sieve, Sieve)
+    return runs_of(sieve)
 
 
 @pytest.mark.parametrize("opening", [2e-3, 5e-3])
@@ -70,8 +67,8 @@ def test_the_nearest_opening_of_a_point():
 
 
 def test_impacts_lie_on_their_triangles_where_the_deck_is_then(runs):
-    for run in runs.both:
-        rows, scene = run.collisions, run.scene
+    for run in runs:
+        rows, scene = run.contacts, run.scene
         assert rows.size > 10
         end = rows["time"] + rows["contact_time"]
         moved = np.array([scene.deck_place(t) for t in end])
@@ -102,7 +99,7 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
         scenes.sieve(beads=6, thickness=1e-3, plate="glass", amplitude=0.0, friction=0.0),
         radius=np.full(6, 0.9e-3),
         position=np.array([(x, y, 2e-3) for x, y in places]),
-        velocity=np.array([0.0, 0.0, -2.0]),
+        velocity=np.tile([0.0, 0.0, -2.0], (6, 1)),
     )
     scene.write_files(tmp_path)
     model = cl.ImpactModel(PAIR, LAW, outside="clamp")
@@ -125,9 +122,9 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
 
 
 def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
-    law, constant = runs.both
+    law, constant = runs
     model = cl.ImpactModel(PAIR, LAW)
-    flat = law.collisions[measure.on_faces(law) & law.record.impact]
+    flat = law.impacts[law.scene.on_faces(law.impacts)]
     assert flat.size >= 8
     sizes = flat["approach_speed"], law.scene.radius[flat["bead"]], law.scene.thickness
     moved = np.array([law.scene.deck_place(t) for t in flat["time"] + flat["contact_time"]])
@@ -141,12 +138,11 @@ def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
     energy = law.scene.mass[flat["bead"]] * flat["approach_speed"] ** 2
     lost, without = (energy @ (1.0 - e**2) for e in (expected, endless))
     assert lost / without - 1.0 > 0.01
-    assert measure.loss_by_openings(law) == pytest.approx(lost / without - 1.0, abs=0.01)
-    flat = constant.collisions[measure.on_faces(constant)]
-    assert flat["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
+    assert law.scene.loss_by_openings(law) == pytest.approx(lost / without - 1.0, abs=0.01)
+    flat = constant.contacts[constant.scene.on_faces(constant.contacts)]
+    assert flat["restitution"] == pytest.approx(constant.making.constant_cor, abs=1e-3)
     thick = model.restitution(2.5, law.scene.radius.mean(), math.inf)
-    assert constant.constant_cor == pytest.approx(thick, abs=5e-4)
-    assert kept(constant, flat) == pytest.approx(constant.constant_cor, abs=1e-3)
+    assert constant.making.constant_cor == pytest.approx(thick, abs=5e-4)
 
 
 @pytest.mark.parametrize("restitution", [0.2, 0.5, 0.9, 1.0])
@@ -158,23 +154,13 @@ def test_the_law_of_a_constant_cor_has_it_at_any_speed(restitution, speed):
     assert found == pytest.approx(restitution, abs=5e-3 if restitution < 0.5 else 1e-3)
 
 
-def test_energy_in_proportion_to_area_has_one_density(runs):
-    run = runs.law
-    sheet = measure.on_sheet(run)
-    area = areas(run.scene.deck.triangles()[sheet])
-    rows = np.zeros(area.size, IMPACT)
-    rows["triangle"], rows["wave_energy"] = np.flatnonzero(sheet), 7.0 * area
-    found = measure.density(dataclasses.replace(run, record=dataclasses.replace(run.record, rows=rows)))
-    assert found == pytest.approx(np.full(area.size, 7.0))
-
-
 def test_beads_below_the_deck_have_passed(runs):
-    run = runs.law
+    run = runs[0]
     position = run.position.copy()
     position[..., 2] = 0.01
     position[-1, :, 2] = np.where(run.scene.small, -0.05, 0.01)
-    found = measure.passed(dataclasses.replace(run, position=position))
-    assert found.tolist() == [0.0] * 8 + [1.0]
+    found = dict(run.scene.facts(dataclasses.replace(run, position=position)))
+    assert found["undersize beads that have passed"] == "100.0%"
 
 
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
@@ -183,24 +169,27 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1
-    two = read(tmp_path / "o", Sieve)
-    for one, other in zip(runs.both, two.both, strict=True):
-        assert (one.ranks, other.ranks) == (1, 2)
-        assert np.array_equal(one.position, other.position)
-        for name in IMPACT.names:
-            assert np.array_equal(one.collisions[name], other.collisions[name]), name
+    for run, name in zip(runs, ("sieve", "constant"), strict=True):
+        path = tmp_path / f"o/{name}.h5"
+        with h5py.File(path) as file:
+            assert (run.record.made["ranks"], file.attrs["ranks"]) == (1, 2)
+            assert np.array_equal(run.position, file["trajectories/position"])
+        rows = cl.read_record(path).rows
+        one, two = (np.sort(rows, order=["time", "bead"]) for rows in (run.record.rows, rows))
+        for column in IMPACT.names:
+            assert np.array_equal(one[column], two[column]), column
 
 
 def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
     """OVITO reads a text format with a header for each frame, and one row per bead."""
     text = (sieve / "sieve.lammpstrj").read_text()
-    assert text.count("ITEM: TIMESTEP") == runs.law.time.size
-    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (runs.law.time.size)
+    assert text.count("ITEM: TIMESTEP") == runs[0].time.size
+    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (runs[0].time.size)
     lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
     head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     columns = lines[head].split()[2:]
     rows = np.array([line.split() for line in lines[head + 1 :]], dtype=float)
-    impacts, last = runs.law.impacts, dict.fromkeys(range(12), 0.0)
+    impacts, last = runs[0].impacts, dict.fromkeys(range(12), 0.0)
     for bead in set(impacts["bead"].tolist()):
         where = np.flatnonzero(impacts["bead"] == bead)
         one_by_one = np.diff(impacts["time"][where]).min(initial=1.0) > 1e-4  # not so at a rim
@@ -210,7 +199,7 @@ def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
     found = rows[:, columns.index("d_contactlaw_restitution")]
     assert known.sum() >= 6
     assert found[known] == pytest.approx(expected[known], rel=1e-5)
-    assert rows[:, columns.index("radius")] == pytest.approx(runs.law.scene.radius)
+    assert rows[:, columns.index("radius")] == pytest.approx(runs[0].scene.radius)
 
 
 def test_a_feed_has_two_sizes_and_no_overlap():

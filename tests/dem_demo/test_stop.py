@@ -10,7 +10,6 @@ from demos import RAIN, names
 
 import contactlaw as cl
 from dem_demo import cli
-from dem_demo.rain.record import read
 
 LONG = ["rain", "--beads", "300", "--duration", "6", "--law", "myc", "--out", "out"]  # is stopped
 
@@ -76,7 +75,7 @@ def test_an_impact_outside_the_table_is_integrated_or_stops_the_run(tmp_path, no
     assert cli.main([*hard, "--outside", "clamp"]) == 0
     assert "outside the table, the value is that of its border" in capsys.readouterr().out
     assert cli.main(hard) == 0
-    run = read(tmp_path / "out/rain.h5")
+    run = cl.read_record(tmp_path / "out/rain.h5")
     assert not (run.impacts["flags"] & cl.Validity.CLAMPED).any()
 
 
@@ -94,6 +93,6 @@ def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, request, tmp_
     few = ["rain", "--law", "fem", "--beads", "15", "--duration", "0.2", "--plates", "1e-3,3e-3"]
     few += ["--sphere", sphere, "--out", str(tmp_path / "out")]
     assert cli.main(few) == 0, capsys.readouterr().err
-    run = read(tmp_path / "out" / "rain.h5")
-    assert run.law == "fem"
-    assert run.collisions.size > 0
+    record = cl.read_record(tmp_path / "out" / "rain.h5")
+    assert record.made["law"] == "fem"
+    assert record.rows.size > 0

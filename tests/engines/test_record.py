@@ -29,40 +29,16 @@ def add(record, *observed):
     record.add((*observed, 0.5, 0, 0.25, 7.0, 0.125))
 
 
+NAMES = """
+    time bead plate other x y z approach_speed restitution sliding_speed kind
+    sliding_speed_after spin_x spin_y spin_z contact_time peak_force plastic_energy
+    wave_energy other_energy scheme_energy friction_energy wall_work radius mass parcel material
+    thickness triangle flags
+""".split()
+
+
 def test_every_column_has_a_unit_and_a_description():
-    assert IMPACT.names == (
-        "time",
-        "bead",
-        "plate",
-        "other",
-        "x",
-        "y",
-        "z",
-        "approach_speed",
-        "restitution",
-        "sliding_speed",
-        "kind",
-        "sliding_speed_after",
-        "spin_x",
-        "spin_y",
-        "spin_z",
-        "contact_time",
-        "peak_force",
-        "plastic_energy",
-        "wave_energy",
-        "other_energy",
-        "scheme_energy",
-        "friction_energy",
-        "wall_work",
-        "radius",
-        "mass",
-        "parcel",
-        "material",
-        "thickness",
-        "triangle",
-        "flags",
-    )
-    assert tuple(column.name for column in COLUMNS) == IMPACT.names
+    assert [column.name for column in COLUMNS] == list(IMPACT.names) == NAMES
     units = {"1", "s", "m", "kg", "m/s", "rad/s", "N", "J"}
     for column in COLUMNS:
         assert column.unit in units, column

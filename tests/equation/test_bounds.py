@@ -13,6 +13,7 @@ from hypothesis.extra.numpy import arrays
 from oracle import ALL_LAWS, FEM
 
 from contactlaw import equation
+from contactlaw._arrays import Array
 from contactlaw.equation import edge, few_steps, force, integrator, legs, outcome, tangential, zener
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.strengths import by_strength, with_strengths
@@ -22,8 +23,15 @@ from contactlaw.table.grid import Settings
 PARTS = [f"{equation.__name__}.{one.name}" for one in pkgutil.iter_modules(equation.__path__)]
 MODULES = [lookup, *map(importlib.import_module, PARTS)]
 READ = {"law", "table", "response", "r"}  # arrays in which floats lead to places
+
+
+def written(hint):
+    """Name of a type, whether or not its module has its annotations evaluated."""
+    return "Array" if hint is Array else getattr(hint, "__name__", hint)
+
+
 READING = {
-    kernel: [*kernel.py_func.__annotations__.items()][:-1]
+    kernel: [(name, written(hint)) for name, hint in kernel.py_func.__annotations__.items()][:-1]
     for kernel in (kernel for module in MODULES for kernel in vars(module).values())
     if hasattr(kernel, "py_func") and READ & kernel.py_func.__annotations__.keys()
 }

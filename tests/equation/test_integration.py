@@ -7,8 +7,6 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from oracle import ALL_LAWS, FEM, impact, yield_ratio
 from staying import STAYING
 
@@ -62,19 +60,6 @@ def test_absurd_impacts_end_with_a_status_or_with_numbers(law):
         assert one.status != zener.OK or np.isfinite(one).all()
 
 
-@pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
-@settings(deadline=None, max_examples=100)
-@given(lam=st.floats(0, 10), v=st.floats(1e-3, 100))
-def test_energy_balance_and_bounds(law, lam, v):
-    one = zener.solve(law.data, lam, yield_ratio(v), 1e-10)
-    assert one.status == zener.OK
-    assert 0.0 < one.restitution <= 1.0 + 1e-10
-    balance = 1 - one.restitution**2 - one.plastic_fraction - one.wave_fraction
-    assert abs(balance) < 1e-8
-    assert 0.0 <= one.plastic_fraction < 1.0
-    assert 0.0 <= one.wave_fraction < 1.0
-
-
 def overload(law, lam, dm):
     """Overload at which an impact turns at dm."""
     w_m = zener.elastic_compression(HERTZ, lam, 1e-13)[1]
@@ -87,6 +72,8 @@ def largest_imbalance(law, lam, chi):
     assert zener.solve_overloads(law.data, 1e-10, np.array(chi), out) == (zener.OK, 0)
     extremes = outcome.extremes(len(lam))
     zener.extremes(law.data, out, extremes)
+    assert ((out.restitution > 0.0) & (out.restitution <= 1.0 + 1e-10)).all()
+    assert ((extremes.plastic_fraction >= 0.0) & (extremes.plastic_fraction < 1.0)).all()
     left = 1 - out.restitution**2 - extremes.plastic_fraction - out.wave_rate * out.inelasticity
     worst = int(np.argmax(np.abs(left)))
     return abs(left[worst]), lam[worst], chi[worst]
@@ -97,7 +84,7 @@ def largest_imbalance(law, lam, chi):
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
 def test_energy_balance_over_the_whole_table_and_on_the_half_space(law):
     rng = np.random.default_rng(2147)
-    lam = 5 * np.append(np.zeros(2000), np.sort(rng.uniform(0, 1, 4000)) ** 3)
+    lam = 10 * np.append(np.zeros(2000), np.sort(rng.uniform(0, 1, 4000)) ** 3)
     chi = np.exp(rng.uniform(math.log(0.3), math.log(100), 6000))
     worst = largest_imbalance(law, lam, chi)
     assert worst[0] < 1e-8, worst

@@ -129,12 +129,8 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
     speed = share * float(fastest(model, *size))
     units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(speed, *size))
     assert units.stiffer**1.25 > 1.002  # the factor by which the speeds differed
-    lmp = box.make((0.0, 0.0, r + 1e-6), (0.0, 0.0, -speed), r, dt=1e-8)
-    lmp.command(f"set group all density {STEEL.sphere.density!r}")
-    walls = box.attach(lmp, model, [box.flat(thickness)])
-    lmp.command("run 1500")
-    (row,) = walls.collisions()
-    lmp.close()
+    bead = {"radius": r, "density": STEEL.sphere.density, "dt": 1e-8, "steps": 1500}
+    (row,), _ = box.dropped(model, [box.flat(thickness)], (0.0, 0.0, r + 1e-6), (0.0, 0.0, -speed), **bead)
     ours = model.lookup(speed, r, thickness)
     assert row["restitution"] == pytest.approx(ours.restitution, abs=1e-3)
     assert row["flags"] == ours.flags

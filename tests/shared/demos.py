@@ -1,5 +1,7 @@
 """Short runs of the demo, which `conftest.py` of its tests makes once."""
 
+import pickle
+
 # Numbers are those of the paper's law, whichever is the default; its table comes with the package.
 RAIN = "rain --beads 40 --plates 0.5e-3,1e-3,inf --duration 0.3 --law myc".split()
 # Few beads that never meet.
@@ -12,7 +14,12 @@ def names(folder):
     return {path.name for path in folder.iterdir()}
 
 
+def runs_of(folder):
+    """Runs of which a fixture of `conftest.py` has made a folder."""
+    return pickle.loads(folder.parent.with_suffix(".pickle").read_bytes())
+
+
 def files(name, figures, *more):
-    """Names of the files of a scene."""
-    pictures = {f"{one}.png" for one in figures.names()}
+    """Names of the files of a scene, whose figures these modules draw."""
+    pictures = {f"{one.__name__.rpartition('.')[2]}.png" for one in figures}
     return {f"{name}.h5", "summary.txt", "index.html", f"{name}.gif", *pictures, *more}

@@ -126,16 +126,6 @@ def dropped(*given, steps=700, **options):
     return rows, now
 
 
-def dropped_apart(model, drops, radius, *, dt, time):
-    """Impacts of beads that fall on plates of their own, by (thickness, speed); the beads after."""
-    plates = [flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(drops)]
-    centres = [(plate.corner[0] + 0.0025, 0, radius + 0.1e-3) for plate in plates]
-    falling = [(0, 0, -v) for _, v in drops]
-    rows, now = dropped(model, plates, centres, falling, radius=radius, dt=dt, steps=int(time / dt))
-    rows.sort(order="plate")
-    return rows, now
-
-
 def square(n, half):
     """Corners and triangles of a horizontal square of n x n cells."""
     line = np.linspace(-half, half, n + 1)

@@ -16,6 +16,14 @@ def loop(function):
 
 
 @loop
+def press(scene, time, dt, x, v, omega, radius, mass, force, torque, contacts, friction):
+    """Add the force and the torque of the walls on a bead, of which vectors are arrays."""
+    place, velocity, spin = (x[0], x[1], x[2]), (v[0], v[1], v[2]), (omega[0], omega[1], omega[2])
+    bead = Bead(0, 0, place, velocity, spin, radius, mass, force, torque, contacts, friction)
+    interact(scene, Clock(time, dt, dt, True), bead)
+
+
+@loop
 def fly(scene, contacts, friction, x, v, omega, mass, radius, gravity, dt, steps, kick, when):
     """Move a bead by velocity Verlet; `kick` is added to its velocity at step `when`.
 
@@ -28,23 +36,7 @@ def fly(scene, contacts, friction, x, v, omega, mass, radius, gravity, dt, steps
         omega += 0.5 * dt / (0.4 * mass * radius**2) * torque
         x += dt * v
         force[:] = torque[:] = 0.0
-        interact(
-            scene,
-            Clock(step * dt, dt, dt, True),
-            Bead(
-                0,
-                0,
-                (x[0], x[1], x[2]),
-                (v[0], v[1], v[2]),
-                (omega[0], omega[1], omega[2]),
-                radius,
-                mass,
-                force,
-                torque,
-                contacts,
-                friction,
-            ),
-        )
+        press(scene, step * dt, dt, x, v, omega, radius, mass, force, torque, contacts, friction)
         path[step, 1:4], path[step, 4] = x, force[2]
         force += mass * gravity
         v += 0.5 * dt / mass * force

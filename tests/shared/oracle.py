@@ -49,6 +49,26 @@ def contact(lam, y):
     return end, largest, lambda time: at(time)[::2]
 
 
+def series(mass, stiffness, mobility, speed, outward=lambda x: 0.0):
+    """COR and contact time [s] of a mass on Hertz's spring in series with a plate, in SI units.
+
+    At an indentation x the mass is accelerated outward by this as well.
+    """
+
+    def rates(_, state):
+        x, u, plate, _ = state
+        force = stiffness * max(x - plate, 0.0) ** 1.5
+        return [u, -force / mass - outward(x), mobility * force, mobility * force**2]
+
+    def apart(time, state):
+        return state[0] - state[2] + (time < 1e-9)
+
+    apart.terminal, apart.direction = True, -1
+    run = solve_ivp(rates, (0.0, 1e-3), [0.0, speed, 0.0, 0.0], events=apart, rtol=1e-11, atol=1e-16)
+    assert run.status == 1
+    return math.sqrt(1 - 2 * run.y[3, -1] / (mass * speed**2)), run.t[-1]
+
+
 def _integrated(law, lam, y, **options):
     scale = y * math.sqrt(y)  # F_Y and d_Y on Hertz's scale
     parts = []

@@ -116,6 +116,16 @@ def moving_body(space, velocity=(0, 0), spin=0.0, position=(0, 0)):
     return body
 
 
+def setting(**values):
+    """A handler of the user's that sets these of a contact."""
+
+    def handler(arbiter, space, data):
+        for name, value in values.items():
+            setattr(arbiter, name, value)
+
+    return handler
+
+
 def steps(space, count, dt=DT):
     for _ in range(count):
         space.step(dt)

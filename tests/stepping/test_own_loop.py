@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from loops import loop
+from loops import loop, press
 from places import ROOT
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT
-from contactlaw.stepping import Bead, Clock, WallContacts, interact
+from contactlaw.stepping import WallContacts
 from contactlaw.walls import Mesh, Plate
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
@@ -75,24 +75,7 @@ def strike_in_dent(scene, contacts, friction, mass, radius, dt, steps):
     for step in range(steps):
         x += dt * v
         force[:] = torque[:] = 0.0
-        clock = Clock(step * dt, dt, dt, True)
-        interact(
-            scene,
-            clock,
-            Bead(
-                0,
-                0,
-                (x[0], x[1], x[2]),
-                (v[0], v[1], v[2]),
-                (omega[0], omega[1], omega[2]),
-                radius,
-                mass,
-                force,
-                torque,
-                contacts,
-                friction,
-            ),
-        )
+        press(scene, step * dt, dt, x, v, omega, radius, mass, force, torque, contacts, friction)
         v += dt / mass * force
         omega += dt / (0.4 * mass * radius**2) * torque
         if depth == 0.0 and v[2] > 0.0 and contacts[0].force == 0.0:
@@ -121,24 +104,8 @@ def test_a_bead_that_was_put_down_at_next_to_no_speed(example, speed):
     walls = WallContacts([plate], model, r, np.zeros(9, IMPACT), friction=0.3)
     (contacts,), (friction,) = walls.memory(1)
     mass = 4 / 3 * math.pi * r**3 * example.PAIR.sphere.density
-    force = np.zeros(3)
-    interact(
-        walls.scene,
-        Clock(0.0, 1e-8, 1e-8, True),
-        Bead(
-            0,
-            0,
-            (0.0, 0.0, r - 1e-8),
-            (1e-3, 0.0, -speed),
-            (0.0, 0.0, 0.0),
-            r,
-            mass,
-            force,
-            np.zeros(3),
-            contacts,
-            friction,
-        ),
-    )
+    x, v, (omega, force, torque) = np.array([0.0, 0.0, r - 1e-8]), np.array([1e-3, 0.0, -speed]), np.zeros((3, 3))
+    press(walls.scene, 0.0, 1e-8, x, v, omega, r, mass, force, torque, contacts, friction)
     assert force[2] > 0.0
     assert -0.3 * force[2] * (1 + 1e-12) <= force[0] < 0.0
 

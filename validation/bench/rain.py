@@ -10,8 +10,8 @@ import pymunk
 
 import contactlaw as cl
 from contactlaw.engines import pymunk as adapter
-from dem_demo.rain import nozzles
 from dem_demo.rain.engine import Rain
+from dem_demo.rain.scene import rain as drawn
 from validation.bench.row import Row, in_turns
 
 BEADS, COR = 1000, 0.9
@@ -48,7 +48,7 @@ class _Elasticities:
 def rows() -> Iterator[Row]:
     """Measure the same rain with the model, with one COR, and with pymunk alone."""
     pair = cl.Pair("gamma-alumina", "glass")
-    scene, constant = nozzles.rain(beads=BEADS, duration=DURATION), _Constant(pair)
+    scene, constant = drawn(beads=BEADS, duration=DURATION), _Constant(pair)
 
     def run(model: Any) -> None:
         rain = Rain(scene, model)

@@ -1,7 +1,5 @@
 """``contactlaw constant``: one COR for each wall, and its errors."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import Any
@@ -11,7 +9,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw.cli.constant import lines, records, walls
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import asked, in_words
-from contactlaw.cli.parts.options import reader_of
 from contactlaw.model import ImpactModel
 from contactlaw.quantities import SPEED
 
@@ -22,14 +19,10 @@ def add(commands: Any) -> None:
     command = options.command(commands, "constant", about, _run)
     options.add_pair(command, options.OF_RECORD)
     options.add_sizes(command, quantities.values, required=False)
-    add = command.add_mutually_exclusive_group(required=True).add_argument
-    add(
-        "--speed",
-        metavar="V",
-        type=reader_of(quantities.values, SPEED),
-        help="normal approach speeds [m/s], or with a unit; all are equally frequent",
-    )
-    add(
+    group = command.add_mutually_exclusive_group(required=True)
+    what = "normal approach speeds [m/s], or with a unit; all are equally frequent"
+    options.add_quantity(group, "--speed", SPEED, what, quantities.values, metavar="V")
+    group.add_argument(
         "--record",
         metavar="FILE",
         nargs="+",

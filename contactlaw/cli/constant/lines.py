@@ -1,7 +1,5 @@
 """One COR per wall as lines that engines read: LAMMPS, LIGGGHTS, YADE."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 

@@ -1,7 +1,5 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -9,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
@@ -23,8 +21,6 @@ from contactlaw.quantities import SPEED
 from contactlaw.record import hdf5
 from contactlaw.record.file import HDF5, Record, read_record, saved
 
-Array = NDArray[np.float64]
-
 
 class Recorded(NamedTuple):
     """Impacts on plates in SI units, each column an array of one length; None where unknown."""
@@ -33,7 +29,7 @@ class Recorded(NamedTuple):
     radius: Any = None  # of the bead [m]
     thickness: Any = None  # of the plate [m]
     weights: Any = None  # relative frequencies
-    plate: NDArray[np.int64] | None = None  # number of the plate that is hit
+    plate: Integers | None = None  # number of the plate that is hit
     mass: Array | None = None  # of the bead [kg], in an engine's record
     pair: Pair | None = None
     law: str | None = None
@@ -123,7 +119,7 @@ def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     return values
 
 
-def _sized(name: str, recorded: Array | None, values: Sequence[float] | None, which: NDArray[np.int64]) -> Array:
+def _sized(name: str, recorded: Array | None, values: Sequence[float] | None, which: Integers) -> Array:
     """Size of each impact's bead or plate: the record's own, or the given one of number `which`."""
     if recorded is None:
         sizes = np.array(_given(name, values))

@@ -1,15 +1,13 @@
 """One COR for each wall of a machine, one per thickness, as text or CSV."""
 
-from __future__ import annotations
-
 import csv
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, NamedTuple, TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell
 from contactlaw._readable import relative
@@ -18,8 +16,6 @@ from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
-
-Array = NDArray[np.float64]
 
 _MOST = 100  # walls of different thickness; in an engine, each takes a type of its own
 

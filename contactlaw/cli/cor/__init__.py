@@ -5,8 +5,6 @@
 ``contactlaw speed``: all impact speeds that give a coefficient of restitution.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math
@@ -14,16 +12,14 @@ import sys
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import quantities
+from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import bands, inverse
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
-
-Array = NDArray[np.float64]
 
 
 def add(commands: Any) -> None:

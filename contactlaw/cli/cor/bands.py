@@ -1,14 +1,12 @@
 """Bands of ``contactlaw cor``: how far a real impact may be from its COR, and why."""
 
-from __future__ import annotations
-
 import dataclasses
 import textwrap
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.physical.pair import Pair
@@ -96,7 +94,7 @@ def _causes(band: Band) -> str:
     return ", ".join(f"{name} {_range(sizes[name])}" for name in counted)
 
 
-def _range(sizes: NDArray[np.float64]) -> str:
+def _range(sizes: Array) -> str:
     known = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # not what integration errs by
     least, most = (f"{size:.2g}" for size in (known.min(), known.max()))
     return most if least == most else f"{least} to {most}"

@@ -1,7 +1,5 @@
 """``contactlaw thickness`` and ``contactlaw speed``: what gives a coefficient of restitution."""
 
-from __future__ import annotations
-
 import argparse
 import functools
 import itertools
@@ -17,26 +15,22 @@ from contactlaw.answers.inverse import Solutions
 from contactlaw.cli.cor import bands
 from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+from contactlaw.quantities import SHARE
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
 
 
 def add(commands: Any) -> None:
     """Add both subcommands and their options."""
-    for unknown, what in (("thickness", "thicknesses of the plate"), ("speed", "impact speeds")):
-        about = f"all {what} that give a coefficient of restitution"
+    for unknown, found in (("thickness", "thicknesses of the plate"), ("speed", "impact speeds")):
+        about = f"all {found} that give a coefficient of restitution"
         command = options.command(commands, unknown, about, functools.partial(_run, unknown))
         options.add_pair(command)
         options.add_sizes(command, quantities.values, unknown=unknown)
         if unknown == "thickness":
             options.add_speed(command, quantities.values)
-        command.add_argument(
-            "--cor",
-            required=True,
-            metavar="E",
-            type=options.reader_of(quantities.values, quantities.SHARE),
-            help="coefficients of restitution, between 0 and 1",
-        )
+        what = "coefficients of restitution, between 0 and 1"
+        options.add_quantity(command, "--cor", SHARE, what, quantities.values, required=True, metavar="E")
         options.add_name_of_law(command)
         command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])

@@ -1,7 +1,5 @@
 """``contactlaw fit``: strengths, sizes and more from measured rebounds, with their errors."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import math
@@ -42,15 +40,11 @@ def add(commands: Any) -> None:
         "bead, or sliding_speed_m/s with the normal speed",
     )
     options.add_pair(command, options.OF_RECORD)
-    length = reader_of(quantities.value, LENGTH)
-    options.add_radius(command, length, "all beads")
-    add("--thickness", metavar="H", type=length, help="thickness of all plates [m], or with a unit; inf: a half-space")
-    add(
-        "--friction",
-        metavar="MU",
-        type=reader_of(quantities.value, quantities.FRICTION),
-        help="coefficient of friction of all rebounds at angles, unless it is unknown",
-    )
+    options.add_radius(command, "all beads", quantities.value)
+    what = "thickness of all plates [m], or with a unit; inf: a half-space"
+    options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
+    what = "coefficient of friction of all rebounds at angles, unless it is unknown"
+    options.add_quantity(command, "--friction", quantities.FRICTION, what, metavar="MU")
     add(
         "--unknown",
         required=True,

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array, Places
 from contactlaw._readable import drawn
 from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
@@ -22,7 +22,6 @@ from contactlaw.physical.validity import Validity, limits_in_words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 _SAMPLES = 160  # speeds of a curve
 _MOST_CURVES = 6  # more could not be distinguished: then only the fitted values are drawn
@@ -45,7 +44,7 @@ class Group(NamedTuple):
 
     radius: float
     thickness: float
-    rows: NDArray[np.intp]
+    rows: Places
 
 
 class FitCurve(NamedTuple):

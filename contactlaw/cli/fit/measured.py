@@ -1,7 +1,5 @@
 """Measured rebounds from a table of named columns with units."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A fit as lines of text and as JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

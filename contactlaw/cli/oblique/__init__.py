@@ -1,15 +1,13 @@
 """``contactlaw oblique``: tangential rebound and spin of beads that come at an angle."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic, quantities
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw._version import VERSION
@@ -20,8 +18,6 @@ from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import within
-
-Array = NDArray[np.float64]
 
 _STEEPEST = 0.01  # [deg] angle that stands for normal incidence
 _GIVEN = "angle", "speed", "thickness", "radius", "friction"  # in the order of axes
@@ -50,21 +46,11 @@ def add(commands: Any) -> None:
     options.add_speed(command, quantities.values, "speed of the bead")
     options.add_name_of_law(command)
     command.set_defaults(outside="raise")  # every impact is integrated
-    add = command.add_argument
-    add(
-        "--angle",
-        required=True,
-        metavar="A",
-        type=options.reader_of(quantities.values, quantities.ANGLE),
-        help="angle of incidence from the plate's normal [deg], from 0 to below 90",
-    )
-    add(
-        "--friction",
-        required=True,
-        metavar="MU",
-        type=options.reader_of(quantities.values, quantities.FRICTION),
-        help="coefficient of friction between bead and plate",
-    )
+    for option, quantity, metavar, what in (
+        ("--angle", quantities.ANGLE, "A", "angle of incidence from the plate's normal [deg], from 0 to below 90"),
+        ("--friction", quantities.FRICTION, "MU", "coefficient of friction between bead and plate"),
+    ):
+        options.add_quantity(command, option, quantity, what, quantities.values, required=True, metavar=metavar)
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add(

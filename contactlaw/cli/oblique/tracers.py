@@ -5,16 +5,10 @@ file does not rest on how a dialog counts it. AcuTrace: ``FINITE_MASS_BOUNDARY_C
 syntax of arrays in Altair's command reference. Neither program was at hand to try a file in it.
 """
 
-from __future__ import annotations
-
 from string import Template
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._escaped import c_comment, line
-
-Array = NDArray[np.float64]
 
 _FLUENT = Template("""\
 /* Rebound of beads from a wall, by contactlaw $version, for Ansys Fluent; not tried in Fluent.

@@ -1,7 +1,5 @@
 """Models, materials and figures from the options that subcommands share."""
 
-from __future__ import annotations
-
 import argparse
 import dataclasses
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Text tables of named columns with units, as people and spreadsheets write them."""
 
-from __future__ import annotations
-
 import csv
 import difflib
 import math
@@ -10,11 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw.quantities import LENGTH, Quantity
-
-Array = NDArray[np.float64]
 
 _BRACKET = re.compile(r"(?P<name>.*?)[_ ]*[\[(](?P<unit>[^])]*)[\])]")
 _UNIT = re.compile(r"\d\s*([^\W\d]|%)")

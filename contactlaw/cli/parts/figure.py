@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array
 from contactlaw._readable import drawn, scale_of
 from contactlaw.cli.parts import plots
 from contactlaw.cli.parts.layout import AXES, Answers, Ask, Layout, is_logarithmic, layout
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 
 _FLAT = 0.005  # range of a map that has no contours
 _SEEN = 0.015  # width of a band that its curve does not hide

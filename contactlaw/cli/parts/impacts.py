@@ -3,8 +3,6 @@
 A table is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Iterator, Sequence
@@ -12,8 +10,8 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
 from contactlaw.cli.parts import wording
@@ -21,8 +19,6 @@ from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags, explain
-
-Array = NDArray[np.float64]
 
 _MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 
@@ -62,7 +58,7 @@ class ImpactTable:
     """
 
     columns: dict[str, Array]
-    flags: NDArray[np.int64]
+    flags: Integers
     asked: dict[str, Any]
 
     def __len__(self) -> int:

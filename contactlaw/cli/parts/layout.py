@@ -1,18 +1,14 @@
 """What a plot shows over what: which list is the axis, which the curves, and which the panels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw.quantities import ANGLE, FRICTION, LENGTH, SPEED, Quantity
-
-Array = NDArray[np.float64]
 
 _MOST_CURVES, _MOST_PANELS = 8, 6  # more could not be distinguished in one figure
 
@@ -57,7 +53,7 @@ class Answers(NamedTuple):
     """What is drawn of each combination of a layout: arrays of its shape."""
 
     value: Array
-    flags: NDArray[np.int64]
+    flags: Integers
     overload: Array  # a body yields where it is above 1
     low: Array  # ends of the band of the value; the value itself without a band
     high: Array

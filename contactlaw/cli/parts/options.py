@@ -1,7 +1,5 @@
 """Options that subcommands share, with their help."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -51,22 +49,22 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     command.add_argument("--solve", action="store_true", help="integrate the equation instead of looking up")
 
 
+def add_quantity(
+    command: Any, option: str, quantity: Quantity, what: str, read: Reader = quantities.value, **more: Any
+) -> None:
+    """Add the option of a quantity; `read` reads one value or several."""
+    command.add_argument(option, type=reader_of(read, quantity), help=what, **more)
+
+
 def add_mass(command: argparse.ArgumentParser) -> None:
     """Add the option of the mass of beads that are no solid spheres."""
-    command.add_argument(
-        "--mass",
-        metavar="M",
-        type=reader_of(quantities.value, MASS),
-        help="mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or "
-        "of a clump (default: that of a solid sphere)",
-    )
+    what = "mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or of a clump"
+    add_quantity(command, "--mass", MASS, f"{what} (default: that of a solid sphere)", metavar="M")
 
 
 def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed") -> None:
     """Add the option of the impact speed."""
-    command.add_argument(
-        "--speed", required=True, metavar="V", type=reader_of(read, SPEED), help=f"{what} [m/s], or with a unit"
-    )
+    add_quantity(command, "--speed", SPEED, f"{what} [m/s], or with a unit", read, required=True, metavar="V")
 
 
 OF_RECORD = " (default: that of the record)"
@@ -102,45 +100,31 @@ def _materials(path: str) -> dict[str, Material]:
 def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True, unknown: str = "") -> None:
     """Add the options of sizes, but for an unknown one; if not required, a record may have them."""
     known = "" if required else OF_RECORD
-    add_radius(command, reader_of(read, LENGTH), "the bead", required, known)
+    add_radius(command, "the bead", read, required, known)
     if unknown != "thickness":
-        command.add_argument(
-            "--thickness",
-            required=required,
-            metavar="H",
-            type=reader_of(read, LENGTH),
-            help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}",
-        )
+        what = f"thickness of the plate [m], or with a unit; inf: a half-space{known}"
+        add_quantity(command, "--thickness", LENGTH, what, read, required=required, metavar="H")
 
 
 def add_radius(
-    command: argparse.ArgumentParser, read: Callable[[str], Any], of: str, required: bool = False, known: str = ""
+    command: argparse.ArgumentParser, of: str, read: Reader, required: bool = False, known: str = ""
 ) -> None:
     """Add the options of a bead's size."""
-    add = command.add_mutually_exclusive_group(required=required).add_argument
-    add("--radius", metavar="R", type=read, help=f"radius of {of} [m], or with a unit{known}")
-    add("--diameter", dest="radius", metavar="D", type=_half(read), help="diameter instead")
 
-
-def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
     def half(text: str) -> Any:
-        found = read(text)
+        found = reader_of(read, LENGTH)(text)
         return tuple(0.5 * one for one in found) if isinstance(found, tuple) else 0.5 * found
 
-    return half
+    group = command.add_mutually_exclusive_group(required=required)
+    add_quantity(group, "--radius", LENGTH, f"radius of {of} [m], or with a unit{known}", read, metavar="R")
+    group.add_argument("--diameter", dest="radius", metavar="D", type=half, help="diameter instead")
 
 
 def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
-    share = reader_of(quantities.value, SHARE)
     for name in sizes:
-        command.add_argument(
-            f"--{name}-error",
-            metavar="SHARE",
-            type=share,
-            default=0.0,
-            help=f"standard error of the {name}, as 5%% (default: 0)",
-        )
+        what = f"standard error of the {name}, as 5%% (default: 0)"
+        add_quantity(command, f"--{name}-error", SHARE, what, metavar="SHARE", default=0.0)
     for role in ("sphere", "plate"):
         command.add_argument(
             f"--{role}-error",

@@ -1,7 +1,5 @@
 """Materials on the command line: a name, or numbers of one's own."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Mapping

@@ -10,9 +10,9 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._arrays import Array, Integers
 from contactlaw._readable import drawn
 from contactlaw.physical.validity import Validity, count_flags, limits_in_words
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 
 SUFFIXES = ".png", ".svg", ".pdf"
 
@@ -56,7 +55,7 @@ _GAP, _STROKES = 1.4, (3.2, 1.0, 6.5, 2.0, 10.0, 4.5)
 _HATCHES = "///", "\\\\\\", "...", "|||", "---", "ooo"
 
 
-def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, FlagLook]:
+def kinds_of(flags: Integers) -> dict[Validity, FlagLook]:
     """Limits of accuracy that some impacts exceed, each drawn in its own way; frequent ones first.
 
     Examples
@@ -87,9 +86,7 @@ def dashes_of(flags: int, kinds: dict[Validity, FlagLook]) -> Any:
     return (0, [length for stroke in strokes for length in (stroke, _GAP)]) if strokes else "-"
 
 
-def curve(
-    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, FlagLook], **options: Any
-) -> None:
+def curve(axes: Axes, x: Array, y: Array, flags: Integers, kinds: dict[Validity, FlagLook], **options: Any) -> None:
     """Draw a curve: dashed by kind where it exceeds limits of accuracy, otherwise solid."""
     exceeded = flags & Validity.ACCURACY
     changes = np.flatnonzero(np.diff(exceeded)) + 1

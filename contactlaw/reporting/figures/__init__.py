@@ -1,7 +1,5 @@
 """Figures of any run: each file draws one of a `contactlaw.reporting.run.Run`."""
 
-from __future__ import annotations
-
 from contactlaw.reporting.gallery import Gallery
 
 _GALLERY = Gallery(__name__, __path__)

@@ -4,8 +4,6 @@ Left: energy that all contacts took. Right: shares of what the impacts brought. 
 bending wave carries energy away for good; on a thick one plastic flow at the contact takes it.
 """
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from contactlaw import style
@@ -24,10 +22,9 @@ def draw(run: Run) -> Figure:
         12.0,
         height,
         f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
-        f"{run.subject}; {'left'}: energy that all contacts took, "
-        f"{'right'}: shares of the energy that the impacts brought",
+        f"{run.subject}; left: energy that all contacts took, right: shares of the energy that the impacts brought",
     )
-    left, right = figure.subplots(*(1, 2), sharey=True)
+    left, right = figure.subplots(1, 2, sharey=True)
     unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
     for n, wall in enumerate(walls):
         part = by_cause(wall.rows)

@@ -3,16 +3,14 @@
 Of the impacts alone. The angle is that from the wall's normal: 0° is straight on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array, Rows
 from contactlaw.reporting.run import OTHERS, Run
 
 _BINS = 12, 40  # fewest and most
@@ -40,7 +38,7 @@ def draw(run: Run) -> Figure:
         "coefficient of restitution": (lambda hits: hits["restitution"], None, 1.0),
         "angle of impact [°]": (angle, 0.0, 90.0),
     }
-    panels = figure.subplots(*(1, 3))
+    panels = figure.subplots(1, 3)
     for axes, (label, (column, least, most)) in zip(panels, columns.items(), strict=True):
         values = [column(hits) for _, hits in walls]
         whole = np.concatenate(values)
@@ -73,7 +71,7 @@ def draw(run: Run) -> Figure:
     return figure
 
 
-def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
+def _stacked(run: Run) -> list[tuple[str, Rows]]:
     """Impacts by wall; walls beyond the number of colours are one."""
     most = len(_COLOURS)
     rank = [(wall.name == OTHERS, -wall.impacts.size) for wall in run.walls]  # the rest is last
@@ -85,6 +83,6 @@ def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
     return found or [("no impact yet", run.impacts)]
 
 
-def angle(rows: NDArray[np.void]) -> NDArray[np.float64]:
+def angle(rows: Rows) -> Array:
     """Angle of each impact from the wall's normal [degrees]."""
     return np.asarray(np.degrees(np.arctan2(rows["sliding_speed"], rows["approach_speed"])))

@@ -4,8 +4,6 @@ Colours show the energy per area, averaged over a neighbourhood, of all causes; 
 Without the walls' mesh, each contact is a point whose area is the energy that it took.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,15 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._arrays import Array
 from contactlaw._readable import drawn
 from contactlaw.reporting.charts import DENSITY, density_bar, density_scale, sheet
 from contactlaw.reporting.run import Run, taken
 from contactlaw.reporting.surface import EnergyMap
-
-Floats = NDArray[np.float64]
 
 _TITLE = "Where the walls take energy from the beads"
 _FLAT = 1e-6  # extent over the largest one; walls with less are drawn as a plan
@@ -44,7 +40,7 @@ def draw(run: Run) -> Figure:
     figure = style.figure(
         12.0, 6.6 if thin.size else 5.8, _TITLE, f"{run.subject}; energy of all contacts per area{within}"
     )
-    panels = np.atleast_1d(figure.subplots(*(1, views)))
+    panels = np.atleast_1d(figure.subplots(1, views))
     if thin.size:
         x, y = (n for n in range(3) if n != thin[0])
         _paint(panels[0], found.corners[:, :, [x, y]], found, colours(found))
@@ -58,13 +54,13 @@ def draw(run: Run) -> Figure:
     return figure
 
 
-def _paint(axes: Axes, corners: Floats, found: EnergyMap, shades: Floats) -> None:
+def _paint(axes: Axes, corners: Array, found: EnergyMap, shades: Array) -> None:
     drawn = sheet(axes, 1e3 * corners, found.density, density_scale([found.density]))
     drawn.set(array=None, facecolors=shades)
     axes.autoscale_view()
 
 
-def _view(axes: Axes, found: EnergyMap, towards: Floats) -> None:
+def _view(axes: Axes, found: EnergyMap, towards: Array) -> None:
     """Draw walls in space as one at the end of `towards` sees them from far away."""
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
@@ -104,7 +100,7 @@ def _points(run: Run, within: str) -> Figure:
     return figure
 
 
-def colours(found: EnergyMap) -> Floats:
+def colours(found: EnergyMap) -> Array:
     """Colours of the map's triangles as red, green and blue from 0 to 1, shape (k, 3)."""
     mapped = ScalarMappable(density_scale([found.density]), DENSITY).to_rgba(found.density)
     shades = np.asarray(mapped)[:, :3]

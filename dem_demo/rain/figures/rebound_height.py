@@ -5,64 +5,59 @@ With one COR for all, all points would lie on one level line.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.reporting.charts import wall_axis
-from contactlaw.reporting.limits import label
-from dem_demo.rain.figures._labels import ring, ringed, source
-from dem_demo.rain.measure import Rebounds, first_rebounds, one_for_all
-from dem_demo.rain.record import Run
+from dem_demo.kit.run import Run, Runs
+from dem_demo.kit.scene import FLYING, GRAVITY, Floats
+from dem_demo.rain.figures import _columns
+from dem_demo.rain.paths import hits
+from dem_demo.rain.scene import Shower
 
 
-def draw(run: Run) -> Figure:
+def draw(runs: Runs[Shower]) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
-    columns = [first_rebounds(run, n) for n in range(len(run.scene.plates))]
-    figure = style.figure(
-        10.5,
-        6.2,
-        "How high beads rebound depends on the plate and on speed",
-        f"{source(run)}; first impact of each bead, in each column from slow (left) to fast "
-        f"(right){ringed(np.concatenate([far for _, _, far in columns]))}",
-    )
-    axes = figure.add_subplot()
-    fastest = float(np.max(run.impacts["approach_speed"], initial=1.0))
-    for n, column in enumerate(columns):
-        _column(axes, run, n, column, fastest)
-    cor = one_for_all(run)
-    axes.axhline(
-        cor**2,
-        color=style.VERMILION,
-        linestyle="--",
-        linewidth=2.0,
-        label=f"one COR for all: the run's mean, {cor:.2f}",
-    )
-    wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    (run,), (rows, ratio) = runs, first_rebounds(runs[0])
+    title = "How high beads rebound depends on the plate and on speed"
+    figure, axes = _columns.figure(runs, title, "first impact of each bead", rows)
+    x = _columns.place(runs, rows["plate"], rows["approach_speed"])
+    axes.scatter(x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0, label="measured in the run")
+    _columns.ring(axes, x, ratio, rows)
+    ends, speed = (run.scene.radius.min(), run.scene.radius.max()), np.linspace(0.02, 1.0, 100)
+    speed *= run.impacts["approach_speed"].max(initial=1.0)
+    for n, thickness in enumerate(run.scene.plates):
+        for radius in ends:
+            squared = np.square(run.model.restitution(speed, radius, thickness))
+            axes.plot(_columns.place(runs, n, speed), squared, color=style.INK, linewidth=1.4)
+    axes.plot([], [], color=style.INK, linewidth=1.4, label="model, smallest and largest bead")
+    cor = run.mean_cor
+    name = f"one COR for all: the run's mean, {cor:.2f}"
+    axes.axhline(cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0, label=name)
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.4)
     return figure
 
 
-def _column(axes: Axes, run: Run, plate: int, column: Rebounds, fastest: float) -> None:
-    speed, ratio, far = column
-    first = plate == 0
-    x = plate + 0.8 * (speed / fastest - 0.5)
-    axes.scatter(
-        x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0, label="measured in the run" if first else None
-    )
-    ring(axes, x, ratio, far)
-    radius = run.scene.beads.radius
-    v = np.linspace(0.02, 1.0, 100) * fastest
-    x = plate + 0.8 * (v / fastest - 0.5)
-    for r in (radius.min(), radius.max()):
-        e = run.model.restitution(v, r, run.scene.plates[plate].thickness)
-        axes.plot(
-            x,
-            np.square(e),
-            color=style.INK,
-            linewidth=1.4,
-            label="model, smallest and largest bead" if first and r == radius.min() else None,
-        )
+def first_rebounds(run: Run[Shower]) -> tuple[NDArray[np.void], Floats]:
+    """Find first impacts of beads, and measure their rebound height over impact height.
+
+    A bead counts if its first collision is on a plate and its second one after the next frame.
+    Height and vertical speed in that frame give the apex, y + v^2/2g: a measure of what the engine
+    did that does not rely on the COR in the record.
+    """
+    bead, time, row = hits(run)
+    n, first = np.unique(bead, return_index=True)
+    after = np.r_[np.where(bead[1:] == bead[:-1], time[1:], math.inf), math.inf][first]
+    rows, last = run.record.rows[row[first]], run.time.size - 1
+    frame = np.searchsorted(run.time, time[first], side="right").clip(max=last)
+    ok = (rows["plate"] >= 0) & run.record.impact[row[first]] & (run.status[frame, n] == FLYING)
+    ok &= (time[first] < run.time[frame]) & (run.time[frame] < after)
+    n, frame, rows = n[ok], frame[ok], rows[ok]
+    upwards = run.velocity[frame, n, 1].astype(float)
+    apex = run.position[frame, n, 1] - run.scene.radius[n] + upwards * np.abs(upwards) / (2.0 * GRAVITY)
+    return rows, apex * 2.0 * GRAVITY / rows["approach_speed"] ** 2

@@ -133,41 +133,19 @@ def slip_of(case, along, normal):
 ALLOY_2 = Case(7e10, 0.30, 2699, 0.1, 0.2)
 MAGNESIUM = Case(4e10, 0.35, 1800, 0.1, 0.2)
 # benchmark2_graph1: compression [um] and force [kN], loading; benchmark2_graph2: time [us], [kN]
-LOADING = [
-    (7.01, 0.517),
-    (12.01, 1.303),
-    (17.02, 2.180),
-    (21.03, 3.101),
-    (25.03, 4.022),
-    (28.96, 4.966),
-    (32.04, 5.865),
-    (34.97, 6.742),
-    (37.97, 7.573),
-    (40.98, 8.360),
-    (44.98, 9.685),
-    (47.99, 10.652),
-    (49.99, 11.326),
-]
-PULSE = [
-    (32.8, 0.519),
-    (84.8, 2.212),
-    (129.1, 4.064),
-    (169.6, 5.894),
-    (209.0, 7.610),
-    (246.6, 9.100),
-    (283.2, 10.229),
-    (318.9, 10.997),
-    (355.6, 11.357),
-    (391.4, 11.243),
-    (427.2, 10.722),
-    (463.9, 9.750),
-    (501.7, 8.460),
-    (539.5, 6.855),
-    (579.3, 5.091),
-    (621.0, 3.237),
-    (668.5, 1.405),
-    (727.5, 0.0),
-]
+LOADING = np.array(
+    [
+        [7.01, 12.01, 17.02, 21.03, 25.03, 28.96, 32.04, 34.97, 37.97, 40.98, 44.98, 47.99, 49.99],
+        [0.517, 1.303, 2.180, 3.101, 4.022, 4.966, 5.865, 6.742, 7.573, 8.360, 9.685, 10.652, 11.326],
+    ]
+)
+PULSE = np.array(
+    """
+    32.8 84.8 129.1 169.6 209.0 246.6 283.2 318.9 355.6 391.4 427.2 463.9 501.7 539.5 579.3 621.0 668.5 727.5
+    0.519 2.212 4.064 5.894 7.610 9.100 10.229 10.997 11.357 11.243 10.722 9.750 8.460 6.855 5.091 3.237 1.405 0.0
+    """.split(),
+    float,
+).reshape(2, -1)
 
 
 @pytest.mark.parametrize("case", [ALLOY_2, MAGNESIUM], ids=["aluminium alloy", "magnesium alloy"])
@@ -194,11 +172,11 @@ def test_2_elastic_normal_impact(case):
     assert row["contact_time"] == pytest.approx(CYCLE * deepest / case.speed, rel=1e-4)
     assert row["restitution"] == pytest.approx(1.0, abs=1e-6)
     if case is ALLOY_2:
-        d, kn = np.array(LOADING).T
+        d, kn = LOADING
         loading = slice(0, int(np.argmax(force)))
         found = np.interp(d * 1e-6, overlap[loading], force[loading])
         assert found == pytest.approx(kn * 1e3, abs=0.02 * peak)
-        us, kn = np.array(PULSE).T
+        us, kn = PULSE
         found = np.interp(us * 1e-6, np.array(time) * step, force)
         assert found == pytest.approx(kn * 1e3, abs=0.02 * peak)
 
@@ -232,39 +210,21 @@ SPIN = {
 }
 TURN = [3.76, -1.56, -5.54, -7.54, -7.54, -3.55, 3.43, 11.57, 29.35, 47.79, 64.58, 78.70, 84.52]
 # Kharaz, Gorham, Salman, Powder Technology 120 (2001) 281: aluminium oxide on glass
-MEASURED_ALONG = [
-    (9.84, 0.675),
-    (20.22, 0.599),
-    (30.36, 0.690),
-    (39.54, 0.774),
-    (49.60, 0.848),
-    (71.07, 0.937),
-    (79.23, 0.970),
-    (85.17, 0.979),
-]
-MEASURED_SPIN = [
-    (5.90, 135),
-    (10.87, 261),
-    (21.12, 574),
-    (31.14, 612),
-    (38.95, 595),
-    (50.24, 450),
-    (60.10, 376),
-    (69.96, 243),
-    (78.56, 142),
-    (84.32, 70.6),
-]
-MEASURED_TURN = [
-    (9.72, -1.06),
-    (20.31, -8.53),
-    (30.16, -2.55),
-    (39.12, 9.91),
-    (49.51, 30.0),
-    (59.90, 50.0),
-    (70.46, 66.9),
-    (78.86, 78.9),
-    (84.78, 85.7),
-]
+MEASURED_ALONG = np.array(
+    [[9.84, 20.22, 30.36, 39.54, 49.60, 71.07, 79.23, 85.17], [0.675, 0.599, 0.690, 0.774, 0.848, 0.937, 0.970, 0.979]]
+)
+MEASURED_SPIN = np.array(
+    [
+        [5.90, 10.87, 21.12, 31.14, 38.95, 50.24, 60.10, 69.96, 78.56, 84.32],
+        [135, 261, 574, 612, 595, 450, 376, 243, 142, 70.6],
+    ]
+)
+MEASURED_TURN = np.array(
+    [
+        [9.72, 20.31, 30.16, 39.12, 49.51, 59.90, 70.46, 78.86, 84.78],
+        [-1.06, -8.53, -2.55, 9.91, 30.0, 50.0, 66.9, 78.9, 85.7],
+    ]
+)
 
 
 @pytest.fixture(
@@ -308,12 +268,11 @@ def test_4_oblique_impact_as_measured(oblique):
     """Measurements are met as by the programs of the paper: 7 % in spin, 2 degrees in angle."""
     _, along, _, after = oblique
     turn = np.degrees(np.arctan(after.slip / after.normal))
-    for found, measured, bound in (
+    for found, (at, value), bound in (
         (after.along / along, MEASURED_ALONG, 0.03),
         (-after.spin, MEASURED_SPIN, 45.0),
         (turn, MEASURED_TURN, 2.1),
     ):
-        at, value = np.array(measured).T
         assert np.interp(at, ANGLES, found) == pytest.approx(value, abs=bound)
 
 
@@ -323,23 +282,12 @@ STEEL = Case(2.08e11, 0.30, 7850, 1e-5, 5.0, 1.0, 0.3)
 POLYETHYLENE = Case(1e9, 0.40, 1400, 1e-5, 5.0, 1.0, 0.3)
 BEFORE = np.array([0.333, 0.67, 1.0, 1.34, 1.67, 2.0, 2.34, 2.99, 3.34, 4.0, 5.0, 6.0, 9.99, 12.96])
 AFTER = [-1.0, 3.0, 6.01]  # of the last three, which slide, of either material
-ELEMENTS = [
-    (0.27, -0.03),
-    (0.59, -0.03),
-    (0.88, -0.08),
-    (1.19, -0.21),
-    (1.55, -0.37),
-    (1.92, -0.63),
-    (2.31, -0.95),
-    (2.79, -1.25),
-    (3.32, -1.52),
-    (3.97, -1.72),
-    (4.76, -1.71),
-    (5.76, -1.20),
-    (7.12, 0.13),
-    (9.12, 2.15),
-    (12.36, 5.43),
-]
+ELEMENTS = np.array(
+    [
+        [0.27, 0.59, 0.88, 1.19, 1.55, 1.92, 2.31, 2.79, 3.32, 3.97, 4.76, 5.76, 7.12, 9.12, 12.36],
+        [-0.03, -0.03, -0.08, -0.21, -0.37, -0.63, -0.95, -1.25, -1.52, -1.72, -1.71, -1.20, 0.13, 2.15, 5.43],
+    ]
+)
 
 
 @pytest.mark.parametrize(
@@ -361,7 +309,7 @@ def test_5_tangential_speeds(case):
     slides = BEFORE > 7.0
     assert rim[slides] == pytest.approx(-5.0, abs=1e-6)
     assert slip[BEFORE >= 6.0] == pytest.approx(AFTER, abs=0.06)
-    at, elements = np.array(ELEMENTS).T
+    at, elements = ELEMENTS
     ours = np.interp(at, BEFORE, slip)
     assert ours[at >= 7.0] == pytest.approx(elements[at >= 7.0], abs=0.08)
     if case is STEEL:  # of which the elements are

@@ -3,14 +3,21 @@
 import math
 
 import lammps_box as box
+import metal
 import numpy as np
+import polymer
 import pytest
 from lammps_box import R, above, attach, flat, make, scene, state
 
 import contactlaw as cl
+from contactlaw.engines.lammps import Tabulated, Translation
 from contactlaw.engines.lammps.memory import FIRST, SLIDING, WIDTH
 
-MODELS = {"myc": cl.ImpactModel(box.PAIR, law="myc"), "fem": cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))}
+MODELS = {
+    "myc": cl.ImpactModel(box.PAIR, law="myc"),
+    "fem": cl.ImpactModel(cl.Pair("stainless-steel-304", "glass")),
+    "rate": metal.MODEL,
+}
 PSI = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0])
 MU = 0.2
 
@@ -33,7 +40,8 @@ def slid(model, thickness, speed, steps):
 def test_sliding_speed_is_that_of_the_integration(law, thickness, speed):
     model = MODELS[law]
     exact = model.oblique(speed, PSI * MU * speed, R, thickness, MU, method="solve").sliding_speed
-    for steps, bound in ((50, 0.012), (100, 0.008)):
+    # with a rate 0.0097 are left on the thin plate
+    for steps, bound in ((50, 0.012), (100, 0.012 if law == "rate" else 0.008)):
         error = slid(model, thickness, speed, steps) - exact / (MU * speed)
         assert np.abs(error).max() < bound
 
@@ -84,16 +92,26 @@ def test_beads_struck_in_mid_contact_gain_no_energy():
     assert (energy() < 0.9 * held).sum() > 20
 
 
-@pytest.mark.parametrize("motion", [None, box.Vibration((2e-4, 1e-4, 5e-5), 500.0)])
-def test_the_record_accounts_for_all_energy(motion):
-    """Spinning beads that hit a plate at 45 to 85 degrees, one impact each."""
+MOTIONS = {
+    "none": None,
+    "vibration": box.Vibration((2e-4, 1e-4, 5e-5), 500.0),
+    "translation": Translation((1.0, 0.5, 2.0)),
+    "rotation": box.Rotation((0, -1, 0), 30.0, (-0.06, 0, 0)),
+    # its speed jumps in mid-contact, and energy that is lost then is not restored
+    "table": Tabulated([0.0, 4e-6, 7e-6], [[0, 0, 0], [0, 0, 4e-6], [0, 0, 13e-6]]),
+}
+
+
+@pytest.mark.parametrize("thickness", [1e-3, math.inf])  # parted at the last push, or not
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_record_accounts_for_all_energy(name, thickness):
+    """Spinning beads that hit a plate at 45 to 85 degrees, one impact each where it moves evenly."""
     model, count, generator = MODELS["fem"], 96, np.random.default_rng(1)
     angle, turn = np.radians(generator.uniform((45.0, 0.0), (85.0, 360.0), (count, 2))).T
     start = 5.0 * np.column_stack((np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), -np.cos(angle)))
     places = [above(2e-6, x=0.01 * (n % 10) - 0.045, y=0.01 * (n // 10) - 0.045) for n in range(count)]
-    lmp, plates = scene(
-        model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8, density=model.pair.sphere.density
-    )
+    plate, density = flat(thickness, motion=MOTIONS[name]), model.pair.sphere.density
+    lmp, plates = scene(model, [plate], places, start, friction=0.3, dt=5e-8, density=density)
     lmp.command("run 0")
     spin = lmp.numpy.extract_atom("omega")[:count]
     spin[:] = generator.normal(size=(count, 3)) * 3.0 / R
@@ -107,12 +125,16 @@ def test_the_record_accounts_for_all_energy(motion):
     came = state(lmp)
     lmp.command("run 1500")
     rows, now, lost = np.sort(plates.collisions(), order="bead"), state(lmp), before - energy()
-    assert (rows["bead"] == np.arange(1, count + 1)).all() and (rows["kind"] == 0).all()
+    assert rows["friction_energy"].sum() > 0.4 * np.abs(lost).sum()
     recorded = box.lost(rows) + rows["friction_energy"] - rows["wall_work"]
-    assert rows["friction_energy"].sum() > 0.4 * lost.sum()
-    assert lost == pytest.approx(recorded, abs=1e-10 * before.min())
+    bound = 1e-3 if name == "table" else 1e-10
+    assert lost == pytest.approx(np.bincount(rows["bead"] - 1, recorded, count), abs=bound * before.min())
+    if name == "table":
+        return
+    assert (rows["bead"] == np.arange(1, count + 1)).all() and (rows["kind"] == 0).all()
+    assert (name == "none") == (not rows["wall_work"].any())
     assert now["omega"] == pytest.approx(np.stack([rows[f"spin_{x}"] for x in "xyz"], 1), rel=1e-9)
-    if motion is None:
+    if name == "none":
         slides = [b["v"][:, :2] - R * b["omega"][:, 1::-1] * (1, -1) for b in (came, now)]
         size = np.linalg.norm(slides[0], axis=1)
         assert rows["sliding_speed"] == pytest.approx(size, rel=1e-9)
@@ -138,3 +160,10 @@ def test_friction_does_nothing_to_a_bead_that_does_not_slide(normal):
         _, now = box.dropped(MODELS["myc"], [plate], (R + 2e-6) * n, -5 * n, friction=friction)
         ends.append(np.concatenate((now["x"], now["v"], R * now["omega"])))
     assert ends[1] == pytest.approx(ends[0], abs=1e-7)  # of 5 m/s; without a direction it is NaN
+
+
+def test_no_slip_of_a_body_with_losses_is_larger_than_coulomb_allows():
+    bead = {"radius": 1e-3, "density": 1200, "friction": 0.3, "dt": 2e-7}
+    _, now = box.dropped(polymer.WEAK_MODEL, [flat(5e-3)], (0, 0, 1.1e-3), (5, 0, -3), **bead)
+    x, _, z = now["v"][0]
+    assert 0.29 * (3.0 + z) < 5.0 - x < 0.3 * (3.0 + z) * (1.0 + 1e-9)

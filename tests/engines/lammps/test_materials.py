@@ -1,7 +1,9 @@
 """Beads and plates of several materials in LAMMPS, and other units than SI."""
 
+import dataclasses
 import math
 
+import metal
 import numpy as np
 import pytest
 from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, quiet
@@ -206,3 +208,11 @@ def test_units_are_converted_at_the_border(units, model):
     for one, other in zip(outcomes["si"][1:], outcomes[units][1:], strict=True):
         assert np.asarray(other) == pytest.approx(np.asarray(one), rel=1e-9, abs=1e-12)
     assert math.isclose(outcomes[units][4], 7e-5, rel_tol=1e-9)
+
+
+def test_a_type_of_beads_is_another_with_another_rate():
+    """A bead that changes its type in contact was taken for the same."""
+    other = cl.Pair(dataclasses.replace(metal.PAIR.sphere, rate=(0.0701, 1.0)), "glass")
+    contacts = attach(scene(types=2), {1: metal.MODEL, 2: cl.ImpactModel(other)}, [flat(1e-3)])
+    rows = contacts._contacts.scene.plate_rows
+    assert rows["alike"][0, 0] != rows["alike"][1, 0]

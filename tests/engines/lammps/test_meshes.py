@@ -10,9 +10,10 @@ from lammps_box import DENSITY, PLATE, R, above, attach, dropped, flat, make, sc
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
-from contactlaw.engines.lammps import Mesh, Plate, memory
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration, memory
 from contactlaw.walls.grid import FacetGrid
 
+SQUARE = ((0, 0, 0), (1e-2, 0, 0), (0, 1e-2, 0))
 HALF = 0.014  # half side of the tessellated square [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
 
@@ -273,10 +274,27 @@ def test_what_is_no_mesh_is_refused(change, message):
         (lambda: Mesh.disc((0, 0, 0), (0, 0, 1), math.inf, 1e-3), "radius: got .*must be positive"),
         (lambda: Plate((0, 0, 0), (1e300, 0, 0), (0, 1, 0), 1e-3), "edge_a: .*none beyond"),
         (lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3), "corner: .* three numbers"),
+        (lambda: Plate(SQUARE[0], SQUARE[1], (1e-2, 1e-2, 0), 1e-3), "perpendicular"),
+        (lambda: Plate(SQUARE[0], (0, 0, 0), SQUARE[2], 1e-3), "perpendicular"),
+        (lambda: Plate((0, 0), *SQUARE[1:], 1e-3), "corner"),
+        (lambda: Plate(*SQUARE, 0.0), "thickness"),
+        (lambda: Plate(*SQUARE, math.nan), "thickness"),
+        (lambda: Plate(*SQUARE, 1e-3, "glass"), "model"),
+        (lambda: Translation((0, 0)), "velocity: got .*expected three numbers"),
+        (lambda: Translation((0, 0, math.nan)), "velocity"),
+        (lambda: Rotation((0, 0, 0), 1.0), "axis: got .*must have a direction"),
+        (lambda: Rotation((0, 0, 1), math.inf), "speed: got .*must be finite"),
+        (lambda: Vibration((0, 0, 1e-3), 0.0), "frequency: got .*must be positive"),
+        (lambda: Vibration((0, 0, 1e-3), 50.0, math.nan), "phase: got .*must be finite"),
+        (lambda: Tabulated([0.0], [[0, 0, 0]]), "with n of 2 or more"),
+        (lambda: Tabulated([0.0, 0.0], [[0, 0, 0]] * 2), "times: got .*must be finite and ascend"),
+        (lambda: Tabulated([0.0, 1.0], [[0, 0, 0], [0, 0, 1e300]]), "displacements"),
+        (lambda: Tabulated("ab", [[0, 0, 0]] * 2), "times, displacements"),
+        (lambda: Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), 1e-3, motion=5.0), "motion: expected"),
     ],
 )
-def test_shapes_that_are_none_are_refused(call, message):
-    with pytest.raises(ValueError, match=message):
+def test_shapes_and_motions_that_are_none_are_refused(call, message):
+    with pytest.raises((ValueError, TypeError), match=message):
         call()
 
 

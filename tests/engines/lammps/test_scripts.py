@@ -247,42 +247,33 @@ def test_what_plates_cannot_follow_is_refused(scene, undisturbed, command, words
         lmp.command(command)
 
 
-@pytest.mark.parametrize("started", [False, True])
-def test_a_minimization_in_a_file(scene, tmp_path, started):
-    """A minimization is not taken for time steps: the history of the beads stays."""
+DUMP = "dump d all custom 50 DUMP id type x y z vx vy vz\nrun 500\nundump d"
+IN_A_FILE = [
+    ("run 0", "minimize 0 0 10 10", "without time steps, as minimize and rerun do"),
+    (IN_CONTACT, "minimize 0 0 10 10", "without time steps, as minimize and rerun do"),
+    (DUMP, "rerun DUMP dump x y z vx vy vz", "at step 50: .*as minimize and rerun do"),
+    # LAMMPS calls ``fix external`` in set-ups only: beads would fly through plates
+    ("run 0", "run_style respa 2 2", "respa.*use 'run_style verlet'"),
+]
+
+
+@pytest.mark.parametrize(("before", "command", "words"), IN_A_FILE)
+def test_what_plates_cannot_follow_in_a_file(scene, tmp_path, before, command, words):
+    """It is not taken for time steps: the history of the beads stays."""
     lmp, walls = scene()
-    if started:
-        lmp.command(IN_CONTACT)
-    else:
-        lmp.command("run 0")
-    before = state(lmp)
-    with pytest.raises(RuntimeError, match="without time steps, as minimize and rerun do"):
-        in_a_file(lmp, tmp_path, "minimize 0 0 10 10")
-    assert np.array_equal(before["d2_contactlaw"], state(lmp)["d2_contactlaw"])
-    assert np.array_equal(before["x"], state(lmp)["x"])
-    lmp.command("run 630")
+    before, command = (text.replace("DUMP", str(tmp_path / "beads.dump")) for text in (before, command))
+    lmp.commands_string(before)
+    was = state(lmp)
+    with pytest.raises(RuntimeError, match=words):
+        in_a_file(lmp, tmp_path, command)
+    assert np.array_equal(was["d2_contactlaw"], state(lmp)["d2_contactlaw"])
+    assert "rerun" in command or np.array_equal(was["x"], state(lmp)["x"])
+    lmp.commands_string("run_style verlet\nrun 630")
     assert len(walls.collisions()) == 3
 
 
-def test_a_rerun_in_a_file(scene, tmp_path):
+def test_an_integrator_that_leaves_the_plates_out(scene, model):
     lmp, walls = scene()
-    dump = tmp_path / "beads.dump"
-    lmp.commands_string(f"dump d all custom 50 {dump} id type x y z vx vy vz\nrun 500\nundump d")
-    before = state(lmp)["d2_contactlaw"]
-    with pytest.raises(RuntimeError, match="at step 50: .*as minimize and rerun do"):
-        in_a_file(lmp, tmp_path, f"rerun {dump} dump x y z vx vy vz")
-    assert len(walls.collisions()) == 3
-    assert np.array_equal(before, state(lmp)["d2_contactlaw"])
-
-
-def test_an_integrator_that_leaves_the_plates_out(scene, model, tmp_path):
-    """Under respa LAMMPS calls ``fix external`` in set-ups only: beads would fly through plates."""
-    lmp, walls = scene()
-    with pytest.raises(RuntimeError, match="respa.*use 'run_style verlet'"):
-        in_a_file(lmp, tmp_path, "run_style respa 2 2")
-    lmp.command("run_style verlet")
-    lmp.command("run 630")
-    assert len(walls.collisions()) == 3
     walls.detach()
     lmp.command("run_style respa 2 2")
     with pytest.raises(RuntimeError, match="respa.*use 'run_style verlet'"):

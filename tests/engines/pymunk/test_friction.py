@@ -235,11 +235,8 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
 def test_a_friction_of_the_users_is_refused_where_the_model_answers(model, late):
     space, _, _, impacts = scene(model)
 
-    def pre_solve(arbiter, space, data):
-        arbiter.friction = 0.25
-
     kinds = (None, None) if late else (impacts.bead_type, impacts.plate_type)
-    space.on_collision(*kinds, pre_solve=pre_solve)
+    space.on_collision(*kinds, pre_solve=room.setting(friction=0.25))
     with pytest.raises(RuntimeError, match=r"arbiter.friction to 0.25 .*friction=\.\.\."):
         space.step(DT)
 
@@ -253,16 +250,13 @@ def test_the_engines_own_friction_is_recorded(friction, by):
     """A rigid contact slides with Coulomb's law, or sticks: it has no spring."""
     space, bead, plate, impacts = scene(Full(0.5), spin=300.0, friction=None)
 
-    def pre_solve(arbiter, space, data):
-        arbiter.friction = friction
-
     if by == "shapes":
         (circle,) = bead.shapes
         circle.friction, plate.friction = 1.0, friction
     else:
         late = (impacts.plate_type, None)
         kinds = late if by == "late handler" else (impacts.bead_type, impacts.plate_type)
-        space.on_collision(*kinds, pre_solve=pre_solve)
+        space.on_collision(*kinds, pre_solve=room.setting(friction=friction))
     before = energy(bead)
     row, _, _ = hit(space, impacts, bead)
     slip = 1.0 + 300.0 * R

@@ -77,10 +77,7 @@ def test_what_the_user_changes_in_a_contact_stays(key):
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
     body.velocity = (1.0, -2.0)
 
-    def pre_solve(arbiter, space, data):
-        arbiter.friction = 0.25
-
-    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    space.on_collision(*key(impacts), pre_solve=room.setting(friction=0.25))
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     # Coulomb: 0.25 times the normal impulse, while the surface still slips (it needs 2/7 of 1 m/s)
@@ -91,10 +88,7 @@ def test_what_the_user_changes_in_a_contact_stays(key):
 def test_a_contact_that_the_user_switches_off_in_pre_solve_is_no_impact(key):
     space, body, impacts = drop(Stub(), gravity=0.0)
 
-    def pre_solve(arbiter, space, data):
-        arbiter.process_collision = False
-
-    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    space.on_collision(*key(impacts), pre_solve=room.setting(process_collision=False))
     for _ in range(30):
         space.step(DT)
         assert len(impacts.collisions()) == 0
@@ -105,11 +99,10 @@ def test_a_contact_that_the_user_switches_off_in_pre_solve_is_no_impact(key):
 def test_a_contact_of_beads_that_is_switched_off_is_no_impact(pair):
     space, _, impacts = room.meet(Stub(0.8))
 
-    def pre_solve(arbiter, space, data):
-        arbiter.process_collision = False
-
     own = (impacts.bead_type, impacts.bead_type)
-    space.on_collision(*(own if pair == "own" else KEYS[pair](impacts)), pre_solve=pre_solve)
+    space.on_collision(
+        *(own if pair == "own" else KEYS[pair](impacts)), pre_solve=room.setting(process_collision=False)
+    )
     room.steps(space, 5)
     assert len(impacts.collisions()) == 0
 
@@ -117,10 +110,7 @@ def test_a_contact_of_beads_that_is_switched_off_is_no_impact(pair):
 def test_a_restitution_of_the_users_is_refused(key):
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
 
-    def pre_solve(arbiter, space, data):
-        arbiter.restitution = 0.25
-
-    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    space.on_collision(*key(impacts), pre_solve=room.setting(restitution=0.25))
     with pytest.raises(RuntimeError, match=r"restitution to 0.25 .* the model answers.*model="):
         space.step(DT)
 

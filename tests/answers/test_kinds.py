@@ -1,0 +1,70 @@
+"""Whatever a model is of, all ways to an answer give that of the solver."""
+
+import ctypes
+import math
+import pickle
+
+import kinds
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.answers.solver import Solver
+from contactlaw.physical.impacts import Impacts
+from contactlaw.table import bounds
+
+R = 1e-3
+FIELDS = [name for name in cl.Rebound.__dataclass_fields__ if name != "flags"]
+
+
+@pytest.mark.parametrize("kind", kinds.params())
+def test_tables_are_certified(kind):
+    model, given = kinds.model(kind), kinds.impacts(kind)
+    found, exact = model.lookup(*given), model.solve(*given)
+    assert found.restitution.size >= 80 and np.ptp(found.restitution) > 0.05
+    # a single table is better than promised; next to yield two fields of several begin at zero
+    rated = kind in kinds.RATED
+    most = bounds(model.force_law) if rated else {"restitution": 1e-6}
+    clear = np.abs(exact.overload - 1.0) > (0.02 if rated else 1e-6)
+    for field in FIELDS:
+        ours, true = getattr(found, field), getattr(exact, field)
+        if field == "restitution":
+            assert np.abs(ours - true).max() < most[field], field
+        else:
+            errors = np.abs(ours - true) / np.maximum(np.abs(true), 1e-12)
+            assert errors[clear].max() < most.get(field, 5e-4 if rated else 1e-5), field
+    shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
+    assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-5)
+    assert np.count_nonzero(found.flags != exact.flags) <= (2 if rated else 0)  # some lie on a limit
+
+
+@pytest.mark.parametrize("kind", kinds.params("hertz", slow=kinds.SLOW + ("the other becomes the weaker",)))
+def test_all_entries_have_one_cor(kind):
+    """Each speed, radius and thickness alone, by a compiled function, its address, or a curve."""
+    model, (v, r, h) = kinds.model(kind), kinds.impacts(kind)
+    expected = pytest.approx(model.lookup(v, r, h).restitution, abs=1e-6 if kind in kinds.RATED else 2e-11)
+    given = list(zip(v.tolist(), r.tolist(), h.tolist(), strict=True))
+    pointer = ctypes.CFUNCTYPE(*[ctypes.c_double] * 4)(model.address)
+    assert model.restitution(v, r, h) == expected
+    twin = pickle.loads(pickle.dumps(model))
+    assert (twin.pair, twin.force_law, twin.law, twin.outside) == (model.pair, model.force_law, model.law, "raise")
+    for entry in (model.restitution, model.kernel, pointer, twin.restitution):
+        assert np.array([entry(*at) for at in given]) == expected
+    assert np.array([model.curve(b, c)(a) for a, b, c in given]) == expected
+    curve, speeds = model.sphere_sphere_curve(R, 2 * R), [0.5, 3.0]
+    alike = model.lookup_sphere_sphere(speeds, R, 2 * R).restitution
+    assert [curve(speed) for speed in speeds] == pytest.approx(alike, abs=2e-6)
+    outside = (-1.0, R, R), (math.nan, R, R), (5.0, 0.0, R), (5.0, R, -R), (1e4, R, R)
+    for entry in (model.kernel, pointer):
+        assert np.isnan([entry(*at) for at in outside]).all()
+
+
+@pytest.mark.parametrize("kind", kinds.params("hertz", "losses"))
+def test_yield_begins_at_the_yield_speed(kind):
+    """With its own rate, if it has one: also where the solver looks for it."""
+    model = kinds.model(kind)
+    for thickness in (R, math.inf):
+        found = model.yield_speed(R, thickness)
+        assert model.lookup(found, R, thickness).overload == pytest.approx(1.0, abs=1e-5)
+        given = Impacts(np.ones(1), np.array([R]), np.array([thickness]), None)
+        assert Solver(model._bodies).yield_speeds(given) == pytest.approx(found, rel=1e-5)
