@@ -94,8 +94,8 @@ BUDGETS = {
     "contactlaw/walls": 1_914,
     "contactlaw templates": 1_098,  # sources of other languages, and pages
     "dem_demo": 3_200,
-    "validation": 14_062,  # finite elements are 5,529 of them
-    "tests": 23_425,  # 22,000 was asked; a fact is held at the level nearest to the user
+    "validation": 13_788,  # finite elements are 5,529 of them
+    "tests": 23_361,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
