@@ -27,6 +27,7 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.oblique import Sliding
 from contactlaw.physical.validity import Validity, explain
+from contactlaw.stepping.softened import SoftState
 from contactlaw.stepping.spring import Spring, State
 from contactlaw.table import Table
 from contactlaw.table.lookup import V_MAX
@@ -52,7 +53,8 @@ _PUBLIC: dict[Any, str] = {
     functions.BeadSpring: "spring",
     Spring: "contact_spring",
     Sliding: "approach",
-    **{one: one for one in "step flags collide set_edge friction_step vector_of store".split()},
+    SoftState: "softened",
+    **{one: one for one in "step flags collide set_edge softened_step friction_step vector_of store".split()},
 }
 
 
@@ -143,6 +145,8 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.rebound_with_mass, pair, *_VECTOR, DOUBLE)
     add(program, functions.at_edge, pair, bead, INT, DOUBLE)
     add(program, functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
+    softened = program.struct(SoftState, dict.fromkeys(SoftState._fields, DOUBLE))
+    add(program, functions.after_softened, bead, DOUBLE, DOUBLE, softened, DOUBLE, DOUBLE)
     add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
     add(program, functions.flags_for, pair, impact, *_VECTOR)
     add(program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE)

@@ -28,6 +28,7 @@ from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength
 from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
+from contactlaw.stepping.softened import SoftState, advance_softened
 from contactlaw.stepping.spring import Spring, State, impact, resized, stepped, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
@@ -116,6 +117,7 @@ INSTEAD: dict[Any, Any] = {lookup.log_and_root: plain_log_and_root, lookup.serie
 FIXED = "goal", "samples", "springs", "room"
 NOTHING = Answer(*[math.nan] * len(Answer._fields))
 BLOWN_UP = State(0.0, 0.0, math.nan)
+SOFT_BLOWN_UP = SoftState(math.nan, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
 
@@ -254,6 +256,24 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
     near = EdgeEcho(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
     new = stepped(pair.law, contact_spring(pair, bead), state, overlap, dt, near, pair.room)
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
+
+
+@kernel
+def after_softened(
+    bead: BeadSpring, softening: float, restitution: float, state: SoftState, overlap: float, dt: float
+) -> SoftState:
+    """State of a softened contact at the end of a step; its force is NaN for bad input."""
+    if not (
+        softening >= 1.0
+        and 0.0 <= restitution <= 1.0
+        and -math.inf < overlap <= 2.0 * bead.radius
+        and 0.0 < dt <= bead.relaxation
+        and bead.mass > 0.0
+        and bead.stiffness > 0.0
+    ):
+        return SOFT_BLOWN_UP
+    new = advance_softened(bead.stiffness / softening, bead.mass, restitution, state, overlap, dt)
+    return new if -math.inf < new.force + new.kick < math.inf else SOFT_BLOWN_UP
 
 
 @kernel

@@ -574,6 +574,37 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
     assert found[:, 2] / v == pytest.approx(hit.restitution, abs=2e-4)
 
 
+SOFT = """#include "contactlaw.h"
+static double back(double speed, double restitution, double softening, double steps)
+{
+    contactlaw_spring spring = contactlaw_spring_of(0.9e-3, 1e-3);
+    contactlaw_softened state = CONTACTLAW_APART_SOFTENED;
+    const double dt = contactlaw_rebound(speed, 0.9e-3, HUGE_VAL).contact_time * pow(softening, 0.4) / steps;
+    double x = -0.3 * speed * dt, u = speed, force = 0.0;
+    int n;
+
+    state.overlap = x;
+    for (n = 0; n < 8 * steps; ++n) {
+        u -= 0.5 * dt * force / spring.mass;
+        x += dt * u;
+        force = contactlaw_softened_step(&spring, softening, restitution, &state, x, dt);
+        u -= 0.5 * dt * force / spring.mass;
+    }
+    return -u / speed;
+}
+"""
+
+
+def test_a_softened_contact_has_the_cor_that_it_is_given(tmp_path):
+    write_header(tmp_path, "myc")
+    wanted = [0.05, 0.2, 0.5, 0.9, 1.0]
+    calls = [f"back(2.0, {e}, {soft}, {steps})" for e in wanted for soft, steps in ((10.0, 20.0), (1e3, 30.0))]
+    refused = ["back(2.0, 1.5, 10.0, 20.0)", "back(2.0, 0.5, 0.5, 20.0)"]
+    found = printed(tmp_path, *calls, *refused, more=SOFT)
+    assert found[:-2] == pytest.approx(np.repeat(wanted, 2), abs=1e-12)
+    assert np.isnan(found[-2:]).all()
+
+
 def test_the_documented_c_compiles(tmp_path):
     (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/c.md").read_text(), re.DOTALL)
     include, _, calls = shown.partition("\n")

@@ -9,7 +9,6 @@ import pytest
 
 import contactlaw as cl
 from contactlaw.softsphere import Contacts, time_step
-from validation.paper import closed_form, turning_point
 
 R, H = 0.9e-3, 1e-3
 
@@ -61,9 +60,6 @@ def calls(model):
         (Contacts(model, R, H).advance, {"overlap": np.array([1e-6]), "step": 1e-7}),
         (lambda **k: time_step(model, **k), {**plate, "error": 1e-3}),
         (lambda **k: cl.Material("own", **k), vars_of(material)),
-        (closed_form.mueller, {"inelasticity": 0.1}),
-        (closed_form.peng, {"speed_ratio": 2.0, "thickness_ratio": 1.0, "eta": 0.1, "c": 0.1}),
-        (turning_point.restitution, {"speed_ratio": 2.0, "inelasticity_at_yield": 0.1}),
     ]
     for function, arguments in functions:
         for name, value in arguments.items():
@@ -92,7 +88,6 @@ def test_units_are_not_lost(model):
         (lambda m, q: cl.load_signal(0.0, 5.0, R, H, model=m, rate=q), "1/s"),
         (lambda m, q: cl.load_signal(q, 5.0, R, H, model=m, rate=1e5), "s"),
         (lambda m, q: Contacts(m, R, H).advance(q, 1e-7), "m"),
-        (lambda m, q: closed_form.mueller(q), ""),
         (lambda m, q: cl.Material("own", q, 0.2, 2500.0), "Pa"),
         (lambda m, q: cl.Material("own", 7e10, q, 2500.0), ""),
         (lambda m, q: cl.Material("own", 7e10, 0.2, q), "kg/m**3"),

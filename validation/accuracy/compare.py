@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from validation.fem import store
 from validation.fem.cases import elastic_plate
-from validation.paper import closed_form, formulas, setting, turning_point
+from validation.paper import closed_form, setting, turning_point
 
 Array = NDArray[np.float64]
 
@@ -54,11 +54,11 @@ def comparison(name: str) -> Comparison:
     like = np.sqrt(at_yield / setting.ETA)
     restitution = {
         "modified Zener": model["restitution"],
-        "turning point": np.asarray(turning_point.restitution(ratio, at_yield)),
-        "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, setting.ETA)),
-        "Eq. 22, printed": np.asarray(formulas.eq_22(ratio, like, setting.ETA)),
-        "Zener": np.asarray(closed_form.zener(lam)),
-        "Mueller, Eq. 3": np.asarray(closed_form.mueller(lam)),
+        "turning point": turning_point.restitution(ratio, at_yield),
+        "Eq. 22, continuous": closed_form.peng(ratio, like, setting.ETA),
+        "Eq. 22, printed": closed_form.eq_22(ratio, like, setting.ETA),
+        "Zener": closed_form.zener(lam),
+        "Mueller, Eq. 3": closed_form.mueller(lam),
     }
     return Comparison(slenderness, ratio, lam, fem, model, restitution, model["overload"] > 1.0)
 

@@ -34,7 +34,7 @@ def thornton(cap: float) -> Array:
     """
     # the speed at which the pressure reaches the cap grows with the cap to the power 5/2
     ratio = np.array(_SPEED_RATIOS) * (_CAPS[0] / cap) ** 2.5
-    return np.asarray(closed_form.thornton(ratio))
+    return closed_form.thornton(ratio)
 
 
 class Fall(NamedTuple):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import math
 import shutil
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -19,6 +18,7 @@ import contactlaw as cl
 from contactlaw._jit import kernel
 from contactlaw.softsphere import PARTED, Spring, advance, resized, unit_spring
 from validation.bench.row import Row, in_turns
+from validation.hostile.headers import compiled
 
 Array = NDArray[np.float64]
 
@@ -48,25 +48,15 @@ void steps(int n, const double *x, int walks, double radius, double thickness, d
 
 def rows() -> Iterator[Row]:
     """Measure with the laws myc and fem."""
-    compiler = shutil.which("gcc")
-    if compiler is None:
+    if not shutil.which("gcc"):
         raise RuntimeError("no gcc on PATH: the C header cannot be measured")
     pairs = {"myc": ("gamma-alumina", "glass"), "fem": ("bearing-steel-52100", "aluminium-6061-t6")}
     for law, bodies in pairs.items():
         model = cl.ImpactModel(cl.Pair(*bodies), law=law)
         with tempfile.TemporaryDirectory() as folder:
-            library = _compiled(model, Path(folder), compiler)
+            library = compiled(model, Path(folder), _SOURCE, "-O3")
         yield _lookups(model, library)
         yield _steps(model, library)
-
-
-def _compiled(model: cl.ImpactModel, folder: Path, compiler: str) -> ctypes.CDLL:
-    cl.export.header(folder / "contactlaw.h", model)
-    source, library = folder / "bench.c", folder / "bench.so"
-    source.write_text(_SOURCE)
-    command = [compiler, "-std=c99", "-O3", "-shared", "-fPIC", source, "-o", library, "-lm"]
-    subprocess.run(list(map(str, command)), check=True)
-    return ctypes.CDLL(str(library))
 
 
 def _pointer(values: Array) -> Any:

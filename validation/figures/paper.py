@@ -27,7 +27,6 @@ from validation.paper import closed_form, setting, turning_point
 from validation.paper.closed_form import elastic_compression, mueller, peng, yield_speed_ratio, zener
 from validation.paper.elements import FASTEST_COMPRESSION, contact_time_errors
 from validation.paper.evidence import eq_10, fitted_border, slope
-from validation.paper.formulas import border, eq_6, eq_14, eq_22, raman, thornton_asymptote
 from validation.paper.setting import (
     ETA,
     FASTEST,
@@ -129,9 +128,9 @@ def fig04_compression() -> chart.Drawn:
         Panel(INELASTICITY.between(0, 2), Axis(r"error of $w_m$  [%]")),
     )
     lam = np.linspace(0.0, 2.0, 81)
-    exact = np.asarray(elastic_compression(lam))
+    exact = elastic_compression(lam)
     quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
-    printed, mended = eq_6(lam) / exact - 1, quadratic ** (-2 / 3) / exact - 1
+    printed, mended = closed_form.eq_6(lam) / exact - 1, quadratic ** (-2 / 3) / exact - 1
     some = slice(None, None, 5)
     left.plot(lam[some], exact[some] ** -1.5, "s", color=BLUE, markersize=7, label="solver", clip_on=False)
     left.plot(lam, lam + INTERCEPT, color=VERMILION, label="Eq. 6, slope 1.00")
@@ -205,9 +204,9 @@ def fig06_yield_speed() -> chart.Drawn:
         Panel(SLENDERNESS.between(0, 2.2), Axis("error of Eq. 14  [%]")),
     )
     ratio = np.linspace(0.0, 2.2, 89)
-    exact = np.asarray(yield_speed_ratio(ETA * ratio**2))
-    printed = np.asarray(eq_14(ETA * ratio**2))
-    misprint = np.asarray(eq_14(ETA * SHARE**0.4 * ratio**2))
+    exact = yield_speed_ratio(ETA * ratio**2)
+    printed = closed_form.eq_14(ETA * ratio**2)
+    misprint = closed_form.eq_14(ETA * SHARE**0.4 * ratio**2)
     error = printed / exact - 1
     left.plot(ratio[::8], exact[::8], "s", color=BLUE, markersize=7, label="solver", clip_on=False)
     left.plot(ratio, printed, color=VERMILION, label=r"Eq. 14, $\eta$ corrected")
@@ -219,7 +218,7 @@ def fig06_yield_speed() -> chart.Drawn:
     right.axhline(1.2, color=INK, linewidth=1, linestyle=":")
     chart.note(right, 0.05, 1.21, "paper: 1.2 %", va="bottom")
     at = int(np.argmin(np.abs(ratio - THINNEST)))
-    as_printed = eq_14(eq_10(3.0, 0.8) * THINNEST**2)
+    as_printed = closed_form.eq_14(eq_10(3.0, 0.8) * THINNEST**2)
     return figure, {
         "largest error of Eq. 14 up to R/H = 1.8": largest(error[ratio <= THINNEST]),
         "V_Y/V_Y0 at R/H = 1.8": exact[at],
@@ -245,7 +244,7 @@ def fig07_inelasticity() -> chart.Drawn:
     lam, ratio = np.linspace(0.0, 0.6, 241), np.linspace(0.05, 2.2, 20)
     axes.plot(lam, zener(lam), color=INK, linewidth=2.4, label="Zener (solved)")
     axes.plot(lam, mueller(lam), "--", color=VERMILION, label="Mueller, Eq. 3")
-    axes.plot(lam, raman(lam), "-.", color=ORANGE, label="Raman's form, exact slope")
+    axes.plot(lam, closed_form.raman(lam), "-.", color=ORANGE, label="Raman's form, exact slope")
     for v, colour in SPEEDS.items():
         one, words = impacts(v, ratio), f"{v:g} V$_{{Y0}}$"
         axes.plot(one.inelasticity, one.restitution, "o", color=colour, markersize=5, label=words)
@@ -255,12 +254,12 @@ def fig07_inelasticity() -> chart.Drawn:
     thick, near = impacts(FASTEST, 0.2), lam[lam <= 0.5]
     numbers = {
         f"{name} over the model at 7 V_Y0, R/H = 0.2, less 1": form(thick.inelasticity) / thick.restitution - 1
-        for name, form in (("Zener", zener), ("Mueller", mueller), ("Raman's form", raman))
+        for name, form in (("Zener", zener), ("Mueller", mueller), ("Raman's form", closed_form.raman))
     }
     return figure, {
         **numbers,
         "largest error of Mueller up to lambda 0.5": largest(mueller(near) / zener(near) - 1),
-        "largest error of Raman's form up to lambda 0.5": largest(raman(near) / zener(near) - 1),
+        "largest error of Raman's form up to lambda 0.5": largest(closed_form.raman(near) / zener(near) - 1),
     }
 
 
@@ -289,7 +288,7 @@ def fig08_speed() -> chart.Drawn:
         e = np.asarray(impacts(v, ratio).restitution)
         turned = turning_point.restitution(v, ETA * ratio**2)
         for name, words, line, colour, form in (
-            ("printed", "Eq. 22, printed", ":", MUTED, eq_22(v, ratio, ETA)),
+            ("printed", "Eq. 22, printed", ":", MUTED, closed_form.eq_22(v, ratio, ETA)),
             ("continuous", "Eq. 22, continuous", "--", VERMILION, peng(v, ratio, ETA)),
             ("turning point", "turning point", "-", GREEN, turned),
         ):
@@ -335,7 +334,7 @@ def fig09a_phase() -> chart.Drawn:
     exact = np.array([borderline(float(x)) for x in half])
     axes.plot(yield_speed_ratio(ETA * ratio**2), ratio, color="black", linewidth=2.2)
     axes.plot(exact, half, color="black", linewidth=2.2)
-    axes.plot(border(half), half, "--", color="white", linewidth=2.2)
+    axes.plot(closed_form.border(half), half, "--", color="white", linewidth=2.2)
     for x, y, text, cited in (
         (1.75, 1.5, "II  wave", "as cited: Kharaz & Gorham 2000;\nPatil & Higgs 2017 (to III)"),
         (6.2, 0.4, "III  plastic", "as cited: Patil & Higgs 2017 (from II)"),
@@ -345,7 +344,7 @@ def fig09a_phase() -> chart.Drawn:
         axes.text(x, y - 0.03, cited, fontsize=10, color=colour, va="top")
     axes.text(0.15, 0.75, "I  elastic", fontsize=15, fontweight="bold", color="white", rotation=90)
     axes.text(0.55, 0.75, "as cited: Mueller et al. 2015", fontsize=10, color="white", rotation=90)
-    off = np.abs(border(half) / exact - 1)
+    off = np.abs(closed_form.border(half) / exact - 1)
     yields = float(yield_speed_ratio(ETA * half[1] ** 2))
     return figure, {
         "coefficient of Eq. 23, fitted over R/H 0.1 to 1.2": fitted_border(1.2),
@@ -512,7 +511,7 @@ def fig13_laws() -> chart.Drawn:
             e = cor[name, lam_y] = np.array([restitution(x, lam_y, law) for x in v])
             chart.of_law(axes, name, v, e)
     fast = v[v > 1.5]
-    asymptote = np.asarray(thornton_asymptote(fast / _SLOWER))
+    asymptote = np.asarray(closed_form.thornton_asymptote(fast / _SLOWER))
     left.plot(fast, asymptote, ":", color=INK, label=r"Thornton, 1.185 v$^{-1/4}$")
     left.legend(loc="lower left")
     right.label_outer()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import itertools
 import re
+import subprocess
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -39,3 +41,12 @@ def of_pair(sphere: str, plate: str) -> Iterator[str]:
         yield f"{sphere} on {plate}: {size} bytes"
     if not (promised and float(promised[1]) <= _CLOSE):
         yield f"{sphere} on {plate}: its certificate is {promised and promised[0]}"
+
+
+def compiled(model: cl.ImpactModel, folder: Path, source: str, *options: str) -> ctypes.CDLL:
+    """Compile a C source that includes the header of a model, and load it."""
+    cl.export.header(folder / "contactlaw.h", model)
+    (folder / "source.c").write_text(source)
+    command = ["gcc", "-std=c99", *options, "-shared", "-fPIC", "source.c", "-o", "out.so", "-lm"]
+    subprocess.run(command, cwd=folder, check=True)
+    return ctypes.CDLL(str(folder / "out.so"))

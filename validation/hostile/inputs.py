@@ -10,7 +10,6 @@ from __future__ import annotations
 import ctypes
 import math
 import shutil
-import subprocess
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -22,8 +21,8 @@ import numpy as np
 import contactlaw as cl
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.tabulated import Outside
-from contactlaw.export import header
 from contactlaw.softsphere import Contacts
+from validation.hostile.headers import compiled
 
 FULL = 1_600_000
 _EACH = 8_000  # impacts per pair
@@ -116,14 +115,13 @@ def _of_pair(
     cor, at = model.kernel, ctypes.CFUNCTYPE(*[ctypes.c_double] * 4)(model.address)
     one = np.array([cor(*x) for x in zip(v, r, h, strict=True)])
     inside = ~np.isnan(one)
-    named = dict(zip(("speed", "radius", "thickness"), impacts, strict=True))
+    named = impacts
 
     def first(wrong: np.ndarray, what: str, *also: np.ndarray) -> Iterator[str]:
         if wrong.any():
             n = int(np.argmax(wrong))
-            values = ", ".join(f"{name} = {float(x[n])!r}" for name, x in named.items())
             answers = ", ".join(repr(float(x[n])) for x in also)
-            yield f"{what} for {int(wrong.sum())}, as {values}: {answers}"
+            yield f"{what} for {int(wrong.sum())}, {_where(*(x[n] for x in named))}: {answers}"
 
     yield from first(inside & foil, "an answer for a foil", one)
     yield from first(inside & ~((one >= 0.0) & (one <= 1.0)), "COR out of range", one)
@@ -133,9 +131,8 @@ def _of_pair(
         yield "kernel and address differ"
 
     # batches answer what the kernel answers
-    part = tuple(x[inside] for x in impacts)
-    batch, hit = np.asarray(model.restitution(*part)), model.lookup(*part)
-    named = dict(zip(named, part, strict=True))
+    named = tuple(x[inside] for x in impacts)
+    batch, hit = np.asarray(model.restitution(*named)), model.lookup(*named)
     for what, values in ("batch", batch), ("lookup", np.asarray(hit.restitution)):
         off = np.abs(values - one[inside]) > _ROUNDING
         yield from first(off, f"kernel and {what} differ", one[inside], values)
@@ -149,13 +146,12 @@ def _of_pair(
     # beyond the table: an error, the border or the equation, as `outside` says; a foil: an error
     for n in rng.choice(np.flatnonzero(~inside), min(_SOLVED, int((~inside).sum())), replace=False):
         yield from _refused(models, float(v[n]), float(r[n]), float(h[n]), bool(foil[n]))
-    known = tuple(x[~foil] for x in impacts)
-    named = dict(zip(named, known, strict=True))
-    hit = models["clamp"].lookup(*known)
+    named = tuple(x[~foil] for x in impacts)
+    hit = models["clamp"].lookup(*named)
     yield from _fields(hit, first)
     clamped = (hit.flags & int(cl.Validity.CLAMPED)) != 0
     yield from first(clamped != ~inside[~foil], "clamped, though inside, or not though beyond")
-    yield from _soft(model, known, first)
+    yield from _soft(model, named, first)
     if headers and shutil.which("gcc"):
         yield from _header(model, impacts, one)
 
@@ -216,13 +212,7 @@ double rebound(double v, double r, double h) { return contactlaw_rebound(v, r, h
 def _header(model: cl.ImpactModel, impacts: Any, one: np.ndarray) -> Iterator[str]:
     """Compile the header of a pair, and compare its answers with the kernel's."""
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder)
-        header(made / "contactlaw.h", model)
-        (made / "source.c").write_text(_SOURCE)
-        sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover"]
-        command = ["gcc", "-std=c99", "-O1", *sanitized, "-shared", "-fPIC", "source.c"]
-        subprocess.run([*command, "-o", "out.so", "-lm"], cwd=made, check=True)
-        library = ctypes.CDLL(str(made / "out.so"))
+        library = compiled(model, Path(folder), _SOURCE, "-O1", "-fsanitize=undefined", "-fno-sanitize-recover")
         for name in ("restitution", "rebound"):
             call = getattr(library, name)
             call.argtypes, call.restype = [ctypes.c_double] * 3, ctypes.c_double

@@ -15,7 +15,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from hypothesis import strategies as st
@@ -156,26 +156,18 @@ def inputs(pair: cl.Pair) -> Iterator[tuple[str, list[cl.Pair]]]:
     for body, field in itertools.product(("sphere", "plate"), ("youngs_modulus", "poissons_ratio", "yield_strength")):
         value = getattr(getattr(pair, body), field)
         if value is not None and not (field == "poissons_ratio" and not 1e-3 < value < 0.489):
-            yield f"{field} of the {body}", [_with(pair, body, field, value * (1 + d)) for d in at]
-    strengths = [body.yield_strength for body in (pair.sphere, pair.plate)]
-    if None not in strengths:
-        equal = min(s for s in strengths if s is not None)
-        yield (
-            "ratio of the strengths",
-            [
-                _with(
-                    _with(pair, "sphere", "yield_strength", equal * (1 + d)), "plate", "yield_strength", equal * (1 - d)
-                )
-                for d in at
-            ],
-        )
+            yield f"{field} of the {body}", [_with(pair, body, **{field: value * (1 + d)}) for d in at]
+    strengths = [s for s in (pair.sphere.yield_strength, pair.plate.yield_strength) if s is not None]
+    if len(strengths) == 2:
+        low = min(strengths)
+        stronger = [_with(pair, "sphere", yield_strength=low * (1 + d)) for d in at]
+        moved = [_with(one, "plate", yield_strength=low * (1 - d)) for one, d in zip(stronger, at, strict=True)]
+        yield "ratio of the strengths", moved
 
 
-def _with(pair: cl.Pair, body: str, field: str, value: float) -> cl.Pair:
-    changed: dict[str, Any] = {field: value}
-    if body == "sphere":
-        return cl.Pair(dataclasses.replace(pair.sphere, **changed), pair.plate)
-    return cl.Pair(pair.sphere, dataclasses.replace(pair.plate, **changed))
+def _with(pair: cl.Pair, body: str, **changed: float) -> cl.Pair:
+    bodies = {"sphere": pair.sphere, "plate": pair.plate}
+    return cl.Pair(**bodies | {body: dataclasses.replace(bodies[body], **changed)})  # type: ignore[arg-type]
 
 
 def thicker(pair: cl.Pair, speed: Array) -> Iterator[str]:

@@ -6,6 +6,7 @@ has left the walls has to have its initial kinetic energy, within 1e-6.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -105,9 +106,8 @@ def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
         for width in (0.6, 1.2, 3.0):
             found[f"hole of {corners}, {width} R"] = _hole(corners, width * RADIUS)
     for size in (3.0, 12.0):
-        found[f"cube of {size} R"] = _hull(
-            np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size * RADIUS, np.zeros(8)
-        )
+        cube = np.array(list(itertools.product((0, 1), repeat=3)))
+        found[f"cube of {size} R"] = _hull(cube * size * RADIUS, np.zeros(8))
         for count in (12, 60):
             points = rng.normal(size=(count, 3))
             points *= size * RADIUS / np.linalg.norm(points, axis=1)[:, None]
@@ -161,12 +161,7 @@ def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Flo
 def _distance(corners: Floats, places: Floats) -> Floats:
     """Distance of places from the nearest triangle of a mesh [m]."""
     n, m = len(places), len(corners)
-    found = np.empty(n)
-    for first in range(0, n, 200):
-        some = places[first : first + 200]
-        k = len(some)
-        pairs = np.repeat(some, m, axis=0)
-        closest: Any = trimesh.triangles.closest_point
-        close = closest(np.tile(corners, (k, 1, 1)), pairs)
-        found[first : first + k] = np.linalg.norm(close - pairs, axis=1).reshape(k, m).min(axis=1)
-    return found
+    pairs = np.repeat(places, m, axis=0)
+    closest: Any = trimesh.triangles.closest_point
+    close = closest(np.tile(corners, (n, 1, 1)), pairs)
+    return np.asarray(np.linalg.norm(close - pairs, axis=1).reshape(n, m).min(axis=1))

@@ -10,7 +10,7 @@ import numpy as np
 from contactlaw import laws
 from validation.accuracy import compare
 from validation.fem import store
-from validation.paper import closed_form, formulas
+from validation.paper import closed_form
 from validation.paper.setting import FASTEST, PAIR, THINNEST, Array, extreme, impacts, largest, unloading
 from validation.paper.verdicts import Numbers
 
@@ -94,7 +94,7 @@ def eq_22_on_thin_plates() -> Numbers:
 def _excess_of_elastic(name: str) -> Array:
     """Excess of Zener's or Raman's COR over that of the matrix."""
     case = compare.comparison("matrix")
-    cor = np.asarray({"Zener": closed_form.zener, "Raman": formulas.raman}[name](case.inelasticity))
+    cor = np.asarray({"Zener": closed_form.zener, "Raman": closed_form.raman}[name](case.inelasticity))
     return cor / case.fem["restitution"] - 1.0
 
 

@@ -23,7 +23,7 @@ from contactlaw.laws.myc import P
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.scaling import plate_mobility, yield_scales
-from validation.paper import closed_form, formulas
+from validation.paper import closed_form
 from validation.paper.closed_form import elastic_compression, yield_speed_ratio
 from validation.paper.setting import (
     ETA,
@@ -76,7 +76,7 @@ def hertz_time(speed_ratio: float = 1.0, mass: float = 1.0) -> float:
 def mueller_error() -> float:
     """Find the largest absolute error of Eq. 3 where the COR of Zener's model exceeds 0.2."""
     lam = np.linspace(0.0, 0.95, 96)
-    zener = np.asarray(closed_form.zener(lam))
+    zener = closed_form.zener(lam)
     return largest((closed_form.mueller(lam) - zener)[zener > 0.2])
 
 
@@ -134,7 +134,7 @@ def scale_of_time() -> float:
 def slope_of_eq_6(largest_inelasticity: float) -> float:
     """Slope of w_m^-1.5 over lambda from 0 to 0.5 or 2 by least squares; the intercept is exact."""
     lam = np.linspace(0.0, 2.0, 81)
-    rise = np.asarray(elastic_compression(lam)) ** -1.5 - 1.25**-0.6
+    rise = elastic_compression(lam) ** -1.5 - 1.25**-0.6
     part = lam <= largest_inelasticity
     return float((lam * rise)[part].sum() / (lam[part] ** 2).sum())
 
@@ -176,7 +176,7 @@ def left_side_of_eq_8(speed_ratio: float | None) -> float:
     v = x if speed_ratio is None else speed_ratio
     scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(v * SPEED))
     lam = float(impacts(x, THINNEST).inelasticity)
-    w_m = float(formulas.eq_6(lam))
+    w_m = float(closed_form.eq_6(lam))
     return x * SPEED * RADIUS * math.pow(scale, 0.4) * w_m / YIELD_COMPRESSION
 
 
@@ -215,7 +215,7 @@ def eq_14_against_eq_11() -> tuple[float, float]:
 
 def eq_14_error(at_yield: Array) -> float:
     """Find the largest relative error of Eq. 14 over lambda_Y."""
-    return largest(formulas.eq_14(at_yield) / np.asarray(yield_speed_ratio(at_yield)) - 1.0)
+    return largest(closed_form.eq_14(at_yield) / yield_speed_ratio(at_yield) - 1.0)
 
 
 def slope_of_loading(d: float) -> float:
@@ -241,7 +241,7 @@ def surface() -> Array:
 def eq_21_error() -> float:
     """Largest error of Eq. 21 from yield to the speed at which loading leaves Hertz's curve."""
     slow = np.linspace(1.0, P**1.25, 50)
-    return largest(formulas.eq_21(slow) / np.asarray(impacts(slow, 0.0).restitution) - 1)
+    return largest(closed_form.eq_21(slow) / np.asarray(impacts(slow, 0.0).restitution) - 1)
 
 
 def fitted_c(*, factor: bool = True, exponent: float = 0.4) -> float:
@@ -251,8 +251,8 @@ def fitted_c(*, factor: bool = True, exponent: float = 0.4) -> float:
     `closed_form.peng`, where one eta serves both.)
     """
     lam_y = ETA * RATIO**2
-    g = np.asarray(formulas.eq_14(lam_y * SHARE ** (exponent - 0.4)))
-    elastic = np.asarray(closed_form.mueller(lam_y * np.minimum(V, g) ** 0.2))
+    g = closed_form.eq_14(lam_y * SHARE ** (exponent - 0.4))
+    elastic = closed_form.mueller(lam_y * np.minimum(V, g) ** 0.2)
     if not factor:
         elastic = np.where(V > g, 1.0, elastic)
     base = 1.0 - (1.0 - np.maximum(V / g, 1.0) ** -0.8) ** 2
@@ -274,7 +274,7 @@ def fitted_border(thinnest: float) -> float:
 def eq_23_error() -> float:
     """Largest relative error of Eq. 23 in speed, R/H 0.1 to 1.2."""
     ratio = np.linspace(0.1, 1.2, 23)
-    return largest(formulas.border(ratio) / np.array([borderline(float(x)) for x in ratio]) - 1)
+    return largest(closed_form.border(ratio) / np.array([borderline(float(x)) for x in ratio]) - 1)
 
 
 def plastic_share(speed_ratio: float) -> float:
