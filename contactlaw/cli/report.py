@@ -39,7 +39,7 @@ def add(commands: Any) -> None:
         metavar="LENGTH",
         help="length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)",
     )
-    add("--out", default="report", metavar="FOLDER", help="default: %(default)s")
+    add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
 def _run(arguments: argparse.Namespace) -> None:

@@ -48,7 +48,7 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     add_sizes(command, read)
     add_speed(command, read)
     add_law(command)
-    command.add_argument("--solve", action="store_true", help="integrate the equation instead of looking up")
+    command.add_argument("--solve", action="store_true", help="integrate the equation instead of using its table")
 
 
 def add_mass(command: argparse.ArgumentParser) -> None:
@@ -57,8 +57,7 @@ def add_mass(command: argparse.ArgumentParser) -> None:
         "--mass",
         metavar="M",
         type=reader_of(quantities.value, MASS),
-        help="mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or "
-        "of a clump (default: that of a solid sphere)",
+        help="mass of a hollow or coated bead, or of a clump [kg], or with a unit (default: that of a solid sphere)",
     )
 
 
@@ -75,7 +74,7 @@ OF_RECORD = " (default: that of the record)"
 def add_pair(command: argparse.ArgumentParser, otherwise: str = "", action: str = "store") -> None:
     """Add the options of materials, required unless their help says what holds `otherwise`."""
     given: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
-    bead = f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}"
+    bead = f"material of the bead: a name that `contactlaw materials` lists, or numbers, {OWN}{otherwise}"
     command.add_argument("--sphere", help=bead, **given)
     command.add_argument("--plate", help=f"material of the plate{otherwise}", **given)
     add_materials(command)
@@ -88,7 +87,7 @@ def add_materials(command: argparse.ArgumentParser) -> None:
         metavar="FILE",
         type=_materials,
         default={},
-        help="materials of your own beside the catalogue, a TOML file in its format (default: none)",
+        help="file of your own materials, TOML in the format of the catalogue (default: none)",
     )
 
 
@@ -119,7 +118,7 @@ def add_radius(
     """Add the options of a bead's size."""
     add = command.add_mutually_exclusive_group(required=required).add_argument
     add("--radius", metavar="R", type=read, help=f"radius of {of} [m], or with a unit{known}")
-    add("--diameter", dest="radius", metavar="D", type=_half(read), help="diameter instead")
+    add("--diameter", dest="radius", metavar="D", type=_half(read), help=f"diameter of {of}, in place of --radius")
 
 
 def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
@@ -139,7 +138,7 @@ def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
             metavar="SHARE",
             type=share,
             default=0.0,
-            help=f"standard error of the {name}, as 5%% (default: 0)",
+            help=f"relative standard error of the {name}, as 5%% (default: 0)",
         )
     for role in ("sphere", "plate"):
         command.add_argument(
@@ -148,7 +147,8 @@ def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
             type=_error,
             default=[],
             action="append",
-            help="standard error of a number of its material, as yield_strength=15%% (default: those of the catalogue)",
+            help=f"relative standard error of a property of the {role}'s material, as yield_strength=15%%; "
+            "may be repeated (default: those of the catalogue)",
         )
 
 
@@ -176,8 +176,8 @@ def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT
         "--outside",
         default="raise",
         choices=["raise", "solve", "clamp"],
-        help="outside the table: refuse, integrate the equation, or take the value at its border "
-        "(default: %(default)s)",
+        help="what to do with impacts outside the table: refuse them, integrate the equation, or take "
+        "the value at the table's border (default: %(default)s)",
     )
 
 
