@@ -77,13 +77,13 @@ BUDGETS = {
     # 28,500 was asked. What is above it has been judged one by one: loops of vectors beside the
     # kernel of one impact (13 ns for 75), checksums and locks of tables, public methods
     # of answers, the record and its file, errors that carry an argument's name, completion.
-    "contactlaw": 33_201,
+    "contactlaw": 33_217,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_644,
     "contactlaw/emit": 707,
     "contactlaw/engines": 3_637,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_074,
+    "contactlaw/export": 1_090,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_206,  # with laws, impacts, bodies: 700 less in answers and export
@@ -92,10 +92,10 @@ BUDGETS = {
     "contactlaw/stepping": 2_502,
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_932,
-    "contactlaw templates": 1_120,  # sources of other languages, and pages
+    "contactlaw templates": 1_127,  # sources of other languages, and pages
     "dem_demo": 3_201,
     "validation": 13_796,  # finite elements are 5,529 of them
-    "tests": 23_646,  # 22,000 was asked; a fact is held at the level nearest to the user
+    "tests": 23_680,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

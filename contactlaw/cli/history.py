@@ -21,8 +21,8 @@ def add(commands: Any) -> None:
     command = options.command(commands, "history", about, _run)
     options.add_impact(command, quantities.value)
     options.add_mass(command)
-    command.add_argument("--samples", type=int, default=256, metavar="N", help="number of times (default: %(default)s)")
-    command.add_argument("--plot", metavar="FILE", help="draw into FILE (PNG, SVG, PDF)")
+    command.add_argument("--samples", type=int, default=256, metavar="N", help="number of rows (default: %(default)s)")
+    command.add_argument("--plot", metavar="FILE", help="draw the force into FILE (PNG, SVG, PDF)")
     command.epilog = options.UNITS
 
 

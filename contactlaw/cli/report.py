@@ -32,7 +32,7 @@ def add(commands: Any) -> None:
     )
     what = "length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)"
     options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH")
-    add("--out", default="report", metavar="FOLDER", help="default: %(default)s")
+    add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
 def _run(arguments: argparse.Namespace) -> None:

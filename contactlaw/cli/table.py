@@ -19,8 +19,8 @@ from contactlaw.table import cache, file
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     actions = options.group(commands, "table", "lookup tables: build, info, check", "ACTION", "what to do")
-    info = options.command(actions, "info", "extent, settings and certificate of a table", _info)
-    about = "certify a table at fresh random points, fail above the bounds"
+    info = options.command(actions, "info", "extent, settings and certified errors of a table", _info)
+    about = "measure the errors of a table at random points, and fail if one exceeds its bound"
     check = options.command(actions, "check", about, _check)
     build = options.command(actions, "build", "solve the equation at every node of a table", _build)
     for action in (info, check):
@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
     for action in (info, check, build):
         # not laws.DEFAULT, whose table may depend on the pair; this table comes with the package
         action.add_argument("--law", default="myc", metavar="LAW", help="force law of the table (default: %(default)s)")
-        options.add_pair(action, ", for laws that take numbers from a pair")
+        options.add_pair(action, "; for laws with a table per pair")
     check.add_argument(
         "--points", type=int, default=10_000, metavar="N", help="number of points, at least 100 (default: %(default)s)"
     )

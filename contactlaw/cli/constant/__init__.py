@@ -34,7 +34,8 @@ def add(commands: Any) -> None:
         "--keep",
         default="energy",
         choices=["energy", "momentum"],
-        help="keep the total energy or momentum that the wall takes (default: %(default)s)",
+        help="what the constant gets right in total: the energy that beads lose on the wall, or the "
+        "momentum that they give it (default: %(default)s)",
     )
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print a row per wall in SI units, every digit")

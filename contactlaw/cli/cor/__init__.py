@@ -29,18 +29,16 @@ def add(commands: Any) -> None:
     options.add_impact(command, quantities.values)
     options.add_mass(command)
     options.add_errors(command, _SIZES)
-    command.add_argument(
-        "--no-band", action="store_true", help="leave out the range of real impacts, which takes longest"
-    )
+    command.add_argument("--no-band", action="store_true", help="leave out the 68 %% range, which takes longest")
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add("--json", action="store_true", help="print all fields in SI units, a list for several impacts; inf is null")
     add(
         "--plot",
         metavar="FILE",
-        help="draw the COR into FILE (PNG, SVG, PDF): over the first list of speeds, thicknesses "
-        "or radii, with a curve for each value of a second list; as a map, if both have more than "
-        "8 values; over speeds up to the given one, if there is no list",
+        help="draw the COR into FILE (PNG, SVG, PDF). A list of speeds, thicknesses or radii is the "
+        "axis, or without a list all speeds up to the given one. A second list makes curves; two "
+        "lists of more than 8 values make a map",
     )
     command.epilog = f"{options.UNITS} {options.LISTS}"
     inverse.add(commands)

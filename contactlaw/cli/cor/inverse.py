@@ -78,7 +78,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     else:
         band = max((one.band for one in found if one.band), key=bands.unknown)
         said = (
-            f"68 %: for a {unknown} in this range, the COR asked for is in the range of "
+            f"68 %: at a {unknown} in this range the COR asked for is likely: it is in the range of the COR of "
             f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."
         )
         print(*impacts.text(table, columns), "", *textwrap.wrap(said, bands.WIDTH), sep="\n")

@@ -33,17 +33,17 @@ def add(commands: Any) -> None:
     add(
         "data",
         metavar="FILE",
-        help="record of a run (.h5), or CSV with a row per rebound: speed_m/s, at least one of "
-        "COR, contact_time_us, peak_force_N, tangential_restitution, rotational_restitution and "
-        "spin_rad/s, and optionally their standard errors (COR_error), radius_mm and "
-        "thickness_mm; for the last three also angle_deg from the normal, with the speed of the "
-        "bead, or sliding_speed_m/s with the normal speed",
+        help="record of a run (.h5), or CSV with a row per rebound. Columns: speed_m/s; at least one "
+        "of COR, contact_time_us, peak_force_N, tangential_restitution, rotational_restitution, "
+        "spin_rad/s; optionally radius_mm, thickness_mm and standard errors, as COR_error. The last "
+        "three measurements need angle_deg from the normal too (the speed is then that of the "
+        "bead), or sliding_speed_m/s (the speed is then the normal one)",
     )
     options.add_pair(command, options.OF_RECORD)
     options.add_radius(command, "all beads", quantities.value)
     what = "thickness of all plates [m], or with a unit; inf: a half-space"
     options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
-    what = "coefficient of friction of all rebounds at angles, unless it is unknown"
+    what = "coefficient of friction of all rebounds at angles, unless it is an --unknown"
     options.add_quantity(command, "--friction", quantities.FRICTION, what, metavar="MU")
     add(
         "--unknown",
@@ -58,7 +58,7 @@ def add(commands: Any) -> None:
         default=[],
         metavar="NAME=ERROR",
         type=_prior,
-        help="standard error of a known one of these quantities, as density=20kg/m3; may be "
+        help="standard error of one of these quantities that is given, as density=20kg/m3; may be "
         "repeated (default: known quantities are exact)",
     )
     options.add_name_of_law(command)

@@ -56,16 +56,16 @@ def add(commands: Any) -> None:
     add(
         "--plot",
         metavar="FILE",
-        help="draw the tangential restitution into FILE (PNG, SVG, PDF): over the first list of "
-        "angles, speeds, thicknesses, radii or coefficients of friction, with a curve for each "
-        "value of a second list; as a map, if both have more than 8 values",
+        help="draw the tangential restitution into FILE (PNG, SVG, PDF). A list of angles, speeds, "
+        "thicknesses, radii or coefficients of friction is the axis. A second list makes curves; "
+        "two lists of more than 8 values make a map",
     )
     for name, program in (("fluent", "Ansys Fluent"), ("acusolve", "AcuTrace (AcuSolve)")):
         add(
             f"--{name}",
             metavar="FILE",
-            help="write the restitution of the wall over these angles into FILE, in a form that "
-            f"{program} documents; it was not tried there",
+            help="write the restitution of the wall over these angles into FILE, in the "
+            f"format that {program} documents; not tried in that program",
         )
     command.epilog = (
         f"--speed is that of the bead, whose normal part is speed cos(angle). {options.UNITS} "

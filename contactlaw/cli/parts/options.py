@@ -46,7 +46,7 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     add_sizes(command, read)
     add_speed(command, read)
     add_law(command)
-    command.add_argument("--solve", action="store_true", help="integrate the equation instead of looking up")
+    command.add_argument("--solve", action="store_true", help="integrate the equation instead of using its table")
 
 
 def add_quantity(
@@ -58,7 +58,7 @@ def add_quantity(
 
 def add_mass(command: argparse.ArgumentParser) -> None:
     """Add the option of the mass of beads that are no solid spheres."""
-    what = "mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or of a clump"
+    what = "mass of a hollow or coated bead, or of a clump [kg], or with a unit"
     add_quantity(command, "--mass", MASS, f"{what} (default: that of a solid sphere)", metavar="M")
 
 
@@ -73,7 +73,7 @@ OF_RECORD = " (default: that of the record)"
 def add_pair(command: argparse.ArgumentParser, otherwise: str = "", action: str = "store") -> None:
     """Add the options of materials, required unless their help says what holds `otherwise`."""
     given: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
-    bead = f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}"
+    bead = f"material of the bead: a name that `contactlaw materials` lists, or numbers, {OWN}{otherwise}"
     command.add_argument("--sphere", help=bead, **given)
     command.add_argument("--plate", help=f"material of the plate{otherwise}", **given)
     add_materials(command)
@@ -86,7 +86,7 @@ def add_materials(command: argparse.ArgumentParser) -> None:
         metavar="FILE",
         type=_materials,
         default={},
-        help="materials of your own beside the catalogue, a TOML file in its format (default: none)",
+        help="file of your own materials, TOML in the format of the catalogue (default: none)",
     )
 
 
@@ -117,13 +117,15 @@ def add_radius(
 
     group = command.add_mutually_exclusive_group(required=required)
     add_quantity(group, "--radius", LENGTH, f"radius of {of} [m], or with a unit{known}", read, metavar="R")
-    group.add_argument("--diameter", dest="radius", metavar="D", type=half, help="diameter instead")
+    group.add_argument(
+        "--diameter", dest="radius", metavar="D", type=half, help=f"diameter of {of}, in place of --radius"
+    )
 
 
 def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
     for name in sizes:
-        what = f"standard error of the {name}, as 5%% (default: 0)"
+        what = f"relative standard error of the {name}, as 5%% (default: 0)"
         add_quantity(command, f"--{name}-error", SHARE, what, metavar="SHARE", default=0.0)
     for role in ("sphere", "plate"):
         command.add_argument(
@@ -132,7 +134,8 @@ def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
             type=_error,
             default=[],
             action="append",
-            help="standard error of a number of its material, as yield_strength=15%% (default: those of the catalogue)",
+            help=f"relative standard error of a property of the {role}'s material, as yield_strength=15%%; "
+            "may be repeated (default: those of the catalogue)",
         )
 
 
@@ -160,8 +163,8 @@ def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT
         "--outside",
         default="raise",
         choices=["raise", "solve", "clamp"],
-        help="outside the table: refuse, integrate the equation, or take the value at its border "
-        "(default: %(default)s)",
+        help="what to do with impacts outside the table: refuse them, integrate the equation, or take "
+        "the value at the table's border (default: %(default)s)",
     )
 
 
