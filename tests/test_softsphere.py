@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from verlet import drop
 
+import contactlaw as cl
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, time_step, unit_spring
@@ -147,6 +148,36 @@ def test_a_bead_that_slides_is_that_of_the_integration(model):
     assert (contacts.slide(n, point, mu) == 0.0).all()
     point = ((velocity - R * np.cross(spin, n)) * way).sum(axis=1)
     assert np.abs(point - hit.sliding_speed).max() < 0.012 * mu * v
+
+
+def test_softened_contacts_have_the_rebound_of_the_integration():
+    """Their steps are fifteen times as long; each bead touches at another phase of a step."""
+    model, rng, n, mu = (
+        cl.ImpactModel(cl.Pair("steel-s235", "glass"), outside="solve"),
+        np.random.default_rng(3),
+        80,
+        0.3,
+    )
+    v, r = 10 ** rng.uniform(-1.0, 0.8, n), rng.uniform(0.5e-3, 2e-3, n)
+    h, slide = r * rng.uniform(0.6, 8.0, n), mu * v * rng.uniform(0.0, 8.0, n)
+    contacts = Contacts(model, r, h, softening=1000.0)
+    dt = min(time_step(model, *one, softening=1000.0) for one in zip(v, r, h, strict=True))
+    x, u, force = -rng.random(n) * v * dt, v.copy(), np.zeros(n)
+    surface, normal, mass = np.column_stack([slide, 0.0 * v, 0.0 * v]), (0.0, 0.0, 1.0), contacts.mass
+    contacts.advance(x, dt)
+    for _ in range(1500):
+        u -= 0.5 * dt * force / mass
+        x += dt * u
+        surface[:, 2] = -u
+        force = contacts.advance(x, dt).copy()
+        surface += 3.5 * dt / mass[:, None] * contacts.slide(normal, surface, mu)
+        u -= 0.5 * dt * force / mass
+    hit = model.oblique(v, slide, r, h, mu, method="solve")
+    assert not contacts.force.any() and hit.restitution.min() < 0.3
+    assert -u / v == pytest.approx(hit.restitution, abs=6e-4)
+    assert (abs(surface[:, 0] - hit.sliding_speed) < 0.015 * mu * v).all()
+    with pytest.raises(ValueError, match="softening: got 0.9"):
+        Contacts(model, r, h, softening=0.9)
 
 
 @pytest.mark.parametrize("error", [4e-4, 1e-4])
