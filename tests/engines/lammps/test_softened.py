@@ -50,14 +50,15 @@ def compare(rows, hit, friction):
     return abs(rows["restitution"] - hit.restitution).max(), slide.max()
 
 
+@pytest.mark.parametrize("beads", [120, pytest.param(1000, marks=pytest.mark.long)])
 @pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair[2] + " " + pair[0])
-def test_beads_leave_as_from_the_true_impact(pair):
+def test_beads_leave_as_from_the_true_impact(pair, beads):
     model, rng = cl.ImpactModel(cl.Pair(*pair[:2]), law=pair[2], outside="solve"), np.random.default_rng(7)
     for thickness in (0.8e-3, 3e-3):
-        speed = 10 ** rng.uniform(-1.0, 0.8, 120)
-        slide = MU * speed * rng.uniform(0.0, 12.0, 120)
+        speed = 10 ** rng.uniform(-1.0, 0.8, beads)
+        slide = MU * speed * rng.uniform(0.0, 12.0, beads)
         rows, before, after = thrown(model, thickness, speed, slide, friction=MU)
-        assert len(rows) == 120 and (rows["kind"] == Kind.IMPACT).all()
+        assert len(rows) == beads and (rows["kind"] == Kind.IMPACT).all()
         hit = model.oblique(rows["approach_speed"], rows["sliding_speed"], R, thickness, MU, method="solve")
         cor, sliding = compare(rows, hit, MU)
         assert cor < 6e-4  # 2e-3 was asked: most of it is the 40 steps in which the true impact is carried out
@@ -226,6 +227,37 @@ def test_a_parcel_rebounds_as_the_beads_that_it_stands_for(softening):
     np.testing.assert_allclose(rows["contact_time"], hit.contact_time, rtol=2e-3)
     np.testing.assert_allclose(box.lost(rows) + rows["friction_energy"], before - after, rtol=1e-9)
     assert time_step(MODEL, 1.0, R, 1e-3, parcel=2.0) == time_step(MODEL, 1.0, R / 2, 1e-3)
+
+
+@pytest.mark.parametrize("softening", [1.0, 30.0])
+def test_a_rain_of_parcels_dissipates_as_that_of_their_beads(softening):
+    """Per mass, over some bounces of each, with friction and spin."""
+    rng, lost = np.random.default_rng(2), []
+    fall, velocity = (
+        rng.uniform(1e-4, 2e-3, 60),
+        np.column_stack([rng.uniform(-0.15, 0.15, (60, 2)), rng.uniform(-1, 0, 60)]),
+    )
+    for parcel in (1.0, 2.0):
+        radius = parcel * R / 2
+        place = np.column_stack([np.linspace(-0.03, 0.03, 60), np.zeros(60), radius + fall])
+        dt = time_step(MODEL, 1.2, radius, 0.4e-3, softening=softening, parcel=parcel)
+        lmp, walls = box.scene(
+            MODEL,
+            [box.flat(0.4e-3)],
+            place,
+            velocity,
+            radius=radius,
+            gravity=9.81,
+            dt=dt,
+            friction=0.3,
+            softening=softening,
+            parcel=parcel,
+        )
+        lmp.command(f"run {round(0.12 / dt)}")
+        rows = walls.collisions()
+        assert len(rows) > 100
+        lost.append((box.lost(rows) + rows["friction_energy"]).sum() / rows["mass"][0])
+    assert lost[1] == pytest.approx(lost[0], rel=0.02)
 
 
 def test_two_parcels_touch_as_long_as_two_beads():
