@@ -77,11 +77,11 @@ BUDGETS = {
     # 28,500 was asked. What is above it has been judged one by one: loops of vectors beside the
     # kernel of one impact (13 ns for 75), checksums and locks of tables, public methods
     # of answers, the record and its file, errors that carry an argument's name, completion.
-    "contactlaw": 33_217,
+    "contactlaw": 33_213,
     "contactlaw/answers": 2_708,
-    "contactlaw/cli": 3_644,
+    "contactlaw/cli": 3_646,
     "contactlaw/emit": 707,
-    "contactlaw/engines": 3_637,
+    "contactlaw/engines": 3_631,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_090,
     "contactlaw/fitting": 2_044,
@@ -95,7 +95,7 @@ BUDGETS = {
     "contactlaw templates": 1_127,  # sources of other languages, and pages
     "dem_demo": 3_201,
     "validation": 13_796,  # finite elements are 5,529 of them
-    "tests": 23_680,  # 22,000 was asked; a fact is held at the level nearest to the user
+    "tests": 23_743,  # 22,000 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -1,7 +1,5 @@
 """Contacts between beads: a line for LAMMPS's own granular contact, with contactlaw's COR."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 

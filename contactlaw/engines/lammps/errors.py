@@ -1,7 +1,5 @@
 """Messages for the errors that the C function reports: argument, value, remedy."""
 
-from __future__ import annotations
-
 from contactlaw.engines.lammps import memory
 from contactlaw.stepping import Trouble
 from contactlaw.stepping.spring import FEWEST_STEPS

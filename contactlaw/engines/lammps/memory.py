@@ -1,7 +1,5 @@
 """Memory that Python, the C function and LAMMPS share, error codes, and calls of LAMMPS."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

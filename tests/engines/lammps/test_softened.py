@@ -91,7 +91,7 @@ def test_the_edge_of_a_plate_acts_as_in_the_true_impact():
         hit = MODEL.solve(2.0, R, thickness, edge_distance=distance)
         np.testing.assert_allclose(rows["restitution"][1:3], hit.restitution, atol=3e-3)
         true, _, _ = thrown(
-            MODEL, thickness, speed, 0.0 * speed, edges="free", along=0.05 - distance, softening=1.0, steps=15
+            MODEL, thickness, speed, 0.0 * speed, edges="free", along=0.05 - distance, softening=1.0, steps=60
         )
         np.testing.assert_allclose(rows["restitution"], true["restitution"], atol=3e-4)
         assert abs(hit.restitution - far) >= change
