@@ -498,7 +498,6 @@ def _ask(
     state: State,
     begins: bool,
     u: float,
-    edge: NearestEdge,
 ) -> None:
     """Let a softened contact know the true impact: at first touch, and of a bead that was struck."""
     row, status, x = bead.contacts[k], scene.status[0], contact.touch.x
@@ -512,6 +511,7 @@ def _ask(
         return
     touch, rough = contact.touch, len(bead.friction) > 0
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
+    edge = _near_edge(scene, bead, contact, plate_row, spring)
     came = sliding(contact.v, bead.omega, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
     rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
     if not begins:  # what friction has done so far stays, because a spring holds now
@@ -578,10 +578,12 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r, scene.parcel)
-    last, edge, softened = state_of(row), _near_edge(scene, bead, contact, plate_row, spring), scene.softening > 1.0
+    last, softened = state_of(row), scene.softening > 1.0
+    edge = NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
     if softened:
         state, extra = _softened_step(scene, clock, spring, row, touch.x, u), 0.0
     else:
+        edge = _near_edge(scene, bead, contact, plate_row, spring)
         state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
@@ -607,7 +609,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         elif clock.dt > clock.before and row.approach_speed > 0.0:
             _check_step(law, scene, clock, contact.wall, spring, row.approach_speed)
     if softened:
-        _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u, edge)
+        _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u)
     else:
         row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
     pressed = state.force + extra
