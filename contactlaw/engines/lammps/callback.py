@@ -206,7 +206,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if step % _EVERY == 0 or not advancing:
         _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
-    per, status, loads = length / seconds, scene.status[0], np.zeros((2, 3))
+    per, status, loads = length / seconds, scene.status[0], shared.loads
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
     for i in range(n):
         centre = x[i, 0] * length, x[i, 1] * length, x[i, 2] * length

@@ -55,7 +55,8 @@ SHARED = np.dtype(
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in "error_value error_limit friction softening parcel base tick before".split()]
-    + [(name, "f8") for name in ("length", "time", "mass")],  # LAMMPS's units, in SI
+    + [(name, "f8") for name in ("length", "time", "mass")]  # LAMMPS's units, in SI
+    + [("loads", "f8", (2, 3))],  # force and torque of a bead
     align=True,
 )
 
