@@ -9,7 +9,7 @@ enough. `contactlaw.stepping` has the schemes, in `spring` and `friction`.
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -545,7 +545,7 @@ def most_softening(model: ImpactModel, speed: float, radius: float, slowest: flo
     Raises
     ------
     ValueError
-        If a number is not positive.
+        If a number is not positive, or `slowest` above `speed`.
 
     Examples
     --------
@@ -556,6 +556,8 @@ def most_softening(model: ImpactModel, speed: float, radius: float, slowest: flo
     '677'
     """
     v, r, slow = (float(one[0]) for one in scalars(speed=speed, radius=radius, slowest=slowest))
+    if slow > v:
+        raise ArgumentError("slowest", slow, f"must be at most the fastest speed, {v:g} m/s")
     law, spring = law_of(model), resized(unit_spring(model, 1.0), r)
     deepest = [DEEPEST * impact(law, spring, one).compression for one in (v, slow)]
     limits = DEEPEST_OVERLAP * r, _WEIGHT * slow * slow / GRAVITY
@@ -570,7 +572,7 @@ def time_step(
     thickness: float,
     error: float = 5e-4,
     mass: float | None = None,
-    softening: float | Literal["auto"] = 1.0,
+    softening: float = 1.0,
     parcel: float = 1.0,
 ) -> float:
     """Step with which velocity Verlet meets a wanted error of the COR.
@@ -586,8 +588,8 @@ def time_step(
         1e-2.
     mass : float, optional
         Mass of that bead [kg], as in `ImpactModel.restitution`.
-    softening : float or "auto", optional
-        Number by which the modulus of the contacts is divided, or that of `most_softening`. The
+    softening : float, optional
+        Number by which the modulus of the contacts is divided, as `most_softening` gives it. The
         step is then 1/30 of a contact, whatever the error, because the COR does not depend on it.
     parcel : float, optional
         Radius of that bead over that of the true beads for which it stands.
@@ -619,8 +621,6 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ArgumentError("error", error, "must lie between 2e-5 and 1e-2")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    if softening == "auto":
-        softening = most_softening(model, speed, radius)
     check_softening(softening, parcel)
     r = r / parcel
     bodies = SphereOnPlate(model.pair, model.force_law)

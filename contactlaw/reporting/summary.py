@@ -23,7 +23,11 @@ CONSTANT = (
 def counts(run: Run) -> str:
     """Say in one line how many impacts there are, on how many walls, and of what."""
     walls, count = len(np.unique(run.rows[["plate", "thickness"]])), run.impacts.size
-    return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}, {run.subject}"
+    names, beads = run.impacts.dtype.names or (), float(count)
+    if "parcel" in names:
+        beads = float((np.maximum(run.impacts["parcel"], 1.0) ** 3).sum())
+    stand = f", which stand for {beads:.6g} of true beads" if beads != count else ""
+    return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}{stand}, {run.subject}"
 
 
 def text(run: Run) -> str:

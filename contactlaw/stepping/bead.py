@@ -163,7 +163,7 @@ class WallContacts:
         bodies = [one for n, one in enumerate(found) if one not in found[:n]]
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
         surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
-        made = {"friction": self.scene.friction, **made}
+        made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
         return Record(rows.copy(), bodies, number[which.ravel()], surface, made)
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:

@@ -410,7 +410,7 @@ def _end(
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, bead.mass, plate_row.thickness
     record.parcel = scene.parcel
     expected = impact(law, spring, abs(row.approach_speed))
-    total = gone + row.wave_energy + damped + missing
+    total = gone + row.wave_energy + missing  # damping is no part of an impact
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
     if softened:
@@ -475,8 +475,9 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, s
 
 
 @kernel
-def _softened_step(scene: WallScene, clock: Clock, spring: Spring, row: Any, x: float, u: float) -> State:
+def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k: int, x: float, u: float) -> State:
     """Largest overlap and force of a softened contact after a step."""
+    row = bead.contacts[k]
     soft = softened_of(state_of(row))
     stiffness = spring.stiffness / scene.softening
     now = push(stiffness, spring.mass, row.largest_compression, soft.restitution, x, u, clock.dt)
@@ -484,6 +485,9 @@ def _softened_step(scene: WallScene, clock: Clock, spring: Spring, row: Any, x: 
         row.y3 = DAMPED
     elif row.disturbance != ALONE:
         row.y3 = max(row.y3, HELD)
+    for j in range(len(bead.contacts)):
+        if j != k and bead.contacts[j].force > 0.0:  # at a right angle, where only friction is shared
+            row.y3 = max(row.y3, HELD)
     return State(0.0, now.largest, now.force, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -581,7 +585,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     last, softened = state_of(row), scene.softening > 1.0
     edge = NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
     if softened:
-        state, extra = _softened_step(scene, clock, spring, row, touch.x, u), 0.0
+        state, extra = _softened_step(scene, clock, spring, bead, k, touch.x, u), 0.0
     else:
         edge = _near_edge(scene, bead, contact, plate_row, spring)
         state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)

@@ -67,7 +67,7 @@ class Softened(NamedTuple):
     wave_share: float  # of the energy that is lost
     flags: float
     stored: float  # work put into the spring up to dm [J]
-    lasting: float  # FREE, HELD or DAMPED
+    lasting: float  # BOUNCING, HELD or DAMPED
 
 
 class Push(NamedTuple):
@@ -199,6 +199,8 @@ def tangential_push(
         row.stretch[0], row.stretch[1], row.stretch[2] = force
         row.force[0], row.force[1], row.force[2] = force
         return force
+    up = dot(slip, n)
+    slip = slip[0] - up * n[0], slip[1] - up * n[1], slip[2] - up * n[2]
     left = residual(largest, soft.restitution) if x < largest else 0.0
     k = kappa * 1.5 * f / (x - left) if f > 0.0 and x > left else 0.0
     # A spring that softens keeps its stretch and so gives up a part of its force.
@@ -207,7 +209,9 @@ def tangential_push(
     ax, ay, az = share * row.stretch[0], share * row.stretch[1], share * row.stretch[2]
     up, path = dot((ax, ay, az), n), k * h
     ax, ay, az = (ax - up * n[0] - path * slip[0], ay - up * n[1] - path * slip[1], az - up * n[2] - path * slip[2])
-    damping = min(2.0 * _DAMPING * math.sqrt(mass / POINT * k), _MOST_DAMPING * mass / POINT / h)
+    damping = 0.0
+    if soft.lasting == DAMPED:
+        damping = min(2.0 * _DAMPING * math.sqrt(mass / POINT * k), _MOST_DAMPING * mass / POINT / h)
     force = ax - damping * slip[0], ay - damping * slip[1], az - damping * slip[2]
     size, most = math.sqrt(dot(force, force)), friction * max(f, 0.0)  # the last step may pull
     if size > most:

@@ -143,6 +143,9 @@ def _by_pair(record: Record) -> list[Recorded]:
     for n in sorted(set(impacts.which.tolist()), key=lambda n: (n < 0, n)) or [-1]:
         rows = impacts.rows[impacts.which == n]
         known = {name: rows[name] for name in _OF_ROWS if name in (rows.dtype.names or ())}
+        if "parcel" in (rows.dtype.names or ()):  # a row stands for all beads of a parcel
+            known["weights"] = np.maximum(rows["parcel"], 1.0) ** 3
+            known["mass"] = rows["mass"] / known["weights"]
         pair, law = impacts.bodies[n] if n >= 0 else (None, None)
         found.append(
             Recorded(

