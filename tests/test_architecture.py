@@ -78,11 +78,11 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 33_233,
+    "contactlaw": 33_238,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
-    "contactlaw/engines": 3_634,
+    "contactlaw/engines": 3_633,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_090,
     "contactlaw/fitting": 2_044,
@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_206,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 671,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_512,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_518,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_932,
     "contactlaw templates": 1_127,  # sources of other languages, and pages
@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 13_796,
-    "tests": 23_765,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 23_769,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

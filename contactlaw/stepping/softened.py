@@ -10,9 +10,9 @@ is the COR of the true impact, which `contactlaw.stepping.bounce` carries out at
 There is no plate in this motion: what the waves take is in e. In the last step the bead is given
 exactly the energy that is left (`contactlaw.stepping.energy`).
 
-A bead that touches again before it has left its dent loads along the last unloading curve, and asks
-for the COR of the speed that it has now. On this curve a contact is damped, because it would
-otherwise tremble for ever.
+A bead that comes down again before it has left its dent loads along the last unloading curve, and
+has the COR of its new speed. On this curve the contact is damped, because the bead would otherwise
+bounce in the dent for ever.
 
 The tangential force of an impact is the normal force times a constant, the ratio of the impulses of
 the true impact. A contact that lasts, or that several forces share, has a tangential spring with
@@ -39,13 +39,15 @@ from contactlaw.walls.facet import Point
 # shorter steps. What it gives back too much is taken in the last step.
 _LEAST_SHARE = 0.02
 DEEPEST_OVERLAP = 0.02  # [radius] of softened contacts; ten times that of steel at 1 m/s
-# Largest correction of the last step [larger of approach and rebound speed].
+# Largest change of the speed in the last step, over the larger of approach and rebound speed. A
+# spring that gives back at least 2 % of its work lets no bead leave at less than 0.14 of its speed.
 _MOST_SETTLED = 0.2
 _DAMPING = 0.5  # ratio of damping in a dent
 _MOST_DAMPING = 0.5  # [m/h] beyond which it would make a step unstable
 FASTER = 1.25  # [speed at which the COR was asked for] from which a struck bead asks again
-# A contact is an impact that is BOUNCING; or friction is HELD by a spring in it; or it is DAMPED, too, since the
-# bead has come down again in its dent, and takes no energy from the last step.
+# A contact that has just begun is BOUNCING: its tangential force is that of the true impact. Once
+# the bead touches something else, is struck or stays, it is HELD by a tangential spring. If it has
+# come down again in its dent, it is DAMPED as well, and its last step settles no energy.
 BOUNCING, HELD, DAMPED = 0.0, 1.0, 2.0
 
 
@@ -57,7 +59,11 @@ def check_softening(softening: Any, parcel: Any) -> None:
 
 
 class Softened(NamedTuple):
-    """What a softened contact keeps of the true impact; in the fields of `State` for the plate."""
+    """What a softened contact keeps of the true impact.
+
+    There is no plate in it, and so it keeps them in the columns that a true contact has for the
+    plate: memory would otherwise grow by a third, which moves from rank to rank with each bead.
+    """
 
     restitution: float
     speed: float  # at which the COR was asked for [m/s]; 0: not yet

@@ -45,7 +45,6 @@ def pair_coeff(
         has the one at this speed.
     friction : float, optional
         Coulomb's coefficient of friction between beads [-].
-
     softening, parcel : float, optional
         As in `attach`: a modulus lower by `softening`, and that with which a parcel has the force
         of the beads that it stands for. The COR is that of the true beads.
