@@ -12,6 +12,7 @@ from contactlaw.engines.lammps.memory import FIRST, WIDTH
 from contactlaw.engines.record import Kind
 from contactlaw.softsphere import most_softening, time_step
 from contactlaw.stepping.contact import CONTACT
+from contactlaw.stepping.friction import FRICTION
 
 R, SOFT, MU, ABOVE = box.R, 1000.0, 0.3, box.ABOVE
 MODEL = cl.ImpactModel(box.PAIR)
@@ -98,12 +99,14 @@ def test_the_edge_of_a_plate_acts_as_in_the_true_impact():
 
 
 def resting(lmp, walls, beads):
-    """Weight on the wall z = 0 over that of all beads, and rms speed."""
+    """Weight that the wall z = 0 and friction on the others bear, over that of all beads; rms speed; heights."""
     now = box.state(lmp)
     last = FIRST + walls._contacts.places * WIDTH
     contacts = now["d2_contactlaw"][:, FIRST:last].copy().view(CONTACT)
     floor = abs(contacts["facet"]) == 1.0
     push = (contacts["push"][..., 2] * floor).sum()
+    if last < now["d2_contactlaw"].shape[1]:
+        push += now["d2_contactlaw"][:, last:].copy().view(FRICTION)["force"][..., 2].sum()
     return push / (beads * box.MASS * 9.81), math.sqrt((now["v"] ** 2).sum() / beads), now["x"][:, 2]
 
 
