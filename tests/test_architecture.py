@@ -78,7 +78,7 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 33_238,
+    "contactlaw": 33_236,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_206,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 671,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_518,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_516,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_932,
     "contactlaw templates": 1_127,  # sources of other languages, and pages

@@ -8,7 +8,7 @@ time steps. The spring knows no speed: it loads as K x^1.5 with K lower by s, an
 so that of the work that was put into it the share e^2 comes back, whatever the masses and speeds. e
 is the COR of the true impact, which `contactlaw.stepping.bounce` carries out at the first touch.
 There is no plate in this motion: what the waves take is in e. In the last step the bead is given
-exactly the energy that is left (`contactlaw.stepping.energy`).
+exactly the energy that is left (`settling_kick`).
 
 A bead that comes down again before it has left its dent loads along the last unloading curve, and
 has the COR of its new speed. On this curve the contact is damped, because the bead would otherwise
@@ -81,7 +81,6 @@ class Push(NamedTuple):
 
     force: float  # [N]
     largest: float  # dm [m]
-    stiffness: float  # dF/dx [N/m]
     damped: bool
 
 
@@ -118,18 +117,17 @@ def residual(largest: float, restitution: float) -> float:
 def push(stiffness: float, mass: float, largest: float, restitution: float, x: float, u: float, h: float) -> Push:
     """Force of the spring at an overlap."""
     if x >= largest:
-        root = stiffness * math.sqrt(x)
-        return Push(root * x, x, 1.5 * root, False)
+        return Push(stiffness * math.sqrt(x) * x, x, False)
     left = residual(largest, restitution)
     if not x > left:
-        return Push(0.0, largest, 0.0, False)
+        return Push(0.0, largest, False)
     share = (x - left) / (largest - left)
     force = stiffness * largest * math.sqrt(largest) * share * math.sqrt(share)
-    slope = 1.5 * force / (x - left)
     if not u > 0.0:
-        return Push(force, largest, slope, False)
+        return Push(force, largest, False)
+    slope = 1.5 * force / (x - left)
     damping = min(2.0 * _DAMPING * math.sqrt(mass * slope), _MOST_DAMPING * mass / h)
-    return Push(force + damping * u, largest, slope, True)
+    return Push(force + damping * u, largest, True)
 
 
 class SoftState(NamedTuple):

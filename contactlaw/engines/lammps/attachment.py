@@ -503,7 +503,7 @@ class LammpsPlates:
 
     def _check_memory(self, columns: int) -> None:
         """Refuse contacts of a restart file with other plates than these; all ranks call it."""
-        wrong, before = False, np.zeros((0, 2)).tolist()
+        wrong, before = False, list[list[float]]()
         if found := self._history():
             history, ids = found
             own = history[: len(ids)]
