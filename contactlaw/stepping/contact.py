@@ -45,6 +45,7 @@ from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
 from contactlaw.walls.memory import array_at
+from contactlaw.walls.profile import bending
 from contactlaw.walls.surface import wall_ends
 
 Array = NDArray[np.float64]
@@ -101,6 +102,7 @@ class Trouble(enum.IntEnum):
     TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
     FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
     NO_FORCE = 15  # that is finite
+    TOO_WIDE = 16  # the bead, for the round wall that it is inside of
 
 
 # What the kernels report to their caller, who clears it.
@@ -180,6 +182,7 @@ class Contact(NamedTuple):
     along: Point  # vector that the law's force is multiplied by; the normal, if none is shared
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
+    bending: float  # R*/R; negative: radius of a round wall that the bead is too large for [m]
 
 
 @kernel
@@ -192,7 +195,8 @@ def contact_of(
     before, v = velocity(frame, frame.half_rate, point), bead.v
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
-    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into)
+    bent = bending(row, to_frame(frame, bead.x), bead.r / scene.parcel)
+    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent)
 
 
 @kernel
@@ -574,6 +578,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     if row.facet == 0.0:
         # The overlap is at most the path of a step, which on an edge is not along the normal.
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+        if contact.bending < 0.0:
+            report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bending)
         # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
             report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
@@ -581,7 +587,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
-    spring = spring_of(plate_row, bead.r, scene.parcel)
+    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending)
     last, softened = state_of(row), scene.softening > 1.0
     edge = NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
     if softened:
@@ -697,7 +703,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
-            spring, state = spring_of(plate_row, bead.r, scene.parcel), state_of(row)
+            spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending), state_of(row)
             h = clock.dt if clock.advancing else 0.0
             if scene.softening > 1.0:
                 drag = tangential_push(

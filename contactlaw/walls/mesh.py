@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
-from contactlaw.walls.motion import FARTHEST, Motion, check_motion, floats, vector
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models
 
 Floats = NDArray[np.float64]
@@ -311,13 +311,10 @@ class Mesh:
         >>> len(plate.triangles)
         72
         """
-        middle, across = vector("centre", centre), vector("normal", normal, "-")
-        size = float(np.linalg.norm(across))
-        if not size > 0.0:
-            raise ArgumentError("normal", normal, "must have a direction")
+        middle, across = vector("centre", centre), direction("normal", normal)
         if not 0.0 < number("radius", radius) <= FARTHEST:
             raise ArgumentError("radius", radius, "must be positive [m]")
-        around = _circle(across / size, facets)
+        around = _circle(across, facets)
         n = len(around)
         here = np.arange(n)
         fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))
