@@ -20,7 +20,7 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.scaling import wave_rate
-from contactlaw.physical.validity import edge_flags, flags_of
+from contactlaw.physical.validity import curved_flags, edge_flags, flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
@@ -418,7 +418,7 @@ def _end(
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
     if softened:
-        record.flags = int(soft.flags)
+        record.flags = int(soft.flags) | curved_flags(contact.bending)
         return extra
     r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
     time, force = record.contact_time, record.peak_force
@@ -429,6 +429,7 @@ def _end(
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.near.rate > 0.0 and leaves < 0.0 else 0.0
     record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
+    record.flags |= curved_flags(contact.bending)
     return extra
 
 

@@ -54,12 +54,12 @@ def vector(name: str, value: Any, unit: str = "m") -> Floats:
 
 
 def direction(name: str, value: Any) -> Floats:
-    """Unit vector of a direction, or an error that names the argument."""
+    """Make a unit vector of a direction, or raise an error that names the argument."""
     found = vector(name, value, "-")
     size = float(np.linalg.norm(found))
     if not size > 0.0:
         raise ArgumentError(name, value, "must have a direction")
-    return found / size  # type: ignore[no-any-return]
+    return found / size
 
 
 @dataclass(frozen=True)

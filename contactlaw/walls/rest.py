@@ -41,9 +41,9 @@ def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, Integers, I
     # A rectangle's second triangle is beyond its diagonal, on the side of edge b.
     one = facets[facet]
     along = point - one["corner"]
-    a, b = ((along * one[edge]).sum(axis=1) / one[f"length_{edge}"] for edge in "ab")
+    a, b = ((along * one[edge]).sum(axis=1) for edge in "ab")
     wall = np.concatenate((facets["wall"], facets["wall"][box]))
-    number = np.where(box[facet] & (b > a), second[facet], facet)
+    number = np.where(box[facet] & (b * one["length_a"] > a * one["length_b"]), second[facet], facet)
     for n in np.flatnonzero(facets["kind"] < TRIANGLE):
         parts, which = _tessellated(facets[n], point[facet == n])
         # The first of its triangles has the facet's own number.
@@ -71,7 +71,9 @@ def _tessellated(row: Any, point: Floats) -> tuple[Floats, Integers]:
     t = (out - one) * two + up * three if profile.kind == SEGMENT else one * (np.arctan2(out, up) - two)
     share = np.clip(t / profile.length, 0.0, 1.0) * bands
     band, column = np.minimum(share.astype(int), bands - 1), np.minimum(turned.astype(int), _AROUND - 1)
-    which = 2 * (band * _AROUND + column) + (turned - column > share - band)
+    share, inner, outer = share - band, rho[band], rho[band + 1]
+    beyond = (turned - column) * (inner + share * (outer - inner)) > share * outer  # the diagonal
+    which = 2 * (band * _AROUND + column) + beyond
     # At the axis one of two triangles has no area.
     area = np.linalg.norm(np.cross(pairs[:, 1] - pairs[:, 0], pairs[:, 2] - pairs[:, 0]), axis=1)
     good = area > 1e-9 * area.max()

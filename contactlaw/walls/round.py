@@ -128,10 +128,11 @@ class Cylinder(Round):
 
     Beads touch it from inside or outside, at the exact distance and with the exact normal, so that
     one that rolls in it meets no facets. A bead inside has to be smaller than the wall. In the
-    contact R* is the bead's radius R and the wall's a combined, 1/(1/R -+ 1/a) across the axis and
-    R along it, as their geometric mean, by which Hertz's force is at most 0.4 % too high for a of 4
-    R or more, inside or outside. An impact on a wall of a smaller radius is flagged
-    (`Validity.CURVED_WALL`). The wall bends as a flat plate: that is so for contacts that are short
+    contact R* is made of the bead's radius R and the wall's a: 1/(1/R - 1/a) across the axis, inside
+    (outside with +), and R along it, of which it is the geometric mean. By that, Hertz's force is
+    0.2 % too low for a of 4 R, 1 % for 2 R. The law takes R* for the bead's radius, which finite
+    elements have not checked; where it differs by more than 16 % an impact has the flag
+    `Validity.CURVED_WALL`. The wall bends as a flat plate, that is, as long as the contact is short
     beside the radius over the speed of sound in the wall.
 
     Parameters

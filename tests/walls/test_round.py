@@ -8,9 +8,12 @@ import pytest
 from loops import loop
 from scipy.spatial.transform import Rotation as Turn
 
-from contactlaw.walls import Cone, Cylinder, Disc, Ring, Rotation, Sphere, Translation, move
+from contactlaw.engines.record import IMPACT
+from contactlaw.walls import Cone, Cylinder, Disc, Plate, Ring, Rotation, Sphere, Translation, move
+from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import on_facet, touch_in_space
 from contactlaw.walls.frame import framed
+from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, overlaps
 
 AXIS, FOOT = np.array([2.0, -1.0, 2.0]) / 3.0, np.array([0.01, 0.02, -0.03])
@@ -110,6 +113,78 @@ def test_a_moved_wall_is_the_same_wall_elsewhere():
         assert touch_in_space(frame, facet, tuple(point), 0.01)[:5] == pytest.approx(
             on_facet(still, tuple(point), 0.01)[:5], abs=1e-12
         )
+
+
+@loop
+def nearest_edges(facet, points, found):
+    for i in range(len(points)):
+        found[i, 0], found[i, 1], found[i, 2] = nearest_edge(
+            facet[0], (points[i, 0], points[i, 1], points[i, 2]), math.inf
+        )
+
+
+SIDE = math.hypot(0.05, 0.03)  # of both cones
+# Where points are on a profile, as a share of its length, and distance along the surface, number of
+# the kind and radius of the hole of the nearest edge; the first end is free, the other one clamped.
+ENDS = {
+    "cylinder": [(0.25, 0.015, 0, math.inf), (0.9, 0.006, 2, math.inf)],
+    # rolled out, the narrow end is a circle of the radius rho over the sine of half the angle
+    "cone": [(0.1, 0.1 * SIDE, 0, math.inf), (0.6, 0.4 * SIDE, 2, 0.01 / 0.03 * SIDE)],
+    "bowl": [
+        (0.2, 0.2 * 1.5 * 0.03, 0, 0.03 * math.tan(0.4)),
+        (0.8, 0.2 * 1.5 * 0.03, 2, 0.03 * math.tan(math.pi - 1.9)),
+    ],
+    "ring": [(0.1, 0.002, 0, 0.01), (0.9, 0.002, 2, math.inf)],
+    "disc": [(0.1, 0.027, 0, math.inf)],
+    "tip": [(0.1, 0.9 * SIDE, 0, math.inf)],
+    "sphere": [],
+}
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_edges_are_where_a_wall_ends(name):
+    """Tip, pole and middle are none."""
+    wall, profile = WALLS[name]
+    some = ENDS[name]
+    count = {"sphere": 0, "disc": 1, "tip": 1}.get(name, 2)
+    wall = replace(wall, edges=("free", "clamped")[:count])
+    made = framed([wall], [0], 1e-3)
+    points, found = np.zeros((len(some), 3)), np.zeros((len(some), 3))
+    for n, (t, *_) in enumerate(some):
+        rho, z = profile(t)
+        points[n] = FOOT + z * AXIS + rho * E[1]
+    nearest_edges(made.facets, points, found)
+    assert found == pytest.approx(np.array([rest for _, *rest in some]).reshape(-1, 3))
+    assert made.facets["edge_count"] == count
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_in_pictures_an_impact_is_on_the_triangle_where_it_was(name):
+    """Triangles are 1/500 of the radius from the wall at most, and their areas add up to its own."""
+    wall, profile = WALLS[name]
+    square = Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), 1e-3)
+    made = framed([square, wall, square], [0] * 3, 1e-3)
+    rng = np.random.default_rng(8)
+    points = []
+    for t, angle in rng.uniform(0, 1, (300, 2)):
+        rho, z = profile(t)
+        points.append(FOOT + z * AXIS + rho * (math.cos(7 * angle) * E[0] + math.sin(7 * angle) * E[1]))
+    hits = np.zeros(300, IMPACT)
+    hits["plate"], hits["triangle"] = 1, -1
+    hits["x"], hits["y"], hits["z"] = np.transpose(points)
+    corners, walls, triangle, _ = at_rest(made.facets, made.frames, hits)
+    assert walls.tolist().count(0) == walls.tolist().count(2) == 2
+    assert set(walls[triangle]) == {1}
+    for point, (first, second, third) in zip(points, corners[triangle], strict=True):
+        sides = np.transpose((second - first, third - first))
+        share, *_ = np.linalg.lstsq(sides, point - first, rcond=None)
+        assert np.linalg.norm(point - first - sides @ share) < 2e-3 * 0.04
+        assert share.min() > -0.05 and share.sum() < 1.05
+    ts = np.linspace(0, 1, 2001)
+    rho, z = (part + 0.0 * ts for part in profile(ts))
+    area = math.pi * ((rho[1:] + rho[:-1]) * np.hypot(np.diff(rho), np.diff(z))).sum()
+    sides = np.diff(corners[walls == 1], axis=1)
+    assert 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() == pytest.approx(area, rel=4e-3)
 
 
 @pytest.mark.parametrize(
