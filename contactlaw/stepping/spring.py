@@ -235,7 +235,8 @@ def curved(spring: Spring, bending: float) -> Spring:
     """
     if bending == 1.0 or not bending > 0.0:
         return spring
-    plate, faster = spring.plate, bending**0.2
+    plate, root = spring.plate, bending**0.1
+    faster = root * root
     return Spring(
         spring.mass,
         spring.solid,
@@ -248,7 +249,7 @@ def curved(spring: Spring, bending: float) -> Spring:
             plate.inelasticity * faster,
             plate.transit * faster,
             plate.x_at_one * (faster * faster),
-            plate.saturated * bending**0.3,
+            plate.saturated * (faster * root),
             plate.corrections,
             plate.growth,
             plate.rate,

@@ -71,14 +71,16 @@ def on_profile(facet: Any, rho: float, z: float) -> OnProfile:
         at = min(max(t, 0.0), facet.length_a)
         dx, dz = dx - at * shape[1], dz - at * shape[2]
     else:
-        s = math.sqrt(rho * rho + z * z) - shape[0]
-        t = shape[0] * (math.atan2(rho, z) - shape[1])
+        far = math.sqrt(rho * rho + z * z)
+        s, t = far - shape[0], shape[0] * (math.atan2(rho, z) - shape[1])
         at = min(max(t, 0.0), facet.length_a)
-        out, up = direction_at(facet, at)
-        dx, dz = rho - shape[0] * out, z - shape[0] * up
+        dx, dz = (rho / far, z / far) if far > 0.0 else (0.0, 1.0)
+        if at != t:
+            out, up = direction_at(facet, at)
+            dx, dz = rho - shape[0] * out, z - shape[0] * up
     if at == t:
-        out, up = direction_at(facet, at)
         sign = math.copysign(1.0, s)
+        out, up = (shape[2], -shape[1]) if facet.kind == SEGMENT else (dx, dz)
         return OnProfile(at, s, abs(s), sign * out, sign * up, True)
     distance = math.sqrt(dx * dx + dz * dz)
     return OnProfile(at, s, distance, dx / distance, dz / distance, False)
@@ -99,8 +101,11 @@ def bending(facet: Any, p: tuple[float, float, float], r: float) -> float:
     shape = facet.b
     rho, z, _ = in_half_plane(facet, p)
     q = on_profile(facet, rho, z)
-    out, up = direction_at(facet, q.t)
-    cosine = q.out * out + q.up * up
+    cosine = math.copysign(1.0, q.s)
+    out = cosine * q.out
+    if not q.face:
+        out, up = direction_at(facet, q.t)
+        cosine = q.out * out + q.up * up
     if facet.kind == ARC:
         around = along = cosine / shape[0]
     else:
