@@ -215,11 +215,15 @@ def _stretched(scene: WallScene) -> float:
 
 
 @kernel
-def _check_step(law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
-    """Refuse a step that is too long for an impact at this speed."""
+def _check_step(law: Array, scene: WallScene, clock: Clock, contact: Contact, spring: Spring, u: float) -> None:
+    """Refuse a step that is too long for an impact at this speed on a plate.
+
+    In a hollow wall a contact is shorter, by 3 % for a cylinder of 4 radii: `time_step` knows none.
+    """
     limit = _stretched(scene) * CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
+    limit *= max(contact.bending, 1.0) ** 0.2
     if clock.dt > limit:
-        report_trouble(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
+        report_trouble(scene, Trouble.STEP_TOO_LARGE, contact.wall, u, limit)
 
 
 @kernel
@@ -247,7 +251,7 @@ def _begin(
     if not abs(bead.mass - spring.mass) <= SOLID * spring.mass:
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
-        _check_step(law, scene, clock, wall, spring, u)
+        _check_step(law, scene, clock, contact, spring, u)
         lam = impact(law, spring, u).inelasticity
         ratio = bead.r / scene.parcel / plate_row.thickness
         if not THINNEST * ratio <= 1.0:
@@ -616,9 +620,9 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         row.duration += clock.dt
         if u > _FASTER * max(row.approach_speed, 0.0):
             row.approach_speed = u
-            _check_step(law, scene, clock, contact.wall, spring, u)
+            _check_step(law, scene, clock, contact, spring, u)
         elif clock.dt > clock.before and row.approach_speed > 0.0:
-            _check_step(law, scene, clock, contact.wall, spring, row.approach_speed)
+            _check_step(law, scene, clock, contact, spring, row.approach_speed)
     if softened:
         _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u)
     else:

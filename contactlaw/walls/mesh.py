@@ -221,6 +221,9 @@ class Mesh:
     ) -> Self:
         """Wall of a cone or a truncated cone, open at both ends, as of a hopper.
 
+        Take a `contactlaw.walls.Cone` where beads roll or slide: facets take energy from them. Take
+        this mesh for a wall whose triangles have thicknesses or records of their own.
+
         Parameters
         ----------
         start, end : sequence of 3 floats
@@ -273,6 +276,8 @@ class Mesh:
     ) -> Self:
         """Wall of a cylinder, open at both ends: a `cone` with the same radius [m] at both.
 
+        Where beads roll or slide take a `contactlaw.walls.Cylinder`, which has no facets.
+
         Examples
         --------
         >>> drum = Mesh.cylinder((0, -0.05, 0), (0, 0.05, 0), radius=0.1, thickness=2e-3)
@@ -295,6 +300,8 @@ class Mesh:
         edges: Rims | None = None,
     ) -> Self:
         """Flat disc: the end of a drum, a spinning plate.
+
+        A `contactlaw.walls.Disc` is round at its rim, too, and has one edge.
 
         Parameters
         ----------

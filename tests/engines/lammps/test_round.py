@@ -10,6 +10,7 @@ from scipy.special import ellipe, ellipk
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Cone, Cylinder, Disc, Ring, Sphere, memory
+from contactlaw.softsphere import time_step
 
 HERTZ, MYC = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc"))
 DRUM = 8 * R
@@ -112,6 +113,16 @@ def test_a_wide_wall_is_a_plate(sign, thickness):
         (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5))
         assert row["restitution"] == pytest.approx(expected, abs=5e-4)
         assert row["flags"] == MYC.lookup(5.0, R, thickness).flags
+
+
+@pytest.mark.parametrize("a", [8 * R, 2 * R])
+def test_the_step_for_a_plate_is_allowed(a):
+    """Although a contact in a hollow wall is shorter."""
+    dt = time_step(MYC, speed=5.0, radius=R, thickness=1e-3)
+    (row,), _ = dropped(MYC, [Sphere((0, 0, a), a, 1e-3)], (0, 0, R + 1e-5), dt=dt)
+    (fine,), _ = dropped(MYC, [Sphere((0, 0, a), a, 1e-3)], (0, 0, R + 1e-5), dt=0.2 * dt, steps=2000)
+    assert row["contact_time"] < MYC.solve(5.0, R, 1e-3).contact_time
+    assert row["restitution"] == pytest.approx(fine["restitution"], abs=1e-3)
 
 
 def test_a_bead_larger_than_its_drum_is_refused():
