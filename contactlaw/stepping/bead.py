@@ -57,7 +57,7 @@ class WallContacts:
 
     Parameters
     ----------
-    walls : sequence of Plate and Mesh
+    walls : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
         Walls of `contactlaw.walls` that the beads may hit.
     models : ImpactModel or dict of int to ImpactModel
         Materials and law, one model for all beads or one for each type of beads, from 1.

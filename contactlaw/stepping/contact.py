@@ -20,7 +20,7 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.scaling import wave_rate
-from contactlaw.physical.validity import edge_flags, flags_of
+from contactlaw.physical.validity import curved_flags, edge_flags, flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
@@ -45,6 +45,7 @@ from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
 from contactlaw.walls.memory import array_at
+from contactlaw.walls.profile import bending
 from contactlaw.walls.surface import wall_ends
 
 Array = NDArray[np.float64]
@@ -101,6 +102,7 @@ class Trouble(enum.IntEnum):
     TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
     FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
     NO_FORCE = 15  # that is finite
+    TOO_WIDE = 16  # the bead, for the round wall that it is inside of
 
 
 # What the kernels report to their caller, who clears it.
@@ -181,6 +183,7 @@ class Contact(NamedTuple):
     along: Point  # vector that the law's force is multiplied by; the normal, if none is shared
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
+    bending: float  # R*/R; negative: radius of a round wall that the bead is too large for [m]
 
 
 @kernel
@@ -193,7 +196,8 @@ def contact_of(
     before, v = velocity(frame, frame.half_rate, point), bead.v
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
-    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into)
+    bent = bending(row, to_frame(frame, bead.x), bead.r / scene.parcel)
+    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent)
 
 
 @kernel
@@ -212,11 +216,15 @@ def _stretched(scene: WallScene) -> float:
 
 
 @kernel
-def _check_step(law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
-    """Refuse a step that is too long for an impact at this speed."""
+def _check_step(law: Array, scene: WallScene, clock: Clock, contact: Contact, spring: Spring, u: float) -> None:
+    """Refuse a step that is too long for an impact at this speed on a plate.
+
+    In a hollow wall a contact is shorter, by 3 % for a cylinder of 4 radii: `time_step` knows none.
+    """
     limit = _stretched(scene) * CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
+    limit *= max(contact.bending, 1.0) ** 0.2
     if clock.dt > limit:
-        report_trouble(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
+        report_trouble(scene, Trouble.STEP_TOO_LARGE, contact.wall, u, limit)
 
 
 @kernel
@@ -244,7 +252,7 @@ def _begin(
     if not abs(bead.mass - spring.mass) <= SOLID * spring.mass:
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
-        _check_step(law, scene, clock, wall, spring, u)
+        _check_step(law, scene, clock, contact, spring, u)
         lam = impact(law, spring, u).inelasticity
         ratio = bead.r / scene.parcel / plate_row.thickness
         if not THINNEST * ratio <= 1.0:
@@ -415,7 +423,7 @@ def _end(
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
     if softened:
-        record.flags = int(soft.flags)
+        record.flags = int(soft.flags) | curved_flags(contact.bending)
         return extra
     r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
     time, force = record.contact_time, record.peak_force
@@ -426,6 +434,7 @@ def _end(
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
     record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
+    record.flags |= curved_flags(contact.bending)
     return extra
 
 
@@ -575,6 +584,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     if row.facet == 0.0:
         # The overlap is at most the path of a step, which on an edge is not along the normal.
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+        if contact.bending < 0.0:
+            report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bending)
         # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
             report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
@@ -582,7 +593,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
-    spring = spring_of(plate_row, bead.r, scene.parcel)
+    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending)
     last, softened = state_of(row), scene.softening > 1.0
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
@@ -612,9 +623,9 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         row.duration += clock.dt
         if u > _FASTER * max(row.approach_speed, 0.0):
             row.approach_speed = u
-            _check_step(law, scene, clock, contact.wall, spring, u)
+            _check_step(law, scene, clock, contact, spring, u)
         elif clock.dt > clock.before and row.approach_speed > 0.0:
-            _check_step(law, scene, clock, contact.wall, spring, row.approach_speed)
+            _check_step(law, scene, clock, contact, spring, row.approach_speed)
     if softened:
         _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u)
     else:
@@ -700,7 +711,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
-            spring, state = spring_of(plate_row, bead.r, scene.parcel), state_of(row)
+            spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending), state_of(row)
             h = clock.dt if clock.advancing else 0.0
             if scene.softening > 1.0:
                 drag = tangential_push(

@@ -22,7 +22,7 @@ from contactlaw.physical.responses import RESPONSES, responses_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import Limits
-from contactlaw.stepping.spring import Spring, resized, unit_spring
+from contactlaw.stepping.spring import Spring, curved, resized, unit_spring
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import by_type
 
@@ -110,8 +110,8 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
 
 
 @kernel
-def spring_of(row: Any, r: float, parcel: float) -> Spring:
-    """Spring of a bead of this radius [m] on the plate of a row.
+def spring_of(row: Any, r: float, parcel: float, bending: float) -> Spring:
+    """Spring of a bead of this radius [m] on the plate of a row, which is bent: R*/R.
 
     A parcel stands for so many beads that are smaller by the factor `parcel`: at the same overlap
     it has their mass, their force, and a plate that gives way as under one of them.
@@ -139,7 +139,7 @@ def spring_of(row: Any, r: float, parcel: float) -> Spring:
         RateOfStrain(row.slope, row.per_speed),
     )
     unit = Spring(row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio, plate)
-    one, many = resized(unit, r / parcel), parcel * parcel * parcel
+    one, many = curved(resized(unit, r / parcel), bending), parcel * parcel * parcel
     return Spring(
         one.mass * many,
         one.solid * many,

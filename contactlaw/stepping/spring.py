@@ -226,6 +226,37 @@ def resized(unit: Spring, radius: float) -> Spring:
     )
 
 
+@kernel
+def curved(spring: Spring, bending: float) -> Spring:
+    """Spring of a bead on a curved wall, from R*/R, that is as of a bead of radius R* in the contact.
+
+    K grows as sqrt(R*), d_Y as R*, so that T_H falls as R*^-0.2. The bead's mass stays, and so does
+    what the plate gives way, on which it is R that counts.
+    """
+    if bending == 1.0 or not bending > 0.0:
+        return spring
+    plate, root = spring.plate, bending**0.1
+    faster = root * root
+    return Spring(
+        spring.mass,
+        spring.solid,
+        spring.stiffness * math.sqrt(bending),
+        spring.mobility,
+        spring.scale * bending,
+        spring.relaxation / faster,
+        spring.ratio,
+        PlateConstants(
+            plate.inelasticity * faster,
+            plate.transit * faster,
+            plate.x_at_one * (faster * faster),
+            plate.saturated * (faster * root),
+            plate.corrections,
+            plate.growth,
+            plate.rate,
+        ),
+    )
+
+
 @kernel(entry=True)
 def impact(law: Array, spring: Spring, speed: float) -> Numbers:
     """Dimensionless numbers of the impact with which a contact begins."""

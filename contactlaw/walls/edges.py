@@ -17,6 +17,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation.edge import KINDS, Edge
 from contactlaw.walls.memory import array_at
+from contactlaw.walls.profile import TRIANGLE, in_half_plane, on_profile
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -176,6 +177,9 @@ def nearest_edge(facet: Any, p: tuple[float, float, float], reach: float) -> tup
     best, kind, hole = math.inf, 0, math.inf
     if facet.edge_count > 0 and facet.clear < reach:
         edges = array_at(facet.edges, facet.edge_count, EDGE)
+        if facet.kind < TRIANGLE:  # its edges are circles, at a length along the profile each
+            rho, z, _ = in_half_plane(facet, p)
+            p = on_profile(facet, rho, z).t, 0.0, 0.0
         for n in range(len(edges)):
             edge = edges[n]
             start, along = edge.start, edge.along

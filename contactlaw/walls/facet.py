@@ -10,9 +10,20 @@ import math
 from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.walls.frame import RECTANGLE
+from contactlaw.walls.profile import RECTANGLE, TRIANGLE, direction_at, in_half_plane, on_profile
 
 Point = tuple[float, float, float]
+
+FACET = np.dtype(
+    # a and b: along a rectangle's edges as unit vectors, or a triangle's edges themselves [m]; for
+    # what a round facet has there, see `contactlaw.walls.profile`
+    [("corner", "f8", 3), ("normal", "f8", 3), ("a", "f8", 3), ("b", "f8", 3)]
+    + [("length_a", "f8"), ("length_b", "f8"), ("between", "f8")]  # between: a . b
+    + [(name, "i8") for name in ("kind", "plate_row", "frame", "wall", "triangle")]
+    # address of the edges that are nearest to the facet's points, none of them within `clear` [m]
+    + [("edges", "i8"), ("edge_count", "i8"), ("clear", "f8")],
+    align=True,
+)
 
 
 class Touch(NamedTuple):
@@ -86,15 +97,43 @@ def _on_face(facet: Any, r: float, s: float) -> Touch:
 
 @kernel
 def height(facet: Any, p: Point) -> float:
-    """Height of a point over a facet's plane, in the coordinates of the facet."""
+    """Height of a point over a flat facet's plane, in the coordinates of the facet."""
     corner, normal = facet.corner, facet.normal
     px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
     return float(px * normal[0] + py * normal[1] + pz * normal[2])
 
 
 @kernel
+def _on_round(facet: Any, p: Point, r: float) -> Touch:
+    """Touch with a facet that is a surface of revolution."""
+    rho, z, e = in_half_plane(facet, p)
+    q, axis = on_profile(facet, rho, z), facet.normal
+    return Touch(
+        r - q.distance,
+        q.s,
+        q.out * e[0] + q.up * axis[0],
+        q.out * e[1] + q.up * axis[1],
+        q.out * e[2] + q.up * axis[2],
+        q.face,
+    )
+
+
+@kernel
+def normal_at(facet: Any, p: Point) -> Point:
+    """Give the normal of a facet at one of its points, in the coordinates of the facet."""
+    n = facet.normal
+    if facet.kind >= TRIANGLE:
+        return n[0], n[1], n[2]
+    rho, z, e = in_half_plane(facet, p)
+    out, up = direction_at(facet, on_profile(facet, rho, z).t)
+    return out * e[0] + up * n[0], out * e[1] + up * n[1], out * e[2] + up * n[2]
+
+
+@kernel
 def on_facet(facet: Any, p: Point, r: float) -> Touch:
     """Overlap and normal at the facet's nearest point, in the coordinates of the facet."""
+    if facet.kind < TRIANGLE:
+        return _on_round(facet, p, r)
     corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal
     px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
     s = px * normal[0] + py * normal[1] + pz * normal[2]
@@ -133,6 +172,8 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
 @kernel
 def contains(facet: Any, p: Point, margin: float) -> bool:
     """Whether a point is on a facet, in the coordinates of the facet."""
+    if facet.kind < TRIANGLE:
+        return bool(on_facet(facet, p, margin).x >= 0.0)
     corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal
     px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
     if not abs(px * normal[0] + py * normal[1] + pz * normal[2]) <= margin:

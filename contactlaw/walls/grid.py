@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import as_python, enable_caching, kernel
+from contactlaw.walls.facet import on_facet
 
 Floats = NDArray[np.float64]
 
@@ -42,17 +43,19 @@ class FacetGrid:
 
     Parameters
     ----------
-    corners : ndarray, shape (n, 4, 3)
-        Corners of the facets in order [m]; of a triangle the third corner is there twice.
+    facets : structured array
+        Facets in order.
+    boxes : ndarray, shape (n, 2, 3)
+        Lowest and highest coordinates of each facet [m].
     first : int
         Number of the first facet.
     largest : float
         Largest radius of beads that find all they touch in one cell [m]; 0: not known yet.
     """
 
-    def __init__(self, corners: Floats, first: int, largest: float) -> None:
-        extent = float(np.median(np.linalg.norm(np.ptp(corners, axis=1), axis=1)))
-        self.low, self.high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    def __init__(self, facets: Any, boxes: Floats, first: int, largest: float) -> None:
+        extent = float(np.median(np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)))
+        self.low, self.high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
         self.reach = MARGIN * (largest if largest > 0.0 else 0.5 * extent)
         low = self.low - self.reach
         size = self.high + self.reach - low
@@ -63,18 +66,18 @@ class FacetGrid:
             cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
         self.origin, self.per_length, self.cells = low, 1.0 / cell, cells
         enable_caching()
-        corners = np.ascontiguousarray(corners)
         counts = np.zeros(int(cells.prod()) + 1, np.int64)
         nothing = np.empty(0, np.int32)
         # The same one for both: with another one's rounding, a list might not have room for all.
-        small = len(corners) * counts.size < _SMALL
-        fill_lists = as_python(_fill_lists) if small else _fill_lists
-        fill_lists(corners, low, cell, cells, self.reach, counts, nothing)
+        fill_lists = _fill_lists
+        if len(facets) * counts.size < _SMALL:
+            fill_lists, facets = as_python(_fill_lists), facets.view(np.recarray)
+        fill_lists(facets, boxes, low, cell, cells, self.reach, counts, nothing)
         self.starts = np.cumsum(counts)
         self.busy = np.packbits(counts[1:] > 0, bitorder="little")
         self.entries = np.empty(int(self.starts[-1]), np.int32)
         ends = self.starts[:-1].copy()
-        fill_lists(corners, low, cell, cells, self.reach, ends, self.entries)
+        fill_lists(facets, boxes, low, cell, cells, self.reach, ends, self.entries)
         self.entries += first
 
     def fill(self, row: Any) -> None:
@@ -87,41 +90,9 @@ class FacetGrid:
 
 
 @kernel
-def _segment(p: Any, a: Any, b: Any) -> float:
-    """Square of the distance of a point from a segment."""
-    along = square = 0.0
-    for k in range(3):
-        along += (p[k] - a[k]) * (b[k] - a[k])
-        square += (b[k] - a[k]) ** 2
-    t = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
-    distance = 0.0
-    for k in range(3):
-        distance += (p[k] - a[k] - t * (b[k] - a[k])) ** 2
-    return distance
-
-
-@kernel
-def _within(p: Any, corners: Any, most: float) -> bool:
-    """Whether a point is no farther than `most` from a flat, convex facet of four corners."""
-    a, b, d = corners[0], corners[1], corners[3]
-    for n in range(4):
-        if _segment(p, corners[n], corners[(n + 1) % 4]) <= most * most:
-            return True
-    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    vx, vy, vz = d[0] - a[0], d[1] - a[1], d[2] - a[2]
-    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    square = nx * nx + ny * ny + nz * nz
-    height = (p[0] - a[0]) * nx + (p[1] - a[1]) * ny + (p[2] - a[2]) * nz
-    if height * height > most * most * square:
-        return False
-    for n in range(4):  # over the face: on the inner side of every edge
-        here, there = corners[n], corners[(n + 1) % 4]
-        ex, ey, ez = there[0] - here[0], there[1] - here[1], there[2] - here[2]
-        px, py, pz = p[0] - here[0], p[1] - here[1], p[2] - here[2]
-        side = (ey * pz - ez * py) * nx + (ez * px - ex * pz) * ny + (ex * py - ey * px) * nz
-        if side < 0.0:
-            return False
-    return True
+def _within(facet: Any, p: Any, most: float) -> bool:
+    """Whether a point is no farther from a facet than `most`."""
+    return bool(on_facet(facet, (p[0], p[1], p[2]), most).x >= 0.0)
 
 
 @kernel
@@ -137,7 +108,9 @@ def _halve(block: Any, other: Any) -> None:
 
 
 @kernel(cache=True)
-def _fill_lists(corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any) -> None:
+def _fill_lists(
+    facets: Any, boxes: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
+) -> None:
     """Count the facets of each cell in `ends`, one index on, or write them if `entries` has room.
 
     The box around a long thin facet that lies across the axes holds nearly all cells, and the facet
@@ -147,11 +120,9 @@ def _fill_lists(corners: Floats, low: Floats, cell: float, cells: Any, reach: fl
     half = 0.5 * math.sqrt(3.0) * cell
     middle = np.empty(3)
     blocks = np.empty((_DEEPEST, 3, 2), np.int64)  # blocks still to do: first and last cell of each
-    for n in range(len(corners)):
+    for n in range(len(facets)):
         for k in range(3):
-            small, large = math.inf, -math.inf
-            for c in range(4):
-                small, large = min(small, corners[n, c, k]), max(large, corners[n, c, k])
+            small, large = boxes[n, 0, k], boxes[n, 1, k]
             blocks[0, k, 0] = max(int(math.floor((small - reach - low[k]) / cell)), 0)
             blocks[0, k, 1] = min(int(math.floor((large + reach - low[k]) / cell)), cells[k] - 1)
         left = 1
@@ -163,7 +134,7 @@ def _fill_lists(corners: Floats, low: Floats, cell: float, cells: Any, reach: fl
                 count *= block[k, 1] - block[k, 0] + 1
                 square += (block[k, 1] - block[k, 0] + 1) ** 2
             if count > _FEW:
-                if _within(middle, corners[n], reach + 0.5 * math.sqrt(square) * cell):
+                if _within(facets[n], middle, reach + 0.5 * math.sqrt(square) * cell):
                     _halve(block, blocks[left])
                     left += 1
                 else:
@@ -178,7 +149,7 @@ def _fill_lists(corners: Floats, low: Floats, cell: float, cells: Any, reach: fl
                             low[1] + (j + 0.5) * cell,
                             low[2] + (k + 0.5) * cell,
                         )
-                        if not _within(middle, corners[n], reach + half):
+                        if not _within(facets[n], middle, reach + half):
                             continue
                         at = (i * cells[1] + j) * cells[2] + k
                         if writing:

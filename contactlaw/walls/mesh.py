@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
-from contactlaw.walls.motion import FARTHEST, Motion, check_motion, floats, vector
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models
 
 Floats = NDArray[np.float64]
@@ -221,6 +221,9 @@ class Mesh:
     ) -> Self:
         """Wall of a cone or a truncated cone, open at both ends, as of a hopper.
 
+        Take a `contactlaw.walls.Cone` where beads roll or slide: facets take energy from them. Take
+        this mesh for a wall whose triangles have thicknesses or records of their own.
+
         Parameters
         ----------
         start, end : sequence of 3 floats
@@ -273,6 +276,8 @@ class Mesh:
     ) -> Self:
         """Wall of a cylinder, open at both ends: a `cone` with the same radius [m] at both.
 
+        Where beads roll or slide take a `contactlaw.walls.Cylinder`, which has no facets.
+
         Examples
         --------
         >>> drum = Mesh.cylinder((0, -0.05, 0), (0, 0.05, 0), radius=0.1, thickness=2e-3)
@@ -296,6 +301,8 @@ class Mesh:
     ) -> Self:
         """Flat disc: the end of a drum, a spinning plate.
 
+        A `contactlaw.walls.Disc` is round at its rim, too, and has one edge.
+
         Parameters
         ----------
         centre, normal : sequence of 3 floats
@@ -311,13 +318,10 @@ class Mesh:
         >>> len(plate.triangles)
         72
         """
-        middle, across = vector("centre", centre), vector("normal", normal, "-")
-        size = float(np.linalg.norm(across))
-        if not size > 0.0:
-            raise ArgumentError("normal", normal, "must have a direction")
+        middle, across = vector("centre", centre), direction("normal", normal)
         if not 0.0 < number("radius", radius) <= FARTHEST:
             raise ArgumentError("radius", radius, "must be positive [m]")
-        around = _circle(across / size, facets)
+        around = _circle(across, facets)
         n = len(around)
         here = np.arange(n)
         fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))

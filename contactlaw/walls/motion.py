@@ -53,6 +53,15 @@ def vector(name: str, value: Any, unit: str = "m") -> Floats:
     return found
 
 
+def direction(name: str, value: Any) -> Floats:
+    """Make a unit vector of a direction, or raise an error that names the argument."""
+    found = vector(name, value, "-")
+    size = float(np.linalg.norm(found))
+    if not size > 0.0:
+        raise ArgumentError(name, value, "must have a direction")
+    return found / size
+
+
 @dataclass(frozen=True)
 class Translation:
     """A wall that moves at a constant velocity: an endless belt, a plate in a lift.
@@ -117,10 +126,8 @@ class Rotation:
 
     def __post_init__(self) -> None:
         """Refuse what is no rotation."""
-        axis = vector("axis", self.axis, "-")
-        if not np.linalg.norm(axis) > 0.0:
-            raise ArgumentError("axis", self.axis, "must have a direction")
-        _keep(self, axis=axis, centre=vector("centre", self.centre))
+        direction("axis", self.axis)
+        _keep(self, axis=vector("axis", self.axis, "-"), centre=vector("centre", self.centre))
         _keep_number(self, "speed", self.speed, "rad/s")
 
     def fill(self, row: Any) -> None:

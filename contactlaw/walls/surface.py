@@ -29,8 +29,9 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.walls.edges import SMOOTH
-from contactlaw.walls.facet import Point, Touch, cell_of, contains, height, on_facet, to_frame, turned
+from contactlaw.walls.facet import Point, Touch, cell_of, contains, height, normal_at, on_facet, to_frame, turned
 from contactlaw.walls.memory import array_at
+from contactlaw.walls.profile import TRIANGLE
 
 _SEAM = 1e-4  # [r] distance from a facet within which a point counts as on it
 _TIE = 1e-10  # [r] difference of overlaps that is rounding
@@ -165,7 +166,7 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
                 for k in range(max(k0, 0), min(k1 + 1, cells[2])):
                     for e in range(starts[row + k], starts[row + k + 1]):
                         facet = facets[entries[e]]
-                        if not abs(height(facet, p)) < r:
+                        if facet.kind >= TRIANGLE and not abs(height(facet, p)) < r:
                             continue
                         touch = on_facet(facet, p, r)
                         if touch.x > 0.0:
@@ -247,8 +248,9 @@ def on_listed_facet(frames: Any, facets: Any, row: Any, point: Point, r: float) 
 def wall_ends(frames: Any, facets: Any, number: int, point: Point, r: float) -> bool:
     """Whether a wall ends at a point on the rim of a facet: no other facet goes on smoothly."""
     facet = facets[number]
-    frame, n = frames[facet.frame], facet.normal
+    frame = frames[facet.frame]
     p, cells = to_frame(frame, point), frame.cells
+    n = normal_at(facet, p)
     i, j, k = cell_of(frame, 0, p[0]), cell_of(frame, 1, p[1]), cell_of(frame, 2, p[2])
     if not (0 <= i < cells[0] and 0 <= j < cells[1] and 0 <= k < cells[2]):
         return True
@@ -257,7 +259,7 @@ def wall_ends(frames: Any, facets: Any, number: int, point: Point, r: float) -> 
     at = (i * cells[1] + j) * cells[2] + k
     for e in range(starts[at], starts[at + 1]):
         other = facets[entries[e]]
-        m = other.normal
+        m = normal_at(other, p)
         smooth = abs(n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > SMOOTH
         if smooth and entries[e] != number and contains(other, p, _SEAM * r):
             return False

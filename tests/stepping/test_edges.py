@@ -11,7 +11,7 @@ import contactlaw as cl
 from contactlaw.engines.record import IMPACT, Kind
 from contactlaw.equation.edge import KINDS
 from contactlaw.stepping import WallContacts
-from contactlaw.walls import Mesh, Plate, Translation
+from contactlaw.walls import Cylinder, Disc, Mesh, Plate, Translation
 
 R, H, SPEED, DT = 0.9e-3, 1e-3, 3.0, 1e-7
 MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc")
@@ -49,8 +49,20 @@ def sheet(cells=10, hole=(), **options):
     return Mesh(corners, np.arange(len(corners)).reshape(-1, 3), H, **options)
 
 
+def trough(edges):
+    """A cylinder whose lowest line is at y = 0.021, so wide that it is flat for a bead."""
+    return Cylinder((0, 0.021, 10.0), (SIDE, 0.021, 10.0), 10.0, H, edges=(None, edges))
+
+
+def lid(edges):
+    """A disc whose rim is at x = SIDE."""
+    return Disc((SIDE - 1.0, 0.021, 0), (0, 0, 1), 1.0, H, edges=edges)
+
+
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("wall", [plate, lambda kind: sheet(edges=kind)], ids=["plate", "mesh"])
+@pytest.mark.parametrize(
+    "wall", [plate, lambda kind: sheet(edges=kind), trough, lid], ids=["plate", "mesh", "trough", "lid"]
+)
 @pytest.mark.parametrize("distance", [0.5e-3, 1e-3, 2e-3, 4e-3, 9e-3])
 def test_a_bead_near_an_edge(kind, wall, distance):
     (row,), _ = dropped(wall(kind), SIDE - distance, 0.021)

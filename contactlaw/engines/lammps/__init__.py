@@ -1,9 +1,9 @@
 """Walls in a LAMMPS simulation, whose force on the beads depends on the history of each contact.
 
-`attach` puts plates and meshes into a user's own ``lammps`` object. Their force on the beads is
-that of `contactlaw.softsphere`. It goes through ``fix external``, which calls a compiled function
-in each time step, and no Python. The state of a bead's contacts is in ``fix property/atom``: it
-moves with the bead from rank to rank and is part of restart files.
+`attach` puts walls into a user's own ``lammps`` object. Their force on the beads is that of
+`contactlaw.softsphere`. It goes through ``fix external``, which calls a compiled function in each
+time step, and no Python. The state of a bead's contacts is in ``fix property/atom``: it moves with
+the bead from rank to rank and is part of restart files.
 
 Simulation
     ``units si``, ``cgs`` or ``micro``, three dimensions, ``atom_style sphere``, integrated by ``fix
@@ -24,12 +24,10 @@ Thin plates
     integrates it instead.
 Walls that meet
     Facets that meet within 1e-4 of a bead's radius are one surface, on which the bead has one
-    contact. A facet whose nearest point is on its face has the contact; if there is none, one whose
-    nearest point is on an edge, then at a corner (on a seam: the first). The contact moves on from
-    facet to facet. The same
-    holds for faces that meet at less than 20 degrees, as in a tessellated cylinder: the contact is
-    with the deepest one. Of more than eight contacts of a bead the deepest are kept;
-    `LammpsPlates.left_out` counts the others.
+    contact: with a facet whose nearest point is on its face, else on an edge, else at a corner (on
+    a seam: the first). It moves on from facet to facet. The same holds for faces that meet at less
+    than 20 degrees, as in a tessellated cylinder: the contact is with the deepest one. Of more than
+    eight contacts of a bead the deepest are kept; `LammpsPlates.left_out` counts the others.
 Motion
     The position of a wall follows from `LammpsPlates.time`, which counts whole steps, and so has
     the same bits in one run or many. `attach` starts this clock at LAMMPS's own time, and
@@ -60,12 +58,13 @@ Other commands
 What it leaves out
     Beads do not touch walls across a periodic boundary; the contact of a bead that crosses one goes
     on with the wall there that has the same overlap. The virial has no part of the walls. The law
-    does not know the curvature of a wall, and at an edge it is that of the face. There is no
-    rolling friction.
+    knows the curvature of round walls alone, and has no rolling friction.
 """
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach
 from contactlaw.engines.lammps.beads import pair_coeff
-from contactlaw.walls import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
+from contactlaw.walls import Cone, Cylinder, Disc, Mesh, Plate, Ring, Sphere
+from contactlaw.walls.motion import Rotation, Tabulated, Translation, Vibration
 
-__all__ = ["LammpsPlates", "Mesh", "Plate", "Rotation", "Tabulated", "Translation", "Vibration", "attach", "pair_coeff"]
+__all__ = ["LammpsPlates", "attach", "pair_coeff", "Cone", "Cylinder", "Disc", "Mesh", "Plate", "Ring", "Sphere"]
+__all__ += ["Rotation", "Tabulated", "Translation", "Vibration"]

@@ -78,7 +78,7 @@ def attach(
     model : ImpactModel or dict of int to ImpactModel
         Materials and law. All beads are solid spheres of its material; for several materials, a
         model for each atom type.
-    plates : sequence of Plate and Mesh
+    plates : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
         Walls that the beads may hit.
     friction : float, optional
         Coulomb's coefficient of friction between beads and plates [-].
@@ -187,14 +187,14 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
         if kind > types:
             raise ArgumentError("model", None, f"there is no atom type {kind}, the box has {types}")
     if not isinstance(walls, Sequence):
-        raise TypeError(f"plates: expected a list of plates and meshes, got {walls!r}")
+        raise TypeError(f"plates: expected a list of walls, got {walls!r}")
     found = list(walls)
     if not found:
         reason = "at least one contactlaw.engines.lammps.Plate or Mesh is needed"
         raise ArgumentError("plates", None, reason)
     for wall in found:
         if not isinstance(wall, Wall):
-            raise TypeError(f"plates: expected Plate or Mesh of contactlaw.engines.lammps, got {wall!r}")
+            raise TypeError(f"plates: expected a wall of contactlaw.engines.lammps, such as Plate, got {wall!r}")
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
             if beads is None:

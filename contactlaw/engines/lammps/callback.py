@@ -41,7 +41,8 @@ from contactlaw.stepping.bead import touches
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.plate_rows import PLATE_ROW, SOLID, solid_mass
-from contactlaw.walls.frame import FACET, FRAME
+from contactlaw.walls.facet import FACET
+from contactlaw.walls.frame import FRAME
 from contactlaw.walls.grid import MARGIN
 from contactlaw.walls.memory import array_at, carray
 from contactlaw.walls.motion import move

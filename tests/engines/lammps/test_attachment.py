@@ -18,7 +18,7 @@ def test_a_bead_that_is_likely_in_millimetres_draws_a_warning():
 
 # Beads of the softened scene are faster than its softening is for.
 pytestmark = pytest.mark.filterwarnings("ignore:softening. an impact:UserWarning")
-SCENES = {"shower": box.shower, "drum": box.drum, "softened": box.softened}
+SCENES = {"shower": box.shower, "drum": box.drum, "softened": box.softened, "barrel": box.barrel}
 
 
 @pytest.fixture(scope="module", params=SCENES)

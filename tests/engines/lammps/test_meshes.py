@@ -11,6 +11,7 @@ from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration, memory
+from contactlaw.walls.frame import boxes_of, framed
 from contactlaw.walls.grid import FacetGrid
 
 SQUARE = ((0, 0, 0), (1e-2, 0, 0), (0, 1e-2, 0))
@@ -177,10 +178,6 @@ def test_a_larger_bead_than_the_grid_was_made_for(model):
     assert outcomes[0][0] == pytest.approx(model.restitution(5.0, 5e-3, 1e-3), abs=5e-4)
 
 
-def corners_of(mesh):
-    return mesh.vertices[mesh.triangles[:, [0, 1, 2, 2]]]
-
-
 def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
     """A cylinder's facets are long and thin; the box around one that leans holds all cells.
 
@@ -188,10 +185,11 @@ def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
     """
     seconds = []
     for end in ((0, 0, 0.3), (0.173, 0.173, 0.173)):
-        corners = corners_of(Mesh.cylinder((0, 0, 0), end, 0.02, 1e-3, facets=72))
-        FacetGrid(corners[:1], 0, R)  # compiles the kernel
+        facets = framed([Mesh.cylinder((0, 0, 0), end, 0.02, 1e-3, facets=72)], [0], R).facets
+        boxes = boxes_of(facets)
+        FacetGrid(facets, boxes, 0, R)  # compiles the kernel
         start = time.process_time()
-        FacetGrid(corners, 0, R)
+        FacetGrid(facets, boxes, 0, R)
         seconds.append(time.process_time() - start)
     assert seconds[1] < 10 * seconds[0]
 
