@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from contactlaw._jit import kernel
 from contactlaw.walls.profile import RECTANGLE, TRIANGLE, direction_at, in_half_plane, on_profile
 
