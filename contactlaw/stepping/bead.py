@@ -32,6 +32,7 @@ from contactlaw.stepping.contact import (
 )
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
+from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import plate_rows
 from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
@@ -110,9 +111,9 @@ class WallContacts:
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
         self._warned = False
-        scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
+        scratch, status, loads = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS), np.zeros(len(walls), LOAD)
         self.scene = WallScene(
-            rows, frames, facets, scratch, impacts, status, float(friction), float(softening), float(parcel)
+            rows, frames, facets, scratch, impacts, status, loads, float(friction), float(softening), float(parcel)
         )
 
     def collisions(self) -> Rows:

@@ -26,6 +26,7 @@ from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
+from contactlaw.stepping.loads import bear
 from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
 from contactlaw.stepping.softened import (
     BOUNCING,
@@ -140,6 +141,7 @@ class WallScene(NamedTuple):
     found: Any  # scratch rows for the facets that a bead overlaps
     impacts: Any  # rows of the record
     status: Any
+    loads: Any  # rows of LOAD, one for each wall
     friction: float  # Coulomb's coefficient [-]
     softening: float  # by which the moduli of the contacts are divided; 1: true contacts
     parcel: float  # radius of a bead over that of the true beads that it stands for
@@ -752,15 +754,16 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             if clock.advancing:
                 slip = surface_velocity(bead.v, bead.omega, bead.r, n)
                 bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
-        work = 0.0
+        both = row.push[0] + drag[0], row.push[1] + drag[1], row.push[2] + drag[2]
         for i in range(3):
-            both = row.push[i] + drag[i]
-            if not math.isfinite(both):
+            if not math.isfinite(both[i]):
                 report_trouble(scene, Trouble.NO_FORCE, contact.wall, row.approach_speed, bead.r)
-            bead.force[i] += both
+            bead.force[i] += both[i]
             bead.torque[i] += torque[i]
-            work += both * contact.w[i]
+        work = dot(both, contact.w)
         if clock.advancing:
+            frame = scene.frames[scene.facets[contact.facet].frame]
+            bear(scene.loads[contact.wall], frame, contact.point, both, work, clock.dt)
             row.wall_work += clock.dt * work
             if ended:  # the row of the record has been written without this step's work
                 scene.impacts[recorded].wall_work += clock.dt * work

@@ -207,6 +207,12 @@ def rain(processors="* * *"):
     return make(place, velocity, radius, gravity=9.81, processors=processors)
 
 
+def loads_of(lmp, walls):
+    """What the walls have borne, in all steps and in the hundred before the last whole one."""
+    shown = [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(walls._contacts.scene.loads.size * 7)]
+    return np.concatenate([one.ravel() for one in walls.loads()[1:]] + [shown])
+
+
 def in_chunks(path, walls_of, chunks):
     """Run a scene in chunks on every rank; rank 0 writes; return the walls."""
     lmp = rain("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
@@ -220,12 +226,12 @@ def in_chunks(path, walls_of, chunks):
         moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
         before = parts
     parts = MPI.COMM_WORLD.gather(own)
-    rows = walls.gather()
+    rows, borne = walls.gather(), loads_of(lmp, walls)
     if MPI.COMM_WORLD.rank == 0:
         whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
         order = np.argsort(whole["id"])
         arrays = {name: values[order] for name, values in whole.items()}
-        np.savez(path, **arrays, rows=rows, moved_in_contact=moved)
+        np.savez(path, **arrays, rows=rows, moved_in_contact=moved, borne=borne)
     return walls
 
 

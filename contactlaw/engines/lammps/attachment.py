@@ -27,6 +27,7 @@ from contactlaw.reporting.files import report
 from contactlaw.softsphere import most_softening
 from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
+from contactlaw.stepping.loads import NUMBERS, Loads, means
 from contactlaw.stepping.plate_rows import SOLID
 from contactlaw.stepping.softened import check_softening
 from contactlaw.walls.frame import Wall
@@ -329,9 +330,12 @@ class LammpsPlates:
         self._check_memory(columns)
         self._shared = self._share(columns)
         self._register()
+        self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
+        from mpi4py import MPI
+
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
         names = {name: name for name in "v f radius rmass type omega torque elapsed".split()}
@@ -341,21 +345,31 @@ class LammpsPlates:
         shared["lammps"] = handle
         for function in ("extract_atom", "get_thermo", "is_running"):
             shared[function] = _address(self._lmp, f"lammps_{function}")
+        shared["set_vector"] = _address(self._lmp, "lammps_fix_external_set_vector")
+        shared["allreduce"] = _address(self._lmp, "MPI_Allreduce")
+        for name, part in ("double", MPI.DOUBLE), ("sum", MPI.SUM), ("comm", self._comm):
+            shared[name] = MPI._handleof(part)
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
         scene = self._contacts.scene
-        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status"):
+        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads"):
             shared[name] = getattr(scene, name).ctypes.data
         shared["types"], shared["plate_row_count"] = scene.plate_rows.shape
         shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
         shared["capacity"] = len(scene.impacts)
         for name in ("friction", "softening", "parcel"):
             shared[name] = getattr(scene, name)
+        fix, numbers = f"{HISTORY}_force", scene.loads.size * NUMBERS
+        self._lmp.fix_external_set_vector_length(fix, numbers)
+        self._shown = np.zeros((3, numbers)), ctypes.create_string_buffer(fix.encode())
+        shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
+        shared["walls"] = scene.loads.size
         shared["places"], shared["columns"] = self._contacts.places, columns
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
         self._set_clock(shared)
+        shared["since"] = shared["base"] + shared["ticks"] * shared["tick"]
         return shared
 
     def _set_clock(self, shared: NDArray[np.void]) -> None:
@@ -539,6 +553,23 @@ class LammpsPlates:
             history, ids = found
             history[: len(ids), OWNER] = ids
             self._clear_foreign_rows()
+
+    def loads(self) -> Loads:
+        """Average what each wall has borne since the last call, or since the walls were attached.
+
+        Every rank has to call it. While LAMMPS runs, the means over the last 100 steps are in the
+        vector of ``fix contactlaw_force``, 7 numbers for each wall, in LAMMPS's units.
+
+        Raises
+        ------
+        ValueError
+            If no step was simulated.
+        """
+        now, (then, before) = self.time, self._borne
+        sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
+        found = means(sums - before, now - then)
+        self._borne = now, sums
+        return found
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.

@@ -33,6 +33,7 @@ from contactlaw.engines.lammps.memory import (
     matrix_at,
     record_error,
     running,
+    show,
     thermo,
 )
 from contactlaw.engines.record import IMPACT, Kind
@@ -40,6 +41,7 @@ from contactlaw.stepping import Bead, Clock, Trouble, interact
 from contactlaw.stepping.bead import touches
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import PLATE_ROW, SOLID, solid_mass
 from contactlaw.walls.facet import FACET
 from contactlaw.walls.frame import FRAME
@@ -183,10 +185,13 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.found, ROOM, OVERLAP),
         array_at(shared.impacts, shared.capacity, IMPACT),
         array_at(shared.status, 1, STATUS),
+        array_at(shared.loads, shared.walls, LOAD),
         shared.friction,
         shared.softening,
         shared.parcel,
     )
+    if advancing and step % _EVERY == 0:  # on all ranks, also without beads
+        show(shared, scene.loads, shared.base + shared.ticks * shared.tick)
     _tick(shared, clock, scene.frames)
     history_address = extract(shared, shared.history)
     if n == 0 or history_address == 0:  # 0: a command has removed the fix of the history
@@ -205,7 +210,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if step % _EVERY == 0 or not advancing:
         _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
-    per, status, loads = length / seconds, scene.status[0], shared.loads
+    per, status, loads = length / seconds, scene.status[0], shared.bead_loads
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
     for i in range(n):
         centre = x[i, 0] * length, x[i, 1] * length, x[i, 2] * length

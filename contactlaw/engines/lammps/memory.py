@@ -11,6 +11,7 @@ from numba.extending import intrinsic
 from contactlaw._jit import kernel
 from contactlaw.stepping.contact import CONTACT, Trouble
 from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.loads import NUMBERS
 from contactlaw.walls.memory import array_at
 
 # A bead's history, in float64 as LAMMPS keeps it: this row, then the CONTACT rows, then, with
@@ -47,16 +48,18 @@ MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 # time step of the last one. Walls move by a clock of their own: `ticks` steps of length `tick`
 # since `base`. LAMMPS's clock rounds differently if a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "lammps")]
+    [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
-    + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status")]
-    + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count")]
+    + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads")]
+    + [(name, "i8") for name in ("allreduce", "double", "sum", "comm", "force_fix", "shown")]
+    + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in "error_value error_limit friction softening parcel base tick before".split()]
     + [(name, "f8") for name in ("length", "time", "mass")]  # LAMMPS's units, in SI
-    + [("loads", "f8", (2, 3))],  # force and torque of a bead
+    + [("since", "f8")]  # time from which on `shown` has the walls' loads
+    + [("bead_loads", "f8", (2, 3))],  # force and torque of a bead
     align=True,
 )
 
@@ -90,6 +93,28 @@ def thermo(shared: Any, name: int) -> Any:
 def running(shared: Any) -> Any:
     """Return LAMMPS's state: 0 for idle, 1 in a run, MINIMIZING."""
     return _call(shared.is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
+
+
+@kernel
+def show(shared: Any, loads: Any, now: float) -> None:
+    """Put the means of what walls bear since the last call, on all ranks, in the fix's vector."""
+    n = loads.size * NUMBERS
+    before = array_at(shared.shown, (3, n), np.float64)
+    sums, duration = array_at(int(loads.ctypes.data), n, np.float64), now - shared.since
+    if not duration > 0.0:
+        return
+    for i in range(n):
+        before[1, i], before[0, i] = (sums[i] - before[0, i]) / duration, sums[i]
+    send, receive = shared.shown + 8 * n, shared.shown + 16 * n
+    given = send, receive, np.int32(n), shared.double, shared.sum, shared.comm
+    _call(shared.allreduce, np.int32(0), given)  # type: ignore[call-arg]
+    force = shared.mass * shared.length / shared.time**2
+    for i in range(n):
+        unit = force * shared.length if i % NUMBERS > 2 else force
+        unit /= shared.time if i % NUMBERS == NUMBERS - 1 else 1.0
+        one = shared.lammps, shared.force_fix, np.int32(i + 1), before[2, i] / unit
+        _call(shared.set_vector, np.int32(0), one)
+    shared.since = now
 
 
 @kernel

@@ -27,7 +27,7 @@ def whole(request):
     lmp = box.rain()
     walls = SCENES[request.param](lmp)
     lmp.command(f"run {box.STEPS}")
-    return request.param, state(lmp), walls.gather()
+    return request.param, state(lmp), walls.gather(), box.loads_of(lmp, walls)
 
 
 def assert_same(found, expected):
@@ -35,14 +35,20 @@ def assert_same(found, expected):
         assert np.array_equal(found[name], values), name
 
 
+def assert_close(borne, expected):
+    assert np.count_nonzero(expected) > 20
+    np.testing.assert_allclose(borne, expected, rtol=1e-9, atol=1e-9 * abs(expected).max())
+
+
 def test_one_run_or_many_give_the_same_bits(whole):
-    name, ends, impacts = whole
+    name, ends, impacts, borne = whole
     lmp = box.rain()
     walls = SCENES[name](lmp)
     for _ in range(24):
         lmp.command(f"run {box.STEPS // 24}")
     assert_same(state(lmp), ends)
     rows = walls.gather()
+    assert_close(box.loads_of(lmp, walls), borne)
     assert len(rows) > 150
     for column in rows.dtype.names:
         assert rows[column] == pytest.approx(impacts[column], rel=1e-9), column
@@ -56,10 +62,11 @@ def two_ranks(tmp_path_factory):
 
 
 def test_two_ranks_give_the_same_bits(whole, two_ranks):
-    name, ends, impacts = whole
+    name, ends, impacts, borne = whole
     with np.load(two_ranks[1].with_stem(name)) as out:
         assert out["moved_in_contact"] >= 8
         assert_same(out, ends)
+        assert_close(out["borne"], borne)
         for column in ("bead", "plate", "triangle", "restitution", "peak_force"):
             assert np.array_equal(out["rows"][column], impacts[column]), column
 
@@ -84,7 +91,7 @@ def test_a_command_without_time_steps_needs_no_other_rank(two_ranks):
 
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole, tmp_path):
     """After the restart the walls move on from where they were."""
-    name, ends, _ = whole
+    name, ends, _, _ = whole
     lmp = box.rain()
     walls = SCENES[name](lmp)
     lmp.command("run 1000")
