@@ -131,6 +131,7 @@ def drum(
     speed: float = 0.5,
     turns: float = 2.0,  # from 2.5 on beads would cling to the shell
     friction: float = 0.5,
+    softening: float = 300.0,
     duration: float = 0.25,  # half a turn
     seed: int = 1,
 ) -> Drum:
@@ -171,6 +172,7 @@ def drum(
         sphere_material=material(sphere),
         plate_material=material(plate),
         friction=friction,
+        softening=softening,
         duration=duration,
         seed=seed,
     )

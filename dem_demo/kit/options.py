@@ -29,6 +29,7 @@ _ABOUT = {
     "sphere": ("NAME", "material of the beads"),
     "plate": ("NAME", "material of the walls"),
     "friction": ("MU", "coefficient of friction, on the walls and of beads on each other"),
+    "softening": ("S", "number by which the modulus of all contacts is divided, for longer steps; 1: true contacts"),
     "duration": ("T", "simulated time [s]"),
     "seed": ("S", "the same seed gives the same beads"),
 }

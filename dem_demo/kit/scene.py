@@ -86,6 +86,7 @@ class Bed(Scene):
     FILM_RATE: ClassVar[float]  # frames per second of the film [1/s]
 
     thickness: float  # of the walls [m]
+    softening: float  # by which the modulus of all contacts is divided; 1: true contacts
 
     @property
     def sheet(self) -> str:

@@ -173,6 +173,7 @@ def sieve(
     frequency: float = 50.0,
     amplitude: float = 1e-3,  # at 50 Hz an acceleration of 10 g
     friction: float = 0.3,
+    softening: float = 300.0,
     duration: float = 0.06,  # three periods
     seed: int = 1,
 ) -> Sieve:
@@ -218,6 +219,7 @@ def sieve(
         frequency=frequency,
         amplitude=amplitude,
         friction=friction,
+        softening=softening,
         duration=duration,
         seed=seed,
     )
