@@ -8,6 +8,7 @@ turns, so that whatever else the machine does slows both.
 from __future__ import annotations
 
 import csv
+import itertools
 import tempfile
 import time
 import warnings
@@ -63,18 +64,15 @@ def measure(scene: Bed) -> Iterator[dict[str, Any]]:
 
 
 def main() -> None:
-    """Measure all runs and write the file."""
-    found = [
-        row
-        for make in _SCENES.values()
-        for seed in _SEEDS
-        for softening in _SOFTENINGS
-        for row in measure(make(seed=seed, softening=softening))
-    ]
+    """Measure all runs, and write each as soon as it has ended."""
     with FILE.open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, found[0], lineterminator="\n")
-        table.writeheader()
-        table.writerows(found)
+        table = csv.writer(file, lineterminator="\n")
+        for make, seed, softening in itertools.product(_SCENES.values(), _SEEDS, _SOFTENINGS):
+            for row in measure(make(seed=seed, softening=softening)):
+                if not file.tell():
+                    table.writerow(row)
+                table.writerow(row.values())
+            file.flush()
 
 
 if __name__ == "__main__":
