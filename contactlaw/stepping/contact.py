@@ -718,7 +718,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             if scene.softening > 1.0:
                 drag = tangential_push(
                     bead.friction[k],
-                    softened_of(state),
+                    softened_of(state).lasting,
+                    softened_of(state).restitution,
                     scene.friction,
                     plate_row.tangential,
                     touch.x,
