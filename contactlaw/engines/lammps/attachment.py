@@ -562,9 +562,11 @@ class LammpsPlates:
 
         Raises
         ------
-        ValueError
-            If no step was simulated.
+        ValueError, RuntimeError
+            If no step was simulated; the walls were detached.
         """
+        if not self._attached:
+            raise RuntimeError("loads: the walls were detached, and bear nothing; ask before detach()")
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)

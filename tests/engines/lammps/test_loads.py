@@ -29,6 +29,9 @@ def test_a_plate_bears_the_weight_of_the_beads_on_it():
     np.testing.assert_allclose(loads.torque, [(-0.03 * weight, -0.02 * weight, 0)], rtol=1e-6, atol=1e-9 * weight)
     shown = [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(7)]
     np.testing.assert_allclose(shown, [*loads.force[0], *loads.torque[0], 0.0], rtol=1e-6, atol=1e-6 * weight)
+    walls.detach()
+    with pytest.raises(RuntimeError, match="loads: the walls were detached"):
+        walls.loads()
 
 
 @pytest.mark.parametrize("softening", [1.0, 100.0])
