@@ -10,7 +10,12 @@ import numba
 from llvmlite import binding as llvm
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+from numba.core.compiler_machinery import AnalysisPass, register_pass
+from numba.core.extending import _Intrinsic
 from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import NopythonTypeInference
+
+_VIEWS = "getitem", "static_getitem", "getiter", "iternext"  # of arrays that others keep alive
 
 
 class _InnerCode(JITCodeLibrary):
@@ -40,6 +45,34 @@ class _InnerCode(JITCodeLibrary):
         return self._shared_module
 
 
+@register_pass(mutates_CFG=False, analysis_only=True)  # type: ignore[no-untyped-call]
+class _Uncounted(AnalysisPass):
+    """Lets a kernel that gets no new array, and returns none, count the users of none.
+
+    Its callers keep alive all that it reads. Numba counts whenever an array, or a tuple that has
+    one, is passed to a kernel; with the dozen arrays of a bead and its walls that took as long as
+    their contact. Intrinsics that are called by name, such as `array_at`, give arrays of others.
+    """
+
+    _name = "contactlaw_uncounted"
+
+    def __init__(self) -> None:
+        super().__init__()  # type: ignore[no-untyped-call]
+
+    def run_pass(self, state: Any) -> bool:
+        models, kinds, results = state.targetctx.data_model_manager, state.typemap, [state.return_type]
+        for one, signature in state.calltypes.items():
+            operation = getattr(one, "op", "")
+            called = kinds[one.func.name] if operation == "call" else None
+            intrinsic = isinstance(getattr(called, "typing_key", None), _Intrinsic)
+            view = operation in _VIEWS or intrinsic or isinstance(called, numba.types.NamedTupleClass)
+            if not view and signature is not None:
+                results.append(signature.return_type)
+        if not any(models[kind].contains_nrt_meminfo() for kind in results):
+            state.targetctx.enable_nrt = False
+        return False
+
+
 class InnerCompiler(Compiler):
     """Compiles a kernel into `_InnerCode`."""
 
@@ -47,7 +80,11 @@ class InnerCompiler(Compiler):
         codegen, name = self.state.targetctx.codegen(), self.state.func_id.func_qualname
         self.state.library = _InnerCode(codegen, name)  # type: ignore[no-untyped-call]
         self.state.flags.no_compile = True
-        return super().define_pipelines()  # type: ignore[no-untyped-call]
+        pipelines = super().define_pipelines()  # type: ignore[no-untyped-call]
+        for one in pipelines:
+            one.add_pass_after(_Uncounted, NopythonTypeInference)
+            one.finalize()
+        return pipelines
 
 
 class Inner(CPUDispatcher):

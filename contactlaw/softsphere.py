@@ -33,7 +33,6 @@ from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clea
 from contactlaw.stepping.softened import (
     DAMPED,
     DEEPEST_OVERLAP,
-    Softened,
     SoftState,
     advance_softened,
     check_softening,
@@ -271,10 +270,9 @@ def _slide_softened_all(
                 row.width, row.normal = ratio, came[n]
                 for i in range(3):
                     row.along[i] = slip[i] / size if size > 0.0 else 0.0
-            kept = Softened(restitution[n], came[n], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, now.damped * DAMPED)
-            x, largest = now.overlap, now.largest
+            lasting, e, x, largest = now.damped * DAMPED, restitution[n], now.overlap, now.largest
             push = now.force + now.kick
-            out = tangential_push(row, kept, friction, kappa, x, largest, push, spring.mass, at, slip, step)
+            out = tangential_push(row, lasting, e, friction, kappa, x, largest, push, spring.mass, at, slip, step)
         force[n, 0], force[n, 1], force[n, 2] = out
 
 

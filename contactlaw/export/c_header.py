@@ -54,7 +54,8 @@ _PUBLIC: dict[Any, str] = {
     Spring: "contact_spring",
     Sliding: "approach",
     SoftState: "softened",
-    **{one: one for one in "step flags collide set_edge softened_step friction_step vector_of store".split()},
+    **{one: one for one in "step flags collide set_edge friction_step vector_of store".split()},
+    **{one: one for one in ("softened_step", "softened_friction_step")},
 }
 
 
@@ -147,9 +148,11 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
     softened = program.struct(SoftState, dict.fromkeys(SoftState._fields, DOUBLE))
     add(program, functions.after_softened, bead, DOUBLE, DOUBLE, softened, DOUBLE, DOUBLE)
+    add(program, functions.restitution_of, pair, bead, DOUBLE)
     add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
     add(program, functions.flags_for, pair, impact, *_VECTOR)
     add(program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE)
+    add(program, functions.rub_softened, pair, bead, DOUBLE, softened, sliding, DOUBLE, point, point, DOUBLE)
     add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
 

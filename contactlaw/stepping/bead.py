@@ -36,7 +36,6 @@ from contactlaw.stepping.plate_rows import plate_rows
 from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
-from contactlaw.walls.memory import borrowed
 from contactlaw.walls.plate import Models, by_type, check_models
 from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
@@ -350,40 +349,10 @@ def _disturbance_of(bead: Bead) -> float:
     return ALONE
 
 
-@kernel(inline=True)
-def _borrowed(scene: WallScene, bead: Bead) -> tuple[WallScene, Bead]:
-    """Scene and bead whose arrays the caller keeps alive."""
-    kept = WallScene(
-        borrowed(scene.plate_rows),
-        borrowed(scene.frames),
-        borrowed(scene.facets),
-        borrowed(scene.found),
-        borrowed(scene.impacts),
-        borrowed(scene.status),
-        scene.friction,
-        scene.softening,
-        scene.parcel,
-    )
-    return kept, Bead(
-        bead.number,
-        bead.kind,
-        bead.x,
-        bead.v,
-        bead.omega,
-        bead.r,
-        bead.mass,
-        borrowed(bead.force),
-        borrowed(bead.torque),
-        borrowed(bead.contacts),
-        borrowed(bead.friction),
-    )
-
-
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
-@kernel(cache=True, inline=True)
-def interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
-    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``."""
-    scene, bead = _borrowed(scene, bead)
+@kernel(inline=True)
+def _interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
+    """As `interact`."""
     if not 0 <= bead.kind < len(scene.plate_rows):
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
@@ -409,3 +378,9 @@ def interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
             _end_contact(scene, clock, bead, k, count)
     if clock.advancing:
         _begin_all(scene, clock, bead, count, touching)
+
+
+@kernel(cache=True, inline=True)
+def interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
+    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``."""
+    _interact(scene, clock, bead)

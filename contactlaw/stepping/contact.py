@@ -164,7 +164,8 @@ class Bead(NamedTuple):
 class NearestEdge(NamedTuple):
     """The edge of a wall that is nearest to a contact."""
 
-    near: EdgeEcho
+    place: int  # its row of the plate's responses
+    rate: float  # as of `EdgeEcho` [1/s]
     distance: float  # [m]; inf without any
 
 
@@ -427,11 +428,11 @@ def _end(
     r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
     time, force = record.contact_time, record.peak_force
     record.flags = flags_of(limits, r, plate_row.thickness, expected.compression, time, deepest, force)
-    if edge.near.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
+    if edge.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
         record.kind = Kind.STRUCK.value
     # Whether the plate comes back later is not known here; the strike will have a row of its own.
     # Flagged is a plate that recedes before the bead.
-    recedes = 1.0 if edge.near.rate > 0.0 and leaves < 0.0 else 0.0
+    recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
     record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
     record.flags |= curved_flags(contact.bending)
     return extra
@@ -469,7 +470,7 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, s
     """Edge that is nearest to a contact, and how it acts there."""
     facet = scene.facets[contact.facet]
     if facet.edge_count == 0 or plate_row.thickness == math.inf:
-        return NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
+        return NearestEdge(0, 0.0, math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
     # Slow impacts last twice as long as those at 1 m/s, and the more the plate gives way, the
     # longer: the bead is then slowed in the time m alpha.
@@ -479,8 +480,7 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, s
     # At an edge nearer than that, an impact is flagged.
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
     rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
-    place = place_of(kind, distance, hole, thickness)
-    return NearestEdge(EdgeEcho(plate_row.responses[place], rate), distance)
+    return NearestEdge(place_of(kind, distance, hole, thickness), rate, distance)
 
 
 @kernel
@@ -525,11 +525,12 @@ def _ask(
     touch, rough = contact.touch, len(bead.friction) > 0
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     edge = _near_edge(scene, bead, contact, plate_row, spring)
+    near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     came = sliding(contact.v, bead.omega, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
     rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
     if not begins:  # what friction has done so far stays, because a spring holds now
         rows = bead.friction[0:0]
-    true = bounce(law, spring, u, edge.near, came.size, mu, kappa, rows)
+    true = bounce(law, spring, u, near, came.size, mu, kappa, rows)
     if rough and begins:
         bead.friction[k].width = true.impulse_ratio
         for i in range(3):
@@ -594,12 +595,14 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending)
     last, softened = state_of(row), scene.softening > 1.0
-    edge = NearestEdge(EdgeEcho(plate_row.responses[0], 0.0), math.inf)
+    edge = NearestEdge(0, 0.0, math.inf)
+    if not softened:
+        edge = _near_edge(scene, bead, contact, plate_row, spring)
+    near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     if softened:
         state, extra = _softened_step(scene, clock, spring, bead, k, touch.x, u), 0.0
     else:
-        edge = _near_edge(scene, bead, contact, plate_row, spring)
-        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
+        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
@@ -607,7 +610,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(law, scene, clock, bead, contact, k, spring, u)
-        if edge.near.rate > 0.0 and u < 0.0 < last.largest_compression:
+        if edge.rate > 0.0 and u < 0.0 < last.largest_compression:
             row.arrival = HIT_BACK
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
             clear_friction(bead.friction[k])
@@ -626,7 +629,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     if softened:
         _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u)
     else:
-        row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
+        row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, near)
     pressed = state.force + extra
     pushes = pressed * along[0], pressed * along[1], pressed * along[2]
     power = dot(pushes, contact.w)
@@ -713,7 +716,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             if scene.softening > 1.0:
                 drag = tangential_push(
                     bead.friction[k],
-                    softened_of(state),
+                    softened_of(state).lasting,
+                    softened_of(state).restitution,
                     scene.friction,
                     plate_row.tangential,
                     touch.x,

@@ -177,7 +177,8 @@ def advance_softened(
 @kernel
 def tangential_push(
     row: Any,
-    soft: Softened,
+    lasting: float,
+    restitution: float,
     friction: float,
     kappa: float,
     x: float,
@@ -197,7 +198,7 @@ def tangential_push(
     if h == 0.0:
         return row.force[0], row.force[1], row.force[2]
     ax, ay, az = row.along[0], row.along[1], row.along[2]
-    if soft.lasting == BOUNCING:
+    if lasting == BOUNCING:
         up, size = dot((ax, ay, az), n), -f * row.width
         force = size * (ax - up * n[0]), size * (ay - up * n[1]), size * (az - up * n[2])
         row.stretch[0], row.stretch[1], row.stretch[2] = force
@@ -205,7 +206,7 @@ def tangential_push(
         return force
     up = dot(slip, n)
     slip = slip[0] - up * n[0], slip[1] - up * n[1], slip[2] - up * n[2]
-    left = residual(largest, soft.restitution) if x < largest else 0.0
+    left = residual(largest, restitution) if x < largest else 0.0
     k = kappa * 1.5 * f / (x - left) if f > 0.0 and x > left else 0.0
     # A spring that softens keeps its stretch and so gives up a part of its force.
     share = min(k / row.stiffness, 1.0) if row.stiffness > 0.0 else 1.0
@@ -214,7 +215,7 @@ def tangential_push(
     up, path = dot((ax, ay, az), n), k * h
     ax, ay, az = (ax - up * n[0] - path * slip[0], ay - up * n[1] - path * slip[1], az - up * n[2] - path * slip[2])
     damping = 0.0
-    if soft.lasting == DAMPED:
+    if lasting == DAMPED:
         damping = min(2.0 * _DAMPING * math.sqrt(mass / POINT * k), _MOST_DAMPING * mass / POINT / h)
     force = ax - damping * slip[0], ay - damping * slip[1], az - damping * slip[2]
     size, most = math.sqrt(dot(force, force)), friction * max(f, 0.0)  # the last step may pull

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._jit import kernel
-from contactlaw.walls.memory import array_at
 from contactlaw.walls.profile import RECTANGLE, TRIANGLE, direction_at, in_half_plane, on_profile
 
 Point = tuple[float, float, float]
@@ -205,10 +204,3 @@ def nearest(touch: Touch, x: Point, r: float) -> Point:
 def cell_of(frame: Any, k: int, coordinate: float) -> int:
     """Index of the cell of a coordinate in direction k."""
     return int(math.floor((coordinate - frame.origin[k]) * frame.per_length))
-
-
-@kernel
-def entries_of(frame: Any) -> tuple[Any, Any]:
-    """Where each cell's list begins, and the lists."""
-    starts = array_at(frame.starts, frame.cell_count + 1, np.int64)
-    return starts, array_at(frame.entries, frame.entry_count, np.int32)

@@ -29,18 +29,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.walls.edges import SMOOTH
-from contactlaw.walls.facet import (
-    Point,
-    Touch,
-    cell_of,
-    contains,
-    entries_of,
-    height,
-    normal_at,
-    on_facet,
-    to_frame,
-    turned,
-)
+from contactlaw.walls.facet import Point, Touch, cell_of, contains, height, normal_at, on_facet, to_frame, turned
 from contactlaw.walls.memory import array_at
 from contactlaw.walls.profile import TRIANGLE
 
@@ -169,7 +158,8 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
         i0, i1 = cell_of(frame, 0, p[0] - more), cell_of(frame, 0, p[0] + more)
         j0, j1 = cell_of(frame, 1, p[1] - more), cell_of(frame, 1, p[1] + more)
         k0, k1 = cell_of(frame, 2, p[2] - more), cell_of(frame, 2, p[2] + more)
-        starts, entries = entries_of(frame)
+        starts = array_at(frame.starts, frame.cell_count + 1, np.int64)
+        entries = array_at(frame.entries, frame.entry_count, np.int32)
         for i in range(max(i0, 0), min(i1 + 1, cells[0])):
             for j in range(max(j0, 0), min(j1 + 1, cells[1])):
                 row = (i * cells[1] + j) * cells[2]
@@ -264,7 +254,8 @@ def wall_ends(frames: Any, facets: Any, number: int, point: Point, r: float) -> 
     i, j, k = cell_of(frame, 0, p[0]), cell_of(frame, 1, p[1]), cell_of(frame, 2, p[2])
     if not (0 <= i < cells[0] and 0 <= j < cells[1] and 0 <= k < cells[2]):
         return True
-    starts, entries = entries_of(frame)
+    starts = array_at(frame.starts, frame.cell_count + 1, np.int64)
+    entries = array_at(frame.entries, frame.entry_count, np.int32)
     at = (i * cells[1] + j) * cells[2] + k
     for e in range(starts[at], starts[at + 1]):
         other = facets[entries[e]]

@@ -1,8 +1,7 @@
-"""``dem-demo drum``: its options, and the function that runs it."""
+"""``dem-demo drum``: its options."""
 
 from __future__ import annotations
 
-import argparse
 from typing import Any
 
 from dem_demo.drum.scene import drum
@@ -22,15 +21,6 @@ def add(commands: Any) -> None:
         commands,
         drum,
         about=_ABOUT,
-        start=_start,
         help="beads in a turning drum of sheet metal",
         description="Beads are lifted and thrown by a turning drum of sheet metal.",
     )
-
-
-def _start(arguments: argparse.Namespace, command: str) -> int:
-    with options.needing(options.LAMMPS):
-        from dem_demo.drum import dissipation
-        from dem_demo.kit import comparison
-
-    return comparison.start(drum, arguments, command, dissipation)

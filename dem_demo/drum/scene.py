@@ -106,10 +106,8 @@ class Drum(Bed):
 
     def title(self) -> tuple[str, str]:
         """Beads and drum; motion of the drum."""
-        radius = self.radius * 1e3
         return (
-            f"{radius.size} beads of {self.sphere_material.name}, radius {radius.min():.2f} to {radius.max():.2f} mm, "
-            f"in a drum of {self.sheet}, {2e3 * self.drum:g} mm wide and {1e3 * self.length:g} mm long",
+            f"{self.beads}, in a drum of {self.sheet}, {2e3 * self.drum:g} mm wide and {1e3 * self.length:g} mm long",
             f"{self.duration * self.turns:.3g} revolutions at {self.turns:g} per second",
         )
 
@@ -131,6 +129,7 @@ def drum(
     speed: float = 0.5,
     turns: float = 2.0,  # from 2.5 on beads would cling to the shell
     friction: float = 0.5,
+    softening: float = 300.0,
     duration: float = 0.25,  # half a turn
     seed: int = 1,
 ) -> Drum:
@@ -171,6 +170,7 @@ def drum(
         sphere_material=material(sphere),
         plate_material=material(plate),
         friction=friction,
+        softening=softening,
         duration=duration,
         seed=seed,
     )

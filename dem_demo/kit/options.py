@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -29,6 +30,7 @@ _ABOUT = {
     "sphere": ("NAME", "material of the beads"),
     "plate": ("NAME", "material of the walls"),
     "friction": ("MU", "coefficient of friction, on the walls and of beads on each other"),
+    "softening": ("S", "number by which the modulus of all contacts is divided, for longer steps; 1: true contacts"),
     "duration": ("T", "simulated time [s]"),
     "seed": ("S", "the same seed gives the same beads"),
 }
@@ -108,12 +110,20 @@ def add_scene(
 
 
 def add_bed(commands: Any, make: Callable[..., Any], *, description: str, **scene: Any) -> None:
-    """Add a scene that runs twice in LAMMPS."""
+    """Add a scene that runs twice in LAMMPS; the file `dissipation` of its folder draws a figure."""
+
+    def start(arguments: argparse.Namespace, command: str) -> int:
+        with needing(LAMMPS):
+            from dem_demo.kit import comparison
+
+            own = importlib.import_module(f"{make.__module__.rpartition('.')[0]}.dissipation")
+        return comparison.start(make, arguments, command, own)
+
     twice = (
         f"{description} It is simulated twice: under the law, and with one COR for all impacts on the walls, which "
         "constant.h5 records. Writes a dump for OVITO, too. Works under mpirun."
     )
-    add_scene(commands, make, description=twice, **scene).add_argument(
+    add_scene(commands, make, start=start, description=twice, **scene).add_argument(
         "--constant-cor",
         type=float,
         metavar="E",

@@ -59,6 +59,12 @@ class Scene(ABC):
         return sphere_mass(self.sphere_material.density, self.radius)
 
     @property
+    def beads(self) -> str:
+        """Number, material and radii of the beads, in words."""
+        ends = " to ".join(f"{1e3 * end:.3g}" for end in (self.radius.min(), self.radius.max()))
+        return f"{self.radius.size} beads of {self.sphere_material.name}, radius {ends} mm"
+
+    @property
     def sheet(self) -> str:
         """What the walls are made of, in words."""
         return self.plate_material.name
@@ -86,6 +92,7 @@ class Bed(Scene):
     FILM_RATE: ClassVar[float]  # frames per second of the film [1/s]
 
     thickness: float  # of the walls [m]
+    softening: float  # by which the modulus of all contacts is divided; 1: true contacts
 
     @property
     def sheet(self) -> str:

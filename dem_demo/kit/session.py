@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import datetime
+import math
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -118,11 +119,19 @@ def make(show: Show, runs: Runs[Any], text: str, folder: Path) -> None:
 
 
 def title(run: Run[Any]) -> tuple[str, str]:
-    """Title in two lines: beads and walls; duration or motion, engine, law and seed."""
+    """Title in two lines: beads and walls; duration or motion, engine, contacts, law and seed."""
     (what, how), made = run.scene.title(), run.record.made
-    ranks = made.get("ranks", 1)
+    ranks, softening = made.get("ranks", 1), made.get("softening", 1.0)
     engine = f"in {made['engine']}" + f" on {ranks} ranks" * (ranks > 1)
+    if softening > 1.0:
+        engine += f", contacts softened {softening:g} times (overlaps to {_overlap(run, softening):.1%} of the radius)"
     return what, f"{how}, friction {run.scene.friction:g}, {engine}, law {run.law}, seed {run.scene.seed}"
+
+
+def _overlap(run: Run[Any], softening: float) -> float:
+    """Largest overlap [radius], with the energy of the fastest impact in a spring of Hertz."""
+    pressure = run.scene.sphere_material.density * run.impacts["approach_speed"].max(initial=0.0) ** 2
+    return float((1.25 * math.pi * softening * pressure / run.model.pair.effective_modulus) ** 0.4)
 
 
 def summary(runs: Runs[Any]) -> str:

@@ -89,12 +89,7 @@ class Shower(Scene):
 
     def title(self) -> tuple[str, str]:
         """Beads and plates; duration."""
-        radius = self.radius * 1e3
-        return (
-            f"{radius.size} beads of {self.sphere_material.name}, radius {radius.min():.2f} to "
-            f"{radius.max():.2f} mm, on {self.sheet}",
-            f"{self.duration:g} s",
-        )
+        return f"{self.beads}, on {self.sheet}", f"{self.duration:g} s"
 
     def facts(self, run: Run[Any]) -> Facts:
         """Impacts of two beads."""

@@ -1,8 +1,7 @@
-"""``dem-demo sieve``: its options, and the function that runs it."""
+"""``dem-demo sieve``: its options."""
 
 from __future__ import annotations
 
-import argparse
 from typing import Any
 
 from dem_demo.kit import options
@@ -24,15 +23,6 @@ def add(commands: Any) -> None:
         commands,
         sieve,
         about=_ABOUT,
-        start=_start,
         help="beads on a vibrating deck, a mesh from an STL file",
         description="Beads of two sizes fall on a vibrating, perforated deck of sheet metal, a mesh from an STL file.",
     )
-
-
-def _start(arguments: argparse.Namespace, command: str) -> int:
-    with options.needing(options.LAMMPS):
-        from dem_demo.kit import comparison
-        from dem_demo.sieve import dissipation
-
-    return comparison.start(sieve, arguments, command, dissipation)

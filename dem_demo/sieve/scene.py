@@ -1,6 +1,6 @@
 """The scene of the sieve: a feed of beads of two sizes, and a vibrating deck.
 
-The defaults are within the limits of the law, and simulated within ten minutes.
+The defaults are within the limits of the law, and simulated within two minutes.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _DRIFT = 0.5  # speed of the feed along the deck, over its speed downwards
 _AROUND = 0.2  # [m], room around deck and feed in the simulation box
 _SLICE = 4.0  # [largest radius], half width of the slice that is drawn
 _ABOVE, _BELOW = 1.05, 4.0  # [feed's height], [opening]: room above and below the deck
-_RIM = 1e-6  # [m]; contact points nearer to an opening are on its rim, within rounding
+_RIM = 1e-4  # [m]; nearer contact points may be on a rim: the deck moves while they are softened
 LIFT = 2.0  # [amplitude], extra height of the feed, above the deck's highest position
 
 
@@ -126,11 +126,9 @@ class Sieve(Bed):
 
     def title(self) -> tuple[str, str]:
         """Feed and deck; motion of the deck."""
-        small, large = self.radius.min() * 1e3, self.radius.max() * 1e3
         deck = self.deck
         return (
-            f"{self.radius.size} beads of {self.sphere_material.name}, radius {small:g} and {large:g} mm, "
-            f"on a deck of {self.sheet}, {deck.length * 1e3:.0f} x {deck.width * 1e3:.0f} mm, "
+            f"{self.beads}, on a deck of {self.sheet}, {deck.length * 1e3:.0f} x {deck.width * 1e3:.0f} mm, "
             f"openings of {deck.opening * 1e3:g} mm, {len(deck.triangles())} triangles",
             f"{self.duration * self.frequency:.3g} periods of {self.frequency:g} Hz, "
             f"amplitude {self.amplitude * 1e3:g} mm",
@@ -173,6 +171,7 @@ def sieve(
     frequency: float = 50.0,
     amplitude: float = 1e-3,  # at 50 Hz an acceleration of 10 g
     friction: float = 0.3,
+    softening: float = 300.0,
     duration: float = 0.06,  # three periods
     seed: int = 1,
 ) -> Sieve:
@@ -218,6 +217,7 @@ def sieve(
         frequency=frequency,
         amplitude=amplitude,
         friction=friction,
+        softening=softening,
         duration=duration,
         seed=seed,
     )

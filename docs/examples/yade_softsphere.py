@@ -16,8 +16,9 @@ from contactlaw.softsphere import Contacts, time_step
 
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, np.array([0.5e-3, 1e-3, 3e-3])  # [m], [m/s], [m]
 ALONG, FRICTION, UP = 3.0, 0.2, np.array([0.0, 0.0, 1.0])  # [m/s], [-], normal of the plate
+SOFTENING = 100  # divides the modulus of the contacts, for longer steps; 1 is a true contact
 model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-contacts = Contacts(model, RADIUS, THICKNESS)
+contacts = Contacts(model, RADIUS, THICKNESS, softening=SOFTENING)
 soft = O.materials.append(engine.FrictMat(young=1e-9))  # YADE's own spring is then negligible
 hard = O.materials.append(engine.FrictMat(density=model.pair.sphere.density))
 plate = O.bodies.append(utils.wall(0.0, axis=2, material=soft))
@@ -26,12 +27,12 @@ beads = [O.bodies.append(utils.sphere(at, RADIUS, material=hard)) for at in plac
 now = [O.bodies[n].state for n in beads]
 for one in now:
     one.vel = (ALONG, 0, -SPEED)
-O.dt = time_step(model, SPEED, RADIUS, THICKNESS.max())
+O.dt = time_step(model, SPEED, RADIUS, THICKNESS.max(), softening=SOFTENING)
 
 
 def push():
     """Add force and torque of the law where YADE has found a bead on the plate."""
-    overlap = np.zeros(THICKNESS.size)
+    overlap = np.array([RADIUS - one.pos[2] for one in now])  # below 0 for a gap
     for i in filter(lambda i: i.isReal, O.interactions.withBody(plate)):
         overlap[beads.index(max(i.id1, i.id2))] = i.geom.penetrationDepth
     velocity, spin = (np.array([tuple(getattr(s, k)) for s in now]) for k in ("vel", "angVel"))

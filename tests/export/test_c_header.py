@@ -575,12 +575,14 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
 
 
 SOFT = """#include "contactlaw.h"
-static double back(double speed, double restitution, double softening, double steps)
+static double back(double speed, double restitution, double softening, double steps, double slides)
 {
     contactlaw_spring spring = contactlaw_spring_of(0.9e-3, 1e-3);
     contactlaw_softened state = CONTACTLAW_APART_SOFTENED;
     const double dt = contactlaw_rebound(speed, 0.9e-3, HUGE_VAL).contact_time * pow(softening, 0.4) / steps;
-    double x = -0.3 * speed * dt, u = speed, force = 0.0;
+    const double up[3] = { 0.0, 0.0, 1.0 };
+    contactlaw_sliding sliding = CONTACTLAW_STILL;
+    double x = -0.3 * speed * dt, u = speed, force = 0.0, velocity[3] = { slides, 0.0, 0.0 };
     int n;
 
     state.overlap = x;
@@ -588,9 +590,12 @@ static double back(double speed, double restitution, double softening, double st
         u -= 0.5 * dt * force / spring.mass;
         x += dt * u;
         force = contactlaw_softened_step(&spring, softening, restitution, &state, x, dt);
+        velocity[2] = -u;
+        contactlaw_softened_friction_step(&spring, restitution, &state, &sliding, dt, up, velocity, 0.2);
+        velocity[0] += 3.5 * dt / spring.mass * sliding.force[0];
         u -= 0.5 * dt * force / spring.mass;
     }
-    return -u / speed;
+    return slides > 0.0 ? velocity[0] : -u / speed;
 }
 """
 
@@ -598,11 +603,21 @@ static double back(double speed, double restitution, double softening, double st
 def test_a_softened_contact_has_the_cor_that_it_is_given(tmp_path):
     write_header(tmp_path, "myc")
     wanted = [0.05, 0.2, 0.5, 0.9, 1.0]
-    calls = [f"back(2.0, {e}, {soft}, {steps})" for e in wanted for soft, steps in ((10.0, 20.0), (1e3, 30.0))]
-    refused = ["back(2.0, 1.5, 10.0, 20.0)", "back(2.0, 0.5, 0.5, 20.0)"]
+    calls = [f"back(2.0, {e}, {soft}, {steps}, 0.0)" for e in wanted for soft, steps in ((10.0, 20.0), (1e3, 30.0))]
+    refused = ["back(2.0, 1.5, 10.0, 20.0, 0.0)", "back(2.0, 0.5, 0.5, 20.0, 0.0)"]
     found = printed(tmp_path, *calls, *refused, more=SOFT)
     assert found[:-2] == pytest.approx(np.repeat(wanted, 2), abs=1e-12)
     assert np.isnan(found[-2:]).all()
+
+
+def test_a_softened_impact_has_the_cor_and_the_sliding_speed_of_the_solver(tmp_path):
+    write_header(tmp_path, "fem")
+    psi = np.array([0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 8.0])
+    e = "contactlaw_restitution_of(contactlaw_spring_of(0.9e-3, 1e-3), 2.0)"
+    found = printed(tmp_path, e, *(f"back(2.0, {e}, 100.0, 30.0, {0.4 * one})" for one in psi), more=SOFT)
+    hit = model_of("fem").oblique(2.0, 0.4 * psi, 0.9e-3, 1e-3, 0.2, method="solve")
+    assert found[0] == pytest.approx(hit.restitution[0], abs=2e-4)
+    assert found[1:] == pytest.approx(hit.sliding_speed, abs=0.012 * 0.4)
 
 
 def test_the_documented_c_compiles(tmp_path):

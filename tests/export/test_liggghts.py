@@ -149,10 +149,10 @@ def zplane(kind=3, tangential="contactlaw"):
     return f"fix wall all wall/gran {model} primitive type {kind} zplane 0"
 
 
-def meshes(**kinds):
+def meshes(tangential="contactlaw", **kinds):
     """Plates of these atom types; LIGGGHTS needs all meshes in one wall."""
     lines = [f"fix {name} all mesh/surface file {name}.stl type {kind}" for name, kind in kinds.items()]
-    wall = "fix wall all wall/gran model contactlaw tangential contactlaw mesh"
+    wall = f"fix wall all wall/gran model contactlaw tangential {tangential} mesh"
     return "\n".join([*lines, f"{wall} n_meshes {len(kinds)} meshes {' '.join(kinds)}"])
 
 
@@ -194,6 +194,58 @@ def test_drops_have_the_restitution_of_the_table(scene):
     assert (last["fz"][-1] == 0.0).all()
     assert np.abs(last["vz"][-1] / speed - expected.restitution).max() < 5e-4
     assert expected.restitution.min() < 0.6 < 0.84 < expected.restitution.max()
+
+
+def softening(value):
+    """Line of a script."""
+    return f"fix softening all property/global softening scalar {value}\n"
+
+
+@pytest.mark.parametrize("soft", [100, 1000])
+def test_softened_drops_have_the_restitution_of_the_solver(soft, scene):
+    """At 30 steps a contact; near an edge, too, and bead on bead."""
+    speed, thickness = np.tile((0.3, 1.0, 3.0), 4), np.repeat(THICKNESS, 3)
+    step, rng = time_step(MODEL, 3.0, RADIUS, math.inf, softening=soft), np.random.default_rng(3)
+    sheets, centres, pairs = {}, [], []
+    for n in range(4):
+        x = -0.0375 + 0.025 * n
+        scene.sheet(f"sheet{n}", (x - 0.011, -0.02), (x + 0.011, 0.02), parts=2)
+        sheets[f"sheet{n}"] = n + 2
+        centres += [(x, 0.006 * k - 0.006, RADIUS + 1e-5 * rng.random()) for k in range(3)]
+        pairs += [(x, 0.0, 0.02), (x, 2.0 * RADIUS + 1e-6, 0.02)]
+    rim = f"{softening(soft)}fix rim all property/global clampedEdge peratomtype 1 1 1e-3 1 1\n"
+    velocities = [(0, 0, -v) for v in speed] + [(0, v, 0) for v in (0.5, -0.5, 1, -1, 2, -2, 5, -5)]
+    script = scene.script(scene.beads(centres + pairs, velocities), rim + meshes("off", **sheets), step=step, every=300)
+    last = scene.run(script.replace("gran model hertz", "gran model contactlaw") + "run 300")
+    edge = {"edge": "clamped", "edge_distance": np.where(thickness == THICKNESS[1], 1e-3, math.inf)}
+    expected = MODEL.solve(speed, RADIUS, thickness, **edge).restitution
+    assert (last["fz"][-1] == 0.0).all()
+    assert np.abs(last["vz"][-1, :12] / speed - expected).max() < 2e-3
+    sphere = MODEL.pair.sphere
+    expected = cl.restitution_sphere_sphere(sphere, sphere, [1.0, 2.0, 4.0, 10.0], RADIUS, RADIUS)
+    assert last["vy"][-1, 13::2] / [0.5, 1, 2, 5] == pytest.approx(expected, abs=2e-3)
+
+
+def test_a_softened_bead_that_is_struck_has_the_cor_of_its_new_speed(scene):
+    """It comes at 0.2 m/s, and at 3 m/s from its ninth step in the contact on."""
+    step = time_step(MODEL, 3.0, RADIUS, math.inf, softening=100)
+    start = scene.beads([(0.0, 0.0, RADIUS + 0.1 * step)], (0, 0, -0.2))
+    script = scene.script(start, softening(100) + zplane(2, "off"), step=step, every=8)
+    speed = scene.run(script + "run 8\nvelocity all set 0 0 -3\nrun 200")["vz"][:, 0]
+    brought = math.sqrt(3.0**2 + 0.2**2 - speed[1] ** 2)  # with what the spring had stored before
+    assert speed[-1] / brought == pytest.approx(MODEL.restitution(3.0, RADIUS, THICKNESS[0]), abs=2e-3)
+
+
+def test_softened_beads_come_to_rest(scene):
+    """Two that fall on a plate, one that is put down and one that rolls, without creeping."""
+    centres = [(0.01 * n, 0.0, RADIUS + gap) for n, gap in enumerate((2e-5, 5e-5, -1e-7, 0.0))]
+    start, lines = scene.beads(centres, np.diag([0, 0, 0, 0.1])[:, 3:] * (1, 0, 0)), softening(1000)
+    lines += "fix down all gravity 9.81 vector 0 0 -1\n" + zplane(2, "history")
+    script = scene.script(start, lines, step=4e-6, every=5000, friction=FRICTION)
+    found = scene.run(script + "run 30000")
+    assert np.abs(found["vz"][1]).max() > 1e-3 > 1e-9 > np.abs(found["vz"][-1]).max()
+    assert found["z"][-1] == pytest.approx(found["z"][-2], abs=1e-8 * RADIUS)
+    assert found["vx"][-1] == pytest.approx([0.0, 0.0, 0.0, 0.1 / 1.4], abs=1e-4)
 
 
 def test_beads_on_each_other_have_the_restitution_of_two_spheres(scene):
@@ -280,10 +332,12 @@ def moved_in_contact(path):
     return left, came
 
 
+@pytest.mark.parametrize("soft", [1, 100])
 @pytest.mark.parametrize("wall", ["primitive", "mesh"])
-def test_ranks_runs_in_parts_and_a_restart_in_contact_change_no_digit(wall, scene):
+def test_ranks_runs_in_parts_and_a_restart_in_contact_change_no_digit(wall, soft, scene):
     own = wall == "mesh"
     start, walls = shower(scene), meshes(sheet=3) if own else zplane(tangential="history")
+    walls = softening(soft) + walls
     options = {"friction": FRICTION, "skin": 4e-5, "every": 10, "step": step_for(9.0)}
     text = scene.script(start, walls, **options)
     whole = scene.run(text + "run 400")
@@ -297,7 +351,7 @@ def test_ranks_runs_in_parts_and_a_restart_in_contact_change_no_digit(wall, scen
         others.append(scene.run(f"{text}dump ranks all custom 10 rank.% id fz\nrun 400", ranks=2))
         ranks = [moved_in_contact(scene.folder / f"rank.{k}") for k in (0, 1)]
         assert len(ranks[0][0] & ranks[1][1]) >= 3  # beads changed ranks in contact
-        plane = scene.run(scene.script(start, zplane(), **options) + "run 400")
+        plane = scene.run(scene.script(start, softening(soft) + zplane(), **options) + "run 400")
         for name in COLUMNS:  # no seam of the mesh is felt
             assert whole[name][-1] == pytest.approx(plane[name][-1], rel=1e-9), name
     # LIGGGHTS reads a sliding force off its spring again: the last digit of what friction moves
@@ -312,8 +366,8 @@ def test_ranks_runs_in_parts_and_a_restart_in_contact_change_no_digit(wall, scen
 PSI = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0])
 
 
-@pytest.mark.parametrize("tangential", ["contactlaw", "history"])
-def test_sliding_speed_is_that_of_the_integration(tangential, scene):
+@pytest.mark.parametrize(("tangential", "soft"), [("contactlaw", 1), ("contactlaw", 100), ("history", 1)])
+def test_sliding_speed_is_that_of_the_integration(tangential, soft, scene):
     """On a plate that moves; all forces act at the contact point, 50 steps a contact.
 
     LIGGGHTS's own friction is Coulomb's for a bead that slides from first touch to last, and takes
@@ -322,14 +376,14 @@ def test_sliding_speed_is_that_of_the_integration(tangential, scene):
     own = tangential == "contactlaw"
     mu, v, thickness = 0.2, 3.0, THICKNESS[1]
     psi = PSI if own else PSI[PSI >= 8.0]
-    step = float(MODEL.solve(v, RADIUS, thickness).contact_time) / 50
+    step = float(MODEL.solve(v, RADIUS, thickness).contact_time) / 50 * soft**0.4
     places = [(0.008 * n - 0.036, 0.0, RADIUS + 3.3 * v * step) for n in range(psi.size)]
     angle = np.linspace(0.0, 6.0, psi.size)
     way = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
     drift = np.array([1.5, -1.0, 0.7])
     scene.sheet(low=(-0.04, -0.04), high=(0.04, 0.04))
     walls = meshes(sheet=3).replace("tangential contactlaw", f"tangential {tangential}")
-    walls += "\nfix move_sheet all move/mesh mesh sheet linear {} {} {}".format(*drift)
+    walls = softening(soft) + walls + "\nfix move_sheet all move/mesh mesh sheet linear {} {} {}".format(*drift)
     start = scene.beads(places, (psi * mu * v)[:, None] * way - (0.0, 0.0, v) + drift)
     script = scene.script(start, walls, friction=FRICTION, step=step, every=70)
     last = {name: values[-1] for name, values in scene.run(script + "run 70").items()}
@@ -354,6 +408,9 @@ WRONG = {
     "tangential": ("contactlaw tangential contactlaw", "contactlaw tangential no_history", "Unknown normal model"),
     "option": ("tangential contactlaw primitive", "tangential contactlaw damping on primitive", "damping"),
     "edge": ("fix friction", f"{RIM}\nfix friction", "freeEdge requires values between 0 and"),
+    "softening": ("fix friction", f"{softening(0.5)}fix friction", "softening requires values between 1 and"),
+    "infinite": ("fix friction", f"{softening('inf')}fix friction", "Expected floating point parameter"),
+    "another softening": ("run 200", f"run 40\n{softening(100)}run 20", "softening: 100, but 1 as a contact began"),
     "units": ("units si", "units cgs", "Normal model contactlaw is in SI units: take units si"),
     "too thin": ("0.001 0.003", "1e-6 0.003", "plates have to be at least 0.01 radii thick"),
     "blown up": ("timestep 1e-07", "timestep 1e-11", "has the simulation blown up?"),

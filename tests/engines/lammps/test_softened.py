@@ -62,7 +62,7 @@ def test_beads_leave_as_from_the_true_impact(pair, beads):
         assert len(rows) == beads and (rows["kind"] == Kind.IMPACT).all()
         hit = model.oblique(rows["approach_speed"], rows["sliding_speed"], R, thickness, MU, method="solve")
         cor, sliding = compare(rows, hit, MU)
-        assert cor < 6e-4  # 2e-3 was asked: most of it is the 40 steps in which the true impact is carried out
+        assert cor < 1.5e-4  # most of it is the 40 steps in which the true impact is carried out
         assert sliding < 0.012  # that of eight springs, as in contacts that are not softened
         energy = 0.5 * rows["mass"] * rows["approach_speed"] ** 2
         np.testing.assert_allclose(rows["contact_time"], hit.contact_time, rtol=1e-3)
@@ -77,12 +77,13 @@ def test_beads_leave_as_from_the_true_impact(pair, beads):
         assert (rows["flags"] == hit.flags & ~friction_alone).mean() > 0.98  # an impact at a limit
 
 
-def test_no_step_and_no_softening_changes_the_cor():
-    speed = np.geomspace(0.3, 5.0, 40)
-    hit = MODEL.solve(speed, R, 1e-3)
-    for steps, softening in ((20, SOFT), (30, 10.0), (50, 1e4)):
-        rows, _, _ = thrown(MODEL, 1e-3, speed, 0.0 * speed, steps=steps, softening=softening)
-        np.testing.assert_allclose(rows["restitution"], hit.restitution, atol=2e-5)
+@pytest.mark.parametrize(("pair", "thickness"), [(PAIRS[0], 1e-3), (PAIRS[1], 0.25e-3)])  # COR 0.9; < 0.02
+def test_no_step_and_no_softening_changes_the_cor(pair, thickness):
+    model, speed = cl.ImpactModel(cl.Pair(*pair[:2]), law=pair[2], outside="solve"), np.geomspace(0.3, 5.0, 40)
+    hit = model.solve(speed, R, thickness)
+    for steps, softening in ((21, SOFT), (30, 10.0), (50, 1e4)):
+        rows, _, _ = thrown(model, thickness, speed, 0.0 * speed, steps=steps, softening=softening)
+        np.testing.assert_allclose(rows["restitution"], hit.restitution, atol=4e-5)
 
 
 def test_the_edge_of_a_plate_acts_as_in_the_true_impact():
