@@ -228,10 +228,10 @@ def resized(unit: Spring, radius: float) -> Spring:
 
 @kernel
 def curved(spring: Spring, bending: float) -> Spring:
-    """Spring of a bead on a curved wall, from R*/R, that is as of a bead of radius R* in the contact.
+    """Spring of a bead on a curved wall, where R* takes the place of its radius R, from R*/R.
 
-    K grows as sqrt(R*), d_Y as R*, so that T_H falls as R*^-0.2. The bead's mass stays, and so does
-    what the plate gives way, on which it is R that counts.
+    K grows as sqrt(R*) and d_Y as R*, so that T_H falls as R*^-0.2. The bead's mass stays, and so
+    does the mobility of the plate.
     """
     if bending == 1.0 or not bending > 0.0:
         return spring

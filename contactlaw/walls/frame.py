@@ -1,7 +1,7 @@
 """Walls as kernels read them: facets, and frames that move as one.
 
-A *facet* is a rectangle, a triangle or a round wall. A *frame* holds the facets of all walls of one motion, in
-coordinates that do not change, and a grid by which those near a sphere are found.
+A *facet* is a rectangle, a triangle or a round wall. A *frame* holds the facets of all walls of one
+motion, in coordinates that do not change, and a grid by which those near a sphere are found.
 """
 
 from __future__ import annotations

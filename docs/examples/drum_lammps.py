@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Rotation, attach, pair_coeff
+from contactlaw.engines.lammps import Cylinder, Disc, Rotation, attach, pair_coeff
 from contactlaw.softsphere import time_step
 
 SPHERES, SHEET = ("soda-lime-glass", "bearing-steel-52100"), "stainless-steel-304"
@@ -38,8 +38,8 @@ def main():
     lmp.command(f"velocity all set 0 0 {-SPEED}")
     turning = Rotation(axis=(0, 1, 0), speed=2 * math.pi * TURNS)
     ends = (0, 0, 0), (0, LENGTH, 0)
-    shell = Mesh.cylinder(*ends, DRUM, THICKNESS, facets=120, motion=turning)
-    discs = [Mesh.disc(end, (0, 1, 0), DRUM, THICKNESS, motion=turning) for end in ends]
+    shell = Cylinder(*ends, DRUM, THICKNESS, motion=turning)
+    discs = [Disc(end, (0, 1, 0), DRUM, THICKNESS, motion=turning) for end in ends]
     drum = attach(lmp, models, [shell, *discs], friction=0.3)
     lmp.command(f"run {STEPS}")
     found = drum.gather()

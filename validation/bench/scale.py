@@ -36,7 +36,8 @@ def rows() -> Iterator[Row]:
                 "fix wall/gran",
                 found["wall"] / found[name],
                 note=f"without a wall {found['bare'] / 1e3:.3g} ms; a contact {each:.2g} us; "
-                f"{found[f'{name} memory']:.0f} bytes for each bead; communication {found[f'{name} shared']:.1%}",
+                f"{found[f'{name} memory']:.0f} bytes for each bead, {found['bare memory']:.0f} without a wall; "
+                f"communication {found[f'{name} shared']:.1%}",
             )
 
 

@@ -27,6 +27,7 @@ _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
 _SOFT = 3.0  # radius in which a plate may flow, over the width of its finest part
 TYPICAL = 0.015, 100.0  # strain, and rate [1/s], at which estimates take the flow stress
+_BENT = 1.35  # [R] as far as a wall is bent; the sphere ends before
 _RIM = 0.55  # half of the distance that a pressure wave runs in a plate, and a tenth more
 
 
@@ -110,6 +111,7 @@ def impact(
     hourglass_stiffness: float | None = None,
     times: Sequence[float] = (),
     core: Core = SOLID,
+    wall: float = math.inf,
 ) -> Impact:
     """Let a sphere fall on a plate whose edge sends no wave back.
 
@@ -138,6 +140,8 @@ def impact(
         Times at which to keep all positions [s].
     core : Core, optional
         What the sphere has inside; by default it is solid.
+    wall : float, optional
+        Radius to which the plate's face is bent below the sphere [m], see `mesh.bent`.
 
     Returns
     -------
@@ -170,7 +174,8 @@ def impact(
         far=(far, 0.1, 2.0, ""),
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )
-    meshes = meshed(guess, radius, thickness, size, width, far, core)
+    above, below = meshed(guess, radius, thickness, size, width, far, core)
+    meshes = above, mesh.bent(below, wall, _BENT * radius)
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
     system = solver.assemble(meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time)

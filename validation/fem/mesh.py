@@ -135,6 +135,19 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
 
 
+def bent(plate: Mesh, wall: float, end: float) -> Mesh:
+    """Plate with a face that is part of a sphere of the radius `wall` [m], hollow if positive.
+
+    From the distance `end` from the axis on, or 0.9 radii, it is level; the lower face stays flat.
+    """
+    if wall == math.inf:
+        return plate
+    r, z = plate.nodes.T
+    height = abs(wall) - np.sqrt(wall * wall - np.minimum(r, min(end, 0.9 * abs(wall))) ** 2)
+    risen = z + math.copysign(1.0, wall) * height * (1.0 - z / z.min())
+    return plate._replace(nodes=np.column_stack((r, risen)))
+
+
 def hollow(radius: float, size: float, core: float, inside: Core, far: float = 1.0) -> Mesh:
     """Half of a hollow sphere: the mesh of a plate as long as its meridian, bent.
 
