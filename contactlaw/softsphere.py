@@ -405,7 +405,8 @@ class Contacts:
             Depth of each sphere in the undeformed plate at the end of the step [m]; 0 or less:
             apart. At most its diameter plus the `plate_displacement`.
         step : float
-            Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s.
+            Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s. While softened
+            contacts last it stays the same.
 
         Returns
         -------
@@ -434,6 +435,9 @@ class Contacts:
         if self._softening == 1.0:
             wrong = _advance_all(law, springs, self._states, deepest, overlap, step, near)
         else:
+            if step != self._step and self._force.any():
+                reason = f"must stay {self._step:g} s while softened contacts last"
+                raise ArgumentError("step", step, reason)
             soft, came, e = self._soft, self._came, self._restitution
             none = self._rows[:0]
             wrong = _soften_all(law, springs, self._softening, soft, came, e, deepest, overlap, step, near, none)
@@ -521,7 +525,7 @@ class Contacts:
         raise ArgumentError("overlap", overlap, reason, n)
 
 
-def most_softening(model: ImpactModel, speed: float, radius: float, slowest: float = 0.1) -> float:
+def most_softening(model: ImpactModel, speed: float, radius: float, slowest: float = 0.1, parcel: float = 1.0) -> float:
     """Most by which contacts may be softened at these speeds.
 
     Parameters
@@ -532,13 +536,15 @@ def most_softening(model: ImpactModel, speed: float, radius: float, slowest: flo
         Of the fastest and the slowest impact that matter [m/s].
     radius : float
         Of the largest bead [m].
+    parcel : float, optional
+        Its radius over that of the true beads for which it stands.
 
     Returns
     -------
     float
         Number by which the modulus may be divided [-], at least 1: overlaps at `speed` are below
-        2 % of the radius; and at `slowest` the weight changes the COR by less than
-        0.005 (1 - e^2)/e, because a bead leaves the wall from so far below its surface.
+        2 % of the radius; and at `slowest` the weight changes the COR by about
+        0.005 (1 - e^2)/e at most, because a bead leaves the wall from so far below its surface.
 
     Raises
     ------
@@ -556,7 +562,8 @@ def most_softening(model: ImpactModel, speed: float, radius: float, slowest: flo
     v, r, slow = (float(one[0]) for one in scalars(speed=speed, radius=radius, slowest=slowest))
     if slow > v:
         raise ArgumentError("slowest", slow, f"must be at most the fastest speed, {v:g} m/s")
-    law, spring = law_of(model), resized(unit_spring(model, 1.0), r)
+    check_softening(1.0, parcel)
+    law, spring = law_of(model), resized(unit_spring(model, 1.0), r / parcel)
     deepest = [DEEPEST * impact(law, spring, one).compression for one in (v, slow)]
     limits = DEEPEST_OVERLAP * r, _WEIGHT * slow * slow / GRAVITY
     least = min(limit / depth for limit, depth in zip(limits, deepest, strict=True))

@@ -178,6 +178,9 @@ def test_softened_contacts_have_the_rebound_of_the_integration():
     assert (abs(surface[:, 0] - hit.sliding_speed) < 0.015 * mu * v).all()
     with pytest.raises(ValueError, match="softening: got 0.9"):
         Contacts(model, r, h, softening=0.9)
+    contacts.advance(np.full(n, 1e-6), dt)
+    with pytest.raises(ValueError, match="step: got .*; must stay .* s while softened contacts last"):
+        contacts.advance(np.full(n, 1e-6), 0.5 * dt)
 
 
 @pytest.mark.parametrize("error", [4e-4, 1e-4])

@@ -264,7 +264,7 @@ def after_softened(
 ) -> SoftState:
     """State of a softened contact at the end of a step; its force is NaN for bad input."""
     if not (
-        softening >= 1.0
+        1.0 <= softening < math.inf
         and 0.0 <= restitution <= 1.0
         and -math.inf < overlap <= 2.0 * bead.radius
         and 0.0 < dt <= bead.relaxation

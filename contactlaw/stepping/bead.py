@@ -109,7 +109,7 @@ class WallContacts:
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), _MOST_CONTACTS)
-        self._warned = False
+        self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
         self.scene = WallScene(
             rows, frames, facets, scratch, impacts, status, float(friction), float(softening), float(parcel)
@@ -134,10 +134,10 @@ class WallContacts:
         return hits
 
     def warn_of_overlap(self, stacklevel: int = 2) -> None:
-        """Warn once of an impact for which the contacts are too soft."""
+        """Warn of an impact for which the contacts are too soft; again if one is twice as deep."""
         soft, found, status = self.scene.softening, DEEPEST_OVERLAP, self.scene.status[0]
-        if status["overlap"] > 1.01 * found and not self._warned:
-            self._warned, most = True, soft * (found / status["overlap"]) ** 2.5
+        if status["overlap"] > max(1.01 * found, 2.0 * self._warned):
+            self._warned, most = status["overlap"], soft * (found / status["overlap"]) ** 2.5
             warnings.warn(
                 f"softening: an impact at {status['speed']:.3g} m/s had an overlap of {status['overlap']:.1%} of the "
                 f"radius with a softening of {soft:g}; for overlaps below {found:.0%} take "

@@ -267,7 +267,7 @@ def _sharing_row(bead: Bead, k: int) -> int:
     if bead.contacts[k].disturbance == SHARING:
         for j in range(len(bead.contacts)):
             other = bead.contacts[j]
-            if j != k and other.force > 0.0 and other.disturbance == SHARING:
+            if j != k and other.force > 0.0 and other.disturbance == SHARING and other.approach_speed > 0.0:
                 return j
     return -1
 
@@ -357,10 +357,17 @@ def _end(
         to.wall_work += row.wall_work
         if len(bead.friction) > 0:
             bead.friction[contact.merged_into].work += bead.friction[k].work
+        if not to.approach_speed > 0.0:  # the bead has not arrived there: it is this impact that goes on
+            to.approach_speed, to.sliding_speed, to.arrival = row.approach_speed, row.sliding_speed, row.arrival
+            if softened:
+                of, time, force = softened_of(state_of(to)), soft.contact_time, soft.peak_force
+                plastic, wave, flags = soft.plastic_share, soft.wave_share, soft.flags
+                keep(to, Softened(of.restitution, soft.speed, time, force, plastic, wave, flags, of.stored, HELD))
         return 0.0, 0.0, 0.0
     reported, row.reported_loss = row.reported_loss, lost
     # The bead did not arrive: it was put down in contact.
-    if not (row.approach_speed > 0.0 or row.arrival == HIT_BACK):
+    put_down = not (row.approach_speed > 0.0 or row.arrival == HIT_BACK)
+    if put_down and row.disturbance != SHARING:
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
@@ -381,6 +388,10 @@ def _end(
             size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
         leaves = size * clock.dt / bead.mass - u
+    if put_down:
+        if sharing >= 0 and len(bead.friction) > 0:
+            bead.friction[sharing].work += bead.friction[k].work
+        return extra
     if size != 0.0:
         missing = 0.0
     if not touch.face and u < 0.0 and row.disturbance == ALONE:

