@@ -96,9 +96,9 @@ def bending(facet: Any, p: tuple[float, float, float], r: float) -> float:
     minus sign. At an end of the profile the curvatures are multiplied by the cosine between the
     contact's normal and the face's, so that nothing jumps where a sphere rolls around it.
     """
-    if facet.kind >= TRIANGLE:
-        return 1.0
     shape = facet.b
+    if facet.kind >= TRIANGLE or (facet.kind == SEGMENT and shape[2] == 0.0):  # flat
+        return 1.0
     rho, z, _ = in_half_plane(facet, p)
     q = on_profile(facet, rho, z)
     cosine = math.copysign(1.0, q.s)
