@@ -78,11 +78,11 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_032,
+    "contactlaw": 34_035,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
-    "contactlaw/engines": 3_700,
+    "contactlaw/engines": 3_703,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_155,
     "contactlaw/fitting": 2_044,
@@ -90,16 +90,16 @@ BUDGETS = {
     "contactlaw/physical": 3_225,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 671,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_611,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_609,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_440,
+    "contactlaw/walls": 2_442,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
     "dem_demo": 3_201,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_123,
-    "tests": 24_426,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 24_447,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -198,7 +198,7 @@ def contact_of(
     before, v = velocity(frame, frame.half_rate, point), bead.v
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
-    bent = bending(row, to_frame(frame, bead.x), bead.r / scene.parcel)
+    bent = bending(row, to_frame(frame, bead.x), bead.r, bead.r / scene.parcel)
     return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent)
 
 
@@ -593,12 +593,12 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     n, along = (touch.nx, touch.ny, touch.nz), contact.along
     u = -dot(v, n)
+    if contact.bending < 0.0:
+        report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bending)
     side = math.copysign(contact.facet + 1.0, touch.s)
     if row.facet == 0.0:
         # The overlap is at most the path of a step, which on an edge is not along the normal.
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
-        if contact.bending < 0.0:
-            report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bending)
         # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
             report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)

@@ -28,10 +28,8 @@ class Loads(NamedTuple):
 @kernel
 def bear(load: Any, frame: Any, point: Point, force: Point, power: float, dt: float) -> None:
     """Add what a wall bears in a step by the force on a bead at a point."""
-    hub, shift = frame.hub, frame.shift
+    hub = frame.hub  # of walls that do not turn the origin
     x, y, z = point[0] - hub[0], point[1] - hub[1], point[2] - hub[2]
-    if frame.moves != 0:
-        x, y, z = x - shift[0], y - shift[1], z - shift[2]
     for i in range(3):
         load.force[i] -= dt * force[i]
     load.torque[0] -= dt * (y * force[2] - z * force[1])

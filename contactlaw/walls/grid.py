@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import as_python, enable_caching, kernel
+from contactlaw._jit import as_python, enable_caching, kernel, switched_off
 from contactlaw.walls.facet import on_facet
 
 Floats = NDArray[np.float64]
@@ -70,7 +70,7 @@ class FacetGrid:
         nothing = np.empty(0, np.int32)
         # The same one for both: with another one's rounding, a list might not have room for all.
         fill_lists = _fill_lists
-        if len(facets) * counts.size < _SMALL:
+        if len(facets) * counts.size < _SMALL or switched_off():
             fill_lists, facets = as_python(_fill_lists), facets.view(np.recarray)
         fill_lists(facets, boxes, low, cell, cells, self.reach, counts, nothing)
         self.starts = np.cumsum(counts)

@@ -87,8 +87,10 @@ def on_profile(facet: Any, rho: float, z: float) -> OnProfile:
 
 
 @kernel
-def bending(facet: Any, p: tuple[float, float, float], r: float) -> float:
+def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) -> float:
     """R*/R of a sphere of radius R [m] at a facet; negative: the sphere is too large for the wall.
+
+    `size` is the radius that has to fit, which of a parcel is larger than R.
 
     On a curved facet the radii in the two principal directions are 1/(1/R + k), with k the
     curvature of the wall, negative where it is hollow. R* is their geometric mean. Inside a
@@ -110,7 +112,7 @@ def bending(facet: Any, p: tuple[float, float, float], r: float) -> float:
         around = along = cosine / shape[0]
     else:
         around, along = cosine * out / max(shape[0] + q.t * shape[1], _TIP * r), 0.0
-    if q.face and 1.0 + around * r <= 0.0 and (facet.kind == ARC or shape[1] == 0.0):
+    if q.face and 1.0 + around * size <= 0.0 and (facet.kind == ARC or shape[1] == 0.0):
         return float(1.0 / around)
     one, two = 1.0 + around * r, 1.0 + along * r
     return 1.0 / math.sqrt(min(max(one, 1.0 / _MOST), _MOST) * min(max(two, 1.0 / _MOST), _MOST))

@@ -217,7 +217,7 @@ class Sphere(Round):
         centre, radius = vector("centre", self.centre), _positive("radius", self.radius)
         angles = floats(self.polar)
         if angles.shape != (2,) or not 0.0 <= angles[0] < angles[1] <= math.pi:
-            raise ArgumentError("polar", self.polar, "expected two angles [rad] that ascend from 0 to pi")
+            raise ArgumentError("polar", self.polar, "expected two angles [rad] that ascend from 0 to at most math.pi")
         shape = np.array([radius, angles[0], 0.0])
         return Profile(ARC, centre, direction("axis", self.axis), shape, radius * float(angles[1] - angles[0]))
 
@@ -304,7 +304,7 @@ def _between(start: Vector, end: Vector, start_radius: float, end_radius: float)
     radii = number("start_radius", start_radius), number("end_radius", end_radius)
     if not height > 0.0:
         raise ArgumentError("start, end", (start, end), "must differ")
-    if not 0.0 <= min(radii) <= max(radii) <= FARTHEST:
+    if not all(0.0 <= one <= FARTHEST for one in radii):
         raise ArgumentError("start_radius, end_radius", radii, f"must be from 0 to {FARTHEST:g} [m]")
     length = math.hypot(height, radii[1] - radii[0])
     shape = np.array([radii[0], (radii[1] - radii[0]) / length, height / length])

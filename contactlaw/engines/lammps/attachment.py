@@ -366,6 +366,8 @@ class LammpsPlates:
             shared[name] = getattr(scene, name)
         fix, numbers = f"{HISTORY}_force", scene.loads.size * NUMBERS
         self._lmp.fix_external_set_vector_length(fix, numbers)
+        for n in range(numbers):  # until there is a mean; LAMMPS leaves what was in memory
+            self._lmp.fix_external_set_vector(fix, n + 1, 0.0)
         self._shown = np.zeros((3, numbers)), ctypes.create_string_buffer(fix.encode())
         shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
         shared["walls"] = scene.loads.size
@@ -560,8 +562,9 @@ class LammpsPlates:
     def loads(self) -> Loads:
         """Average what each wall has borne since the last call, or since the walls were attached.
 
-        Every rank has to call it. While LAMMPS runs, the means over the last 100 steps are in the
-        vector of ``fix contactlaw_force``, 7 numbers for each wall, in LAMMPS's units.
+        Every rank has to call it. While LAMMPS runs, the vector of ``fix contactlaw_force`` has 7
+        numbers for each wall, in LAMMPS's units: means over the steps between the last two whose
+        numbers are multiples of 100; 0 before.
 
         Raises
         ------

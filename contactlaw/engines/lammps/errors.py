@@ -48,7 +48,7 @@ _MESSAGES: dict[int, str] = {
         "timestep: at {value:.4g} m/s it flies further than its radius of {limit:.4g} m in a step, "
         "and could jump through a plate; take {quotient:.2g} s at most"
     ),
-    Trouble.TOO_WIDE: "radius: inside a round wall of {limit:.4g} m, where only smaller beads than {value:.4g} m fit",
+    Trouble.TOO_WIDE: "radius: inside a round wall of {limit:.8g} m, which a bead of {value:.8g} m does not fit into",
     Trouble.NO_FORCE: "no finite force at {value:.4g} m/s and a radius of {limit:.4g} m",
     Trouble.NO_MODEL: (
         "model: there is none for beads of its atom type {value:.0f} here; attach(lmp, "

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Cylinder, Rotation
+from contactlaw.engines.lammps import Cylinder, Plate, Rotation, Translation
 from contactlaw.softsphere import time_step
 
 R, G = box.R, 9.81
@@ -18,6 +18,7 @@ def test_a_plate_bears_the_weight_of_the_beads_on_it():
     dt = time_step(MODEL, 0.3, R, 1e-3, softening=1000.0)
     place = [(0.01, 0.02, R), (-0.03, 0.01, R)]
     lmp, walls = box.scene(MODEL, [box.flat(1e-3)], place, (0, 0, 0), gravity=G, dt=dt, softening=1000.0)
+    assert [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(7)] == [0.0] * 7
     with pytest.raises(ValueError, match="duration: got 0.0; loads are means over time: simulate some steps first"):
         walls.loads()
     lmp.command(f"run {math.ceil(0.5 / dt / 100) * 100}")
@@ -32,6 +33,16 @@ def test_a_plate_bears_the_weight_of_the_beads_on_it():
     walls.detach()
     with pytest.raises(RuntimeError, match="loads: the walls were detached"):
         walls.loads()
+
+
+def test_the_torque_on_a_belt_is_about_the_origin():
+    dt, belt = time_step(MODEL, 0.3, R, 1e-3, softening=1000.0), Translation((10.0, 0, 0))
+    wall = Plate((-5, -0.05, 0), (10, 0, 0), (0, 0.1, 0), 1e-3, motion=belt)
+    lmp, walls = box.scene(MODEL, [wall], (0.01, 0, R), (0, 0, 0), gravity=G, dt=dt, softening=1000.0)
+    lmp.command(f"run {round(0.4 / dt)}")
+    walls.loads()
+    lmp.command("run 1000")
+    assert walls.loads().torque[0, 1] == pytest.approx(0.01 * box.MASS * G, rel=1e-6)
 
 
 @pytest.mark.parametrize("softening", [1.0, 100.0])

@@ -140,8 +140,17 @@ def test_a_softened_contact_has_the_rebound_of_the_true_one():
 
 def test_a_bead_larger_than_its_drum_is_refused():
     lmp, _ = scene(MYC, [Cylinder((0, -0.02, 0), (0, 0.02, 0), 0.8 * R, 1e-3)], (1e-5, 0, 0))
-    with pytest.raises(RuntimeError, match="radius: inside a round wall of 0.00072 m, where only smaller beads"):
+    with pytest.raises(
+        RuntimeError, match="radius: inside a round wall of 0.00072 m, which a bead of 0.0009 m does not"
+    ):
         lmp.command("run 100")
+    pipe = Cylinder((0, 0, -0.01), (0, 0, 0), 0.995 * R, 1e-3)
+    lmp, _ = scene(MYC, [pipe], (3e-6, 0, R), dt=1e-7)  # it gets in over the rim
+    with pytest.raises(RuntimeError, match="radius: inside a round wall of 0.0008955 m"):
+        lmp.command("run 6000")
+    parcels, _ = scene(MYC, [Cylinder((0, -0.02, 0), (0, 0.02, 0), 0.999999 * R, 1e-3)], (1e-9, 0, 0), parcel=3.0)
+    with pytest.raises(RuntimeError, match="radius: inside a round wall of 0.0008999991 m"):
+        parcels.command("run 100")
     beside = Cylinder((0, -0.02, -0.8 * R), (0, 0.02, -0.8 * R), 0.8 * R, 1e-3)
     assert len(dropped(MYC, [beside], (0, 0, R + 1e-5))[0]) == 1  # but it may hit it from outside
 
