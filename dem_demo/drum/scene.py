@@ -14,10 +14,9 @@ from contactlaw import ArgumentError
 from dem_demo.kit.scene import GRAVITY, Bed, Corners, Facts, Floats, check
 
 if TYPE_CHECKING:
-    from contactlaw.walls import Mesh
+    from contactlaw.walls import Cylinder, Disc
     from dem_demo.kit.run import Run
 
-_FACETS = 120  # facets around the shell
 _SPACING = 2.2  # [largest radius], distance of lattice sites: no two beads touch at the start
 _FULL = 0.4  # [drum's radius], height of the highest lattice sites over the axis
 _AROUND = 0.01  # [m], room around the drum in the simulation box
@@ -62,18 +61,18 @@ class Drum(Bed):
         side = self.drum + _AROUND
         return (-side, -_AROUND, -side), (side, self.length + _AROUND, side)
 
-    def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
+    def meshes(self, thickness: float, folder: Path) -> list[Cylinder | Disc]:
         """Make the shell and the two ends.
 
         At a seam of shell and end neither plate can move, and each holds the other against turning:
         their edges lie halfway between supported and clamped ones.
         """
-        from contactlaw.walls import Mesh, Rotation
+        from contactlaw.walls import Cylinder, Disc, Rotation
 
         motion = Rotation(axis=(0, 1, 0), speed=self.spin)
         ends = (0.0, 0.0, 0.0), (0.0, self.length, 0.0)
-        shell = Mesh.cylinder(*ends, self.drum, thickness, facets=_FACETS, motion=motion, edges="supported")
-        discs = [Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion, edges="supported") for end in ends]
+        shell = Cylinder(*ends, self.drum, thickness, motion=motion, edges="supported")
+        discs = [Disc(end, (0, 1, 0), self.drum, thickness, motion=motion, edges="supported") for end in ends]
         return [shell, *discs]
 
     @property

@@ -16,7 +16,7 @@ from contactlaw import ArgumentError
 
 if TYPE_CHECKING:
     from contactlaw import Material
-    from contactlaw.walls import Mesh
+    from contactlaw.walls import Cylinder, Disc, Mesh
     from dem_demo.kit.run import Run
 
 Floats = NDArray[np.float64]
@@ -122,7 +122,7 @@ class Bed(Scene):
         """Lower and upper corner [m] of the space in which beads are followed."""
 
     @abstractmethod
-    def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
+    def meshes(self, thickness: float, folder: Path) -> Sequence[Mesh | Cylinder | Disc]:
         """Make the moving walls, of a thickness [m], from the mesh files in a folder if any."""
 
     def write_files(self, folder: Path) -> None:
