@@ -59,8 +59,7 @@ def test_impacts_lie_on_the_walls(runs):
         assert rows.size > 8
         away = np.hypot(rows["x"], rows["z"])
         shell = rows["plate"] == 0
-        # the shell is a polygon of 120 sides
-        assert away[shell] == pytest.approx(scene.drum, rel=1.1 * (1 - np.cos(np.pi / 120)))
+        assert away[shell] == pytest.approx(scene.drum, rel=1e-9)
         ends = np.where(rows["plate"] == 1, 0.0, scene.length)
         assert rows["y"][~shell] == pytest.approx(ends[~shell], abs=1e-5)
 
@@ -74,7 +73,9 @@ def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
     shell = np.minimum(rows["y"], law.scene.length - rows["y"])
     seam = np.where(rows["plate"] == 0, shell, law.scene.drum - np.hypot(rows["x"], rows["z"]))
     expected = model.restitution(*sizes, edge="supported", edge_distance=seam)
-    assert rows["restitution"] == pytest.approx(expected, abs=1e-3)
+    # In the hollow shell R* is 2 to 3 % larger than on a plate, and the COR lower by up to 1.5e-3.
+    less = expected - rows["restitution"]
+    assert np.all((less > -1e-3) & (less < np.where(rows["plate"] == 0, 2e-3, 1e-3)))
     assert np.abs(expected - model.restitution(*sizes)).max() > 5e-3
     rows = constant.contacts[constant.scene.on_faces(constant.contacts)]
     assert rows["restitution"] == pytest.approx(constant.making.constant_cor, abs=1e-3)
