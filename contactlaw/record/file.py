@@ -366,7 +366,7 @@ def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
     """Put the rows of two records of one run together."""
     if one.rows.dtype != two.rows.dtype:
         raise ValueError(f"{path}: has other columns than the file before it")
-    if bool(one.bodies) != bool(two.bodies):
+    if one.rows.size and two.rows.size and bool(one.bodies) != bool(two.bodies):
         raise ValueError(f"{path}: one of the files knows the materials, the other does not")
     surface = one.surface
     if (surface is None) != (two.surface is None):

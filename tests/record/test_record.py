@@ -105,7 +105,8 @@ def test_several_files_of_a_run_are_one(run, tmp_path):
     order = np.lexsort((whole.rows["bead"], whole.rows["time"]))
     whole.part(order[4:]).save(first)
     whole.part(order[:5]).save(second)
-    for paths in ((first, second), (second, first)):
+    dataclasses.replace(whole.part(order[:0]), bodies=[]).save(nothing := tmp_path / "0.h5")  # nothing has hit yet
+    for paths in ((first, second), (second, first, nothing), (nothing, first, second)):
         found = cl.read_record(*paths)
         assert found.rows.tolist() == whole.rows[order].tolist()
         bodies = [whole.bodies[n] for n in whole.which[order]]
