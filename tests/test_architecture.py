@@ -78,7 +78,7 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_035,
+    "contactlaw": 34_036,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_225,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 671,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_609,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_610,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_442,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
@@ -98,7 +98,7 @@ BUDGETS = {
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
-    "validation": 14_123,
+    "validation": 14_124,
     "tests": 24_449,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 STEPS = 40  # of an elastic contact: the COR is within 1e-4 of smaller steps
 # [contact times of an elastic bead]; of plates so thin that it takes longer the COR is below 1e-4,
-# and the contact time and the sliding speed are those of an impact that is cut off
+# and the contact time is that of an impact that is cut off
 LONGEST = 200
 
 

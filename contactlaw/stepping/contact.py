@@ -727,10 +727,11 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending), state_of(row)
             h = clock.dt if clock.advancing else 0.0
             if scene.softening > 1.0:
+                soft = softened_of(state)
                 drag = tangential_push(
                     bead.friction[k],
-                    softened_of(state).lasting,
-                    softened_of(state).restitution,
+                    soft.lasting,
+                    soft.restitution,
                     scene.friction,
                     plate_row.tangential,
                     touch.x,

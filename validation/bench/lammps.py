@@ -30,7 +30,6 @@ OVERLAP = 1e-7  # [m] of the lowest layer and the wall
 STEPS, ROUNDS = 50, 15
 SOFTENINGS = ("", 1.0), (" softened", 1000.0)
 FRICTIONS = ("frictionless", 0.0), ("sliding", 0.2)
-OWN_WALL = "granular hertz/material {modulus} 0.9 0.21 tangential linear_nohistory 0 0 damping coeff_restitution"
 
 
 def rows() -> Iterator[Row]:
@@ -75,6 +74,12 @@ def rows() -> Iterator[Row]:
 def paper() -> cl.ImpactModel:
     """Model of the paper's pair."""
     return cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+
+
+def own_wall(tangential: str = "linear_nohistory 0 0") -> str:
+    """Contact model of LAMMPS's own walls, by default without friction."""
+    modulus = paper().pair.sphere.youngs_modulus
+    return f"granular hertz/material {modulus} 0.9 0.21 tangential {tangential} damping coeff_restitution"
 
 
 def box(width: float, low: float, high: float, places: np.ndarray) -> lammps:
@@ -181,8 +186,7 @@ def main(beads: int) -> dict[str, float]:
     """Time the simulations on this rank."""
     plate = [floor(width(beads))]
     simulations = {name: falling(beads) for name in ("none", "wall", "plate")}
-    modulus = paper().pair.sphere.youngs_modulus
-    simulations["wall"].command(f"fix wall all wall/gran {OWN_WALL.format(modulus=modulus)} zplane 0 NULL")
+    simulations["wall"].command(f"fix wall all wall/gran {own_wall()} zplane 0 NULL")
     walls = attach(simulations["plate"], paper(), plate)
     found = times(simulations, 1000)  # so that some beads are in contact
     impacts = walls.gather()

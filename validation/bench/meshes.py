@@ -16,7 +16,7 @@ import numpy as np
 from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from validation.bench import lammps as plane
-from validation.bench.lammps import BEADS, LAYERS, OWN_WALL, RADIUS, THICKNESS
+from validation.bench.lammps import BEADS, LAYERS, RADIUS, THICKNESS
 from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
@@ -145,10 +145,9 @@ def drums(beads: int) -> dict[str, float]:
     x, z = 0.5 * _LENGTH, 1.1 * _DRUM
     ends = (x, 0.0, z), (x, _LENGTH, z)
     simulations = {"none": barrel(beads), "own": barrel(beads)}
-    modulus = plane.paper().pair.sphere.youngs_modulus
     simulations["own"].commands_string(
         f"region drum cylinder y {x} {z} {_DRUM} 0 {_LENGTH} units box\n"
-        f"fix wall all wall/gran/region {OWN_WALL.format(modulus=modulus)} region drum"
+        f"fix wall all wall/gran/region {plane.own_wall()} region drum"
     )
     turning = Rotation((0, 1, 0), 1.0, ends[0])
     for facets, motion in ((72, None), (5000, None), (72, turning)):

@@ -12,7 +12,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from contactlaw.engines.lammps import attach
-from validation.bench.lammps import OWN_WALL, floor, paper, pressed, printed, times, touching, width
+from validation.bench.lammps import floor, own_wall, paper, pressed, printed, times, touching, width
 from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
@@ -64,9 +64,7 @@ def main(beads: int) -> dict[str, float]:
     for name in ("bare", "wall", *SOFTENINGS):
         lmp = simulations[name] = pressed(beads)
         if name == "wall":
-            own = OWN_WALL.format(modulus=paper().pair.sphere.youngs_modulus)
-            own = own.replace("linear_nohistory 0 0", f"mindlin NULL 1 {FRICTION}")
-            lmp.command(f"fix wall all wall/gran {own} zplane 0 NULL")
+            lmp.command(f"fix wall all wall/gran {own_wall(f'mindlin NULL 1 {FRICTION}')} zplane 0 NULL")
         elif name in SOFTENINGS:
             attach(lmp, paper(), [floor(width(beads))], friction=FRICTION, softening=SOFTENINGS[name])
         lmp.command("run 10 post no")

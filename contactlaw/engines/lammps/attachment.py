@@ -333,6 +333,7 @@ class LammpsPlates:
         self._check_memory(columns)
         self._shared = self._share(columns)
         self._register()
+        self._shared["since"] = self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
 
     def _share(self, columns: int) -> NDArray[np.void]:
@@ -374,7 +375,6 @@ class LammpsPlates:
         shared["places"], shared["columns"] = self._contacts.places, columns
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
         self._set_clock(shared)
-        shared["since"] = shared["base"] + shared["ticks"] * shared["tick"]
         return shared
 
     def _set_clock(self, shared: NDArray[np.void]) -> None:
