@@ -18,7 +18,8 @@ class Kind(enum.IntEnum):
     STRUCK = 3  # something else struck it, or pressed on it, while it was in contact; or the plate
     # came back from its edge and gave it more energy than it took; it may leave faster than it came
     RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
-    IN_CLUMP = 5  # it is a part of a rigid body; the wall answered it as if it flew alone
+    IN_CLUMP = 5  # it is a part of a rigid body of unknown mass; it was answered as if it flew alone
+    OF_BODY = 6  # an impact of a rigid body, of which the bead is a part
 
 
 def only_impacts(kinds: NDArray[Any]) -> tuple[Mask, str]:
@@ -39,7 +40,7 @@ def only_impacts(kinds: NDArray[Any]) -> tuple[Mask, str]:
     >>> only_impacts(np.array([0, 2, 0, 4, 2]))[1]
     '3 of 5 rows are no impacts and left out: 2 over edge, 1 resting'
     """
-    found = kinds == Kind.IMPACT
+    found = np.isin(kinds, (Kind.IMPACT, Kind.OF_BODY))
     names = {kind.value: kind.name.lower().replace("_", " ") for kind in Kind}
     others, counts = np.unique(kinds[~found], return_counts=True)
     listed = (f"{n} {names.get(kind, 'unknown')}" for kind, n in zip(others, counts, strict=True))

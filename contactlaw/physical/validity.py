@@ -110,7 +110,11 @@ class Validity(enum.IntFlag):
     """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
 
-    ACCURACY = 130559
+    COUPLED = 131072
+    """In a simulation: friction has changed the normal motion of a rigid body by more than 2 % of the
+    energy of its approach. The COR is that of the motion, and not of the contact."""
+
+    ACCURACY = 261631
     """All limits of accuracy."""
 
 
@@ -197,6 +201,10 @@ _WORDS = {
         "a wall so round beside the bead that R* differs by more than 16 %",
         "take the values for estimates, the COR is up to 0.06 too high where the wall is hollow, 0.04 "
         "too low where it bulges",
+    ),
+    Validity.COUPLED: (
+        "a rigid body whose normal motion friction has changed",
+        "take the energies, which hold; the COR is not that of the contact",
     ),
 }
 

@@ -206,7 +206,7 @@ def _index_in_list(found: Any, count: int, facet: int) -> int:
 
 
 @kernel
-def _contact_with(scene: WallScene, bead: Bead, n: int, touching: bool) -> Contact:
+def _contact_with(scene: WallScene, bead: Bead, body: Any, n: int, touching: bool) -> Contact:
     """Contact with facet n of the list, without the force that it shares with another one.
 
     Hertz's force is proportional to the overlap to the power 1.5, so the shared part is
@@ -219,7 +219,7 @@ def _contact_with(scene: WallScene, bead: Bead, n: int, touching: bool) -> Conta
         share *= math.sqrt(share)
         less = pass_gradient(scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other])
         along = along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
-    return contact_of(scene, bead, row.facet, touch_of(row), along, touching, -1)
+    return contact_of(scene, bead, body, row.facet, touch_of(row), along, touching, -1)
 
 
 @kernel
@@ -272,7 +272,7 @@ def _move_contacts(scene: WallScene, clock: Clock, bead: Bead, count: int) -> No
 
 
 @kernel
-def _end_contact(scene: WallScene, clock: Clock, bead: Bead, k: int, count: int) -> None:
+def _end_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, k: int, count: int) -> None:
     """End a contact whose facet the bead has left, or whose surface has another contact now."""
     facet = _facet_of(bead.contacts[k])
     one, n, merged_into = scene.facets[facet], _index_in_list(scene.found, count, facet), -1
@@ -284,7 +284,7 @@ def _end_contact(scene: WallScene, clock: Clock, bead: Bead, k: int, count: int)
     t = touch_in_space(scene.frames[one.frame], one, bead.x, bead.r)
     if t.x > -bead.r:  # else something has moved the bead far away between two steps
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
-        contact = contact_of(scene, bead, facet, t, (t.nx, t.ny, t.nz), True, merged_into)
+        contact = contact_of(scene, bead, body, facet, t, (t.nx, t.ny, t.nz), True, merged_into)
         apply_contact(scene, clock, bead, contact, k)
     else:
         clear_contact(bead, k)
@@ -302,7 +302,7 @@ def _deepest_new(found: Any, count: int, bead: Bead) -> int:
 
 
 @kernel
-def _begin_all(scene: WallScene, clock: Clock, bead: Bead, count: int, touching: bool) -> None:
+def _begin_all(scene: WallScene, clock: Clock, bead: Bead, body: Any, count: int, touching: bool) -> None:
     """Begin contacts, the deepest first; if no row is empty, a shallower contact is replaced.
 
     The two overlaps are nearly equal when one replaces the other, so the force does not jump.
@@ -323,9 +323,9 @@ def _begin_all(scene: WallScene, clock: Clock, bead: Bead, count: int, touching:
             if not found[new].x > least:
                 scene.status[0].left_out += 1
                 return
-            _end_contact(scene, clock, bead, at, count)
+            _end_contact(scene, clock, bead, body, at, count)
             clear_contact(bead, at)
-        apply_contact(scene, clock, bead, _contact_with(scene, bead, new, touching), at)
+        apply_contact(scene, clock, bead, _contact_with(scene, bead, body, new, touching), at)
         if found[new].shared > 0.0:
             bead.contacts[at].disturbance = SHARING
 
@@ -352,7 +352,7 @@ def _disturbance_of(bead: Bead) -> float:
 
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
 @kernel(inline=True)
-def _interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
+def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
     """As `interact`."""
     if not 0 <= bead.kind < len(scene.plate_rows):
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
@@ -374,14 +374,17 @@ def _interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
         n = _index_in_list(found, count, _facet_of(row))
         if n >= 0 and found[n].representative == n:
             row.disturbance = max(row.disturbance, disturbance)
-            apply_contact(scene, clock, bead, _contact_with(scene, bead, n, touching), k)
+            apply_contact(scene, clock, bead, _contact_with(scene, bead, body, n, touching), k)
         elif clock.advancing or row.extra_force != 0.0:
-            _end_contact(scene, clock, bead, k, count)
+            _end_contact(scene, clock, bead, body, k, count)
     if clock.advancing:
-        _begin_all(scene, clock, bead, count, touching)
+        _begin_all(scene, clock, bead, body, count, touching)
 
 
 @kernel(cache=True, inline=True)
-def interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
-    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``."""
-    _interact(scene, clock, bead)
+def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = None) -> None:
+    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``.
+
+    Of a bead that is a part of a rigid body, `body` is a row of `contactlaw.stepping.rigid.BODY`.
+    """
+    _interact(scene, clock, bead, body)

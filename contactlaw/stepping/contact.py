@@ -20,14 +20,15 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.scaling import wave_rate
-from contactlaw.physical.validity import curved_flags, edge_flags, flags_of
+from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.loads import bear
-from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
+from contactlaw.stepping.rigid import answer
+from contactlaw.stepping.plate_rows import SOLID, limits_of, solid_mass, spring_of
 from contactlaw.stepping.softened import (
     BOUNCING,
     DAMPED,
@@ -86,6 +87,7 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 # A bead arrives FREE on a surface or ON_EDGE of it, or SLIDING while another wall presses on it; or
 # it was leaving and is HIT_BACK by a plate that returns from its edge.
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
+_COUPLED = int(Validity.COUPLED)
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
@@ -186,11 +188,20 @@ class Contact(NamedTuple):
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
     bending: float  # R*/R; negative: radius of a round wall that the bead is too large for [m]
+    mass: float  # that answers at the contact [kg]
+    answer: Point  # of a rigid body, as in `contactlaw.stepping.rigid`; zero of a free bead [1/kg]
 
 
 @kernel
 def contact_of(
-    scene: WallScene, bead: Bead, facet: int, touch: Touch, along: Point, touching: bool, merged_into: int
+    scene: WallScene,
+    bead: Bead,
+    body: Any,
+    facet: int,
+    touch: Touch,
+    along: Point,
+    touching: bool,
+    merged_into: int,
 ) -> Contact:
     """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
@@ -199,7 +210,14 @@ def contact_of(
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
     bent = bending(row, to_frame(frame, bead.x), bead.r, bead.r / scene.parcel)
-    return Contact(facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent)
+    n = touch.nx, touch.ny, touch.nz
+    answers = answer(body, n, bead.r - touch.x)
+    per = dot(answers, n)
+    mass = 1.0 / per if per > 0.0 else bead.mass
+    one, wall = facet, row.wall
+    return Contact(
+        one, row.plate_row, wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent, mass, answers
+    )
 
 
 @kernel
@@ -209,6 +227,12 @@ def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, 
     if status.trouble == 0:
         status.trouble, status.wall, status.value, status.limit = code, wall, value, limit
     status.worst = max(status.worst, code)
+
+
+@kernel
+def _of_body(contact: Contact) -> bool:
+    """Whether the bead is a part of a rigid body."""
+    return dot(contact.answer, contact.answer) > 0.0
 
 
 @kernel
@@ -251,8 +275,9 @@ def _begin(
     for j in range(len(bead.contacts) if contact.touching else 0):
         if j != k and bead.contacts[j].force > 0.0:
             row.arrival = SLIDING
-    if not abs(bead.mass - spring.mass) <= SOLID * spring.mass:
-        report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
+    solid = solid_mass(plate_row, bead.r)
+    if not (_of_body(contact) or abs(bead.mass - solid) <= SOLID * solid):
+        report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, solid)
     if u > 0.0:
         _check_step(law, scene, clock, contact, spring, u)
         lam = impact(law, spring, u).inelasticity
@@ -312,12 +337,13 @@ def _kind_of(scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: flo
     if row.duration > long:
         return Kind.RESTING.value
     # Another contact shared the force, or the losses do not explain the speed: others did work.
-    came = 0.5 * bead.mass * row.approach_speed * row.approach_speed
-    others = lost + 0.5 * bead.mass * leaves * abs(leaves) - came
-    faster = leaves > (1.0 + _ROUNDING) * row.approach_speed
+    came = 0.5 * contact.mass * row.approach_speed * row.approach_speed
+    others = lost + 0.5 * contact.mass * leaves * abs(leaves) - came
+    # Friction may make a point of a body leave faster.
+    faster = leaves > (1.0 + _ROUNDING) * row.approach_speed and not _of_body(contact)
     if row.disturbance == SHARING or faster or not abs(others) <= _WORK * came:
         return Kind.STRUCK.value
-    return Kind.IMPACT.value
+    return Kind.OF_BODY.value if _of_body(contact) else Kind.IMPACT.value
 
 
 @kernel
@@ -379,17 +405,17 @@ def _end(
         missing = 0.0
     elif softened and soft.lasting == DAMPED:
         damped, missing = missing, 0.0
-    elif row.disturbance != ALONE:
+    elif row.disturbance != ALONE and not _of_body(contact):
         more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
         size = more * bead.mass / clock.dt
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
         if softened:
-            size = settling_kick(missing, bead.mass, u, row.approach_speed, clock.dt)
+            size = settling_kick(missing, contact.mass, u, row.approach_speed, clock.dt)
         else:
-            size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
+            size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
-        leaves = size * clock.dt / bead.mass - u
+        leaves = size * clock.dt / contact.mass - u
     if put_down:
         if sharing >= 0 and len(bead.friction) > 0:
             bead.friction[sharing].work += bead.friction[k].work
@@ -429,14 +455,19 @@ def _end(
     record.plastic_energy, record.wave_energy = plastic, wave
     record.scheme_energy = missing  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
-    record.radius, record.mass, record.thickness = bead.r / scene.parcel, bead.mass, plate_row.thickness
+    record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
     record.parcel = scene.parcel
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
+    bent = curved_flags(contact.bending)
+    if _of_body(contact) and len(bead.friction) > 0:
+        total -= bead.friction[k].coupled
+        if abs(bead.friction[k].coupled) > _WORK * 0.5 * contact.mass * row.approach_speed * row.approach_speed:
+            bent |= _COUPLED
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
     if softened:
-        record.flags = int(soft.flags) | curved_flags(contact.bending)
+        record.flags = int(soft.flags) | bent
         return extra
     r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
     time, force = record.contact_time, record.peak_force
@@ -447,7 +478,7 @@ def _end(
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
     record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
-    record.flags |= curved_flags(contact.bending)
+    record.flags |= bent
     return extra
 
 
@@ -606,7 +637,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
-    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending)
+    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass)
     last, softened = state_of(row), scene.softening > 1.0
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
@@ -671,7 +702,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
 @kernel
 def _complete(record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point) -> None:
     """Complete a row of the record with what follows from the forces of the contact's last step."""
-    push, v, omega, per = bead.contacts[k].push, contact.v, bead.omega, clock.dt / bead.mass
+    push, v, omega = bead.contacts[k].push, contact.v, bead.omega
+    per = 0.0 if _of_body(contact) else clock.dt / bead.mass  # of a body it is small, and left out
     turn = per / (0.4 * bead.r * bead.r)  # of a solid sphere
     x, y, z = v[0] + per * push[0], v[1] + per * push[1], v[2] + per * push[2]
     v = x + per * drag[0], y + per * drag[1], z + per * drag[2]
@@ -724,7 +756,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
-            spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending), state_of(row)
+            spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass), state_of(row)
             h = clock.dt if clock.advancing else 0.0
             if scene.softening > 1.0:
                 soft = softened_of(state)
@@ -765,6 +797,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
                 -bead.r * (n[0] * drag[1] - n[1] * drag[0]),
             )
             if clock.advancing:
+                bead.friction[k].coupled += clock.dt * contact.mass * dot(contact.v, n) * dot(contact.answer, drag)
                 slip = surface_velocity(bead.v, bead.omega, bead.r, n)
                 bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
         both = row.push[0] + drag[0], row.push[1] + drag[1], row.push[2] + drag[2]

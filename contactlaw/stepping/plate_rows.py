@@ -110,8 +110,8 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
 
 
 @kernel
-def spring_of(row: Any, r: float, parcel: float, bending: float) -> Spring:
-    """Spring of a bead of this radius [m] on the plate of a row, which is bent: R*/R.
+def spring_of(row: Any, r: float, parcel: float, bending: float, mass: float) -> Spring:
+    """Spring of a bead of this radius [m] and mass [kg] on the plate of a row, which is bent: R*/R.
 
     A parcel stands for so many beads that are smaller by the factor `parcel`: at the same overlap
     it has their mass, their force, and a plate that gives way as under one of them.
@@ -141,7 +141,7 @@ def spring_of(row: Any, r: float, parcel: float, bending: float) -> Spring:
     unit = Spring(row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio, plate)
     one, many = curved(resized(unit, r / parcel), bending), parcel * parcel * parcel
     return Spring(
-        one.mass * many,
+        mass,
         one.solid * many,
         one.stiffness * many,
         one.mobility / many,

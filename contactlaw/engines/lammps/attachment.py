@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
+from contactlaw.engines.lammps.bodies import COLUMN, Bodies
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, SOFTENING, WIDTH
@@ -300,8 +301,10 @@ class LammpsPlates:
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
-        self._check_masses()
+        units = _UNITS[lmp.extract_global("units")]
+        self._bodies = Bodies(lmp, (units[0], units[2]))
         self._look_at_fixes()
+        self._check_masses()
         try:
             self._install()
         except BaseException:
@@ -317,8 +320,9 @@ class LammpsPlates:
         rows = self._contacts.scene.plate_rows[_beads(self._lmp, "type") - 1, 0]
         mass, radius = unit * _beads(self._lmp, "rmass"), length * _beads(self._lmp, "radius")
         solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
-        wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
         step, bead = self._lmp.extract_global("ntimestep"), _beads(self._lmp, "id")
+        free = ~np.isin(bead, self._clumped())  # parts of bodies may have any mass
+        wrong = np.flatnonzero(free & (np.abs(mass - solid) > SOLID * solid))[:1]
         said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
         for found in filter(None, self._comm.allgather(said)):
             raise ValueError(found[0])
@@ -343,7 +347,7 @@ class LammpsPlates:
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
         names = {name: name for name in "v f radius rmass type omega torque elapsed".split()}
-        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}"}
+        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}"}
         self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
         shared = np.zeros(1, SHARED)
         shared["lammps"] = handle
@@ -373,6 +377,7 @@ class LammpsPlates:
         shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
         shared["walls"] = scene.loads.size
         shared["places"], shared["columns"] = self._contacts.places, columns
+        shared["look"] = self._bodies.look
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
         self._set_clock(shared)
         return shared
@@ -438,6 +443,8 @@ class LammpsPlates:
     def _after_command(self, calls: int, lammps_error: Exception | None = None) -> None:
         """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
         self._look_at_fixes()
+        self._shared["look"] = self._bodies.look
+        self._bodies.check()
         if self._shared["calls"][0] != calls:
             self._after_steps(lammps_error)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
@@ -459,6 +466,8 @@ class LammpsPlates:
             return
         self._fixes = fixes
         found = commands.fixes(self._lmp)
+        self._bodies.follow(self._comm.bcast([name for name, style, _ in found if style.endswith("/small")]))
+        self._fixes = self._lmp.available_ids("fix")
         self._rigid = [group for _, style, group in found if style.startswith("rigid")]
         for name, style, _ in found:
             if style.startswith("wall/gran") and name not in self._warned:
@@ -494,13 +503,13 @@ class LammpsPlates:
             ) from lammps_error
 
     def _clumped(self) -> NDArray[np.int64]:
-        """IDs of the beads that are parts of rigid bodies, of all ranks; all ranks call it."""
+        """IDs of the beads of rigid bodies that are not known, of all ranks; all ranks call it."""
         run, name, found = type(self._lmp).command, f"{HISTORY}_clumped", [np.zeros(0, int)]
         for group in self._comm.bcast(self._rigid):
             run(self._lmp, f"variable {name} atom gmask({group})")
-            inside = np.array(self._lmp.extract_variable(name, "all", 1) or [])
+            inside, known = np.array(self._lmp.extract_variable(name, "all", 1) or []) > 0.0, self._bodies.rows
             run(self._lmp, f"variable {name} delete")
-            found.append(_beads(self._lmp, "id")[inside > 0.0])
+            found.append(_beads(self._lmp, "id")[inside if known is None else inside & (known[:, 0] == 0.0)])
         return np.concatenate(self._comm.allgather(np.concatenate(found)))
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
@@ -653,4 +662,5 @@ class LammpsPlates:
             vars(self._lmp).pop(name, None)
         vars(self._lmp).update(self._replaced)
         if self._lmp.lmp is not None:  # not closed
+            self._bodies.forget()
             _remove(self._lmp)

@@ -29,6 +29,7 @@ from contactlaw.engines.lammps.memory import (
     TOO_FAST,
     WIDTH,
     extract,
+    look,
     mark_error,
     matrix_at,
     record_error,
@@ -43,6 +44,7 @@ from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import PLATE_ROW, SOLID, solid_mass
+from contactlaw.stepping.rigid import BODY, turn
 from contactlaw.walls.facet import FACET
 from contactlaw.walls.frame import FRAME
 from contactlaw.walls.grid import MARGIN
@@ -51,6 +53,7 @@ from contactlaw.walls.motion import move
 from contactlaw.walls.surface import OVERLAP, ROOM, box, near
 
 _SAME = 1e-6  # largest relative change of a radius or a mass that counts as rounding
+_BODY = BODY.itemsize // 8
 _EVERY = 100  # steps between looks at all beads, which happen in the first step of a run, too
 
 _pointer: Any = types.CPointer
@@ -83,6 +86,7 @@ def _look_at_all(
     kind: Any,
     history: Any,
     last: Any,
+    bodies: Any,
 ) -> None:
     """Report beads that could jump through a wall in one step, or of another radius or density.
 
@@ -104,7 +108,8 @@ def _look_at_all(
             # `_check_sphere` misses a bead that has become so small that no wall is near it.
             mark_error(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
-        if head.owner != tags[i] or head.radius == 0.0:  # `_check_sphere` has the others
+        known = len(bodies) > 0 and bodies[i, 0] != 0.0  # a part of a body may have any mass
+        if not known and (head.owner != tags[i] or head.radius == 0.0):  # `_check_sphere` has the others
             solid = solid_mass(scene.plate_rows[kind[i] - 1, 0], size)
             if abs(shared.mass * mass[i] - solid) > SOLID * solid:
                 code = Trouble.WRONG_MASS.value
@@ -193,6 +198,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if advancing and step % _EVERY == 0:  # on all ranks, also without beads
         show(shared, scene.loads, shared.base + shared.ticks * shared.tick)
     _tick(shared, clock, scene.frames)
+    if shared.look != 0 and (step % _EVERY == 0 or not advancing):  # on all ranks, too
+        look(shared)
     history_address = extract(shared, shared.history)
     if n == 0 or history_address == 0:  # 0: a command has removed the fix of the history
         return
@@ -207,8 +214,15 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if shared.friction > 0.0:
         torque = matrix_at(extract(shared, shared.torque), n, 3)
         sliding = shared.places
+    bodies, count = v, 0
+    if shared.look != 0:
+        bodies, count = matrix_at(extract(shared, shared.body), n, _BODY), 1
     if step % _EVERY == 0 or not advancing:
-        _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last)
+        _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last, bodies[: count * n])
+    for i in range(count * n):
+        if advancing and bodies[i, 0] != 0.0:
+            spin = omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds
+            turn(array_at(int(bodies[i].ctypes.data), 1, BODY)[0], spin, dt)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
     per, status, loads = length / seconds, scene.status[0], shared.bead_loads
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
@@ -244,13 +258,14 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             _check_sphere(shared, scene.plate_rows, step, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
             recorded, loads[:] = status.impacts, 0.0
-            interact(scene, clock, bead)
+            interact(scene, clock, bead, array_at(int(bodies[i].ctypes.data), count, BODY))
             for k in range(3):
                 force[i, k] += loads[0, k] * seconds**2 / (shared.mass * length)
                 if sliding > 0:
                     torque[i, k] += loads[1, k] * seconds**2 / (shared.mass * length**2)
             for n in range(recorded, status.impacts):
-                if scene.impacts[n].kind == Kind.IMPACT.value:  # other kinds have no COR
+                what = scene.impacts[n].kind
+                if what == Kind.IMPACT.value or what == Kind.OF_BODY.value:  # other kinds have no COR
                     last[i] = scene.impacts[n].restitution
             if status.trouble != 0:
                 mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value, status.limit)

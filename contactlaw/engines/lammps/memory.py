@@ -45,12 +45,12 @@ RESIZED, REWEIGHED, RETYPED = range(max(Trouble) + 1, max(Trouble) + 4)
 MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 
 # Integers up to "status" are addresses. "calls" counts the calls of the C function, "step" is the
-# time step of the last one. Walls move by a clock of their own: `ticks` steps of length `tick`
+# time step of the last one. "body" and "look" are 0 without rigid bodies. Walls move by a clock of their own: `ticks` steps of length `tick`
 # since `base`. LAMMPS's clock rounds differently if a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
-    + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
+    + [(name, "i8") for name in ("history", "last", "body", "look", "elapsed", "dt", "atime", "atimestep")]
     + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads")]
     + [(name, "i8") for name in ("allreduce", "double", "sum", "comm", "force_fix", "shown")]
     + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls")]
@@ -93,6 +93,12 @@ def thermo(shared: Any, name: int) -> Any:
 def running(shared: Any) -> Any:
     """Return LAMMPS's state: 0 for idle, 1 in a run, MINIMIZING."""
     return _call(shared.is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
+
+
+@kernel
+def look(shared: Any) -> None:
+    """Look at the rigid bodies, in Python."""
+    _call(shared.look, np.int32(0), ())  # type: ignore[call-arg]
 
 
 @kernel

