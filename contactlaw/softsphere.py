@@ -36,6 +36,7 @@ from contactlaw.stepping.softened import (
     SoftState,
     advance_softened,
     check_softening,
+    keep_drag,
     tangential_push,
 )
 from contactlaw.stepping.spring import (
@@ -67,6 +68,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
+_UP = 0.0, 0.0, 1.0
 # Largest error of COR times (steps per contact)^2.5, at any phase of the first touch: 0.86 measured
 # with velocity Verlet and the law myc, for lambda to 2 and speeds to 7 V_Y0, at 20, 50, 100 steps.
 _ERROR = 0.9
@@ -214,7 +216,7 @@ def _soften_all(
             came[n] = 0.0
         elif came[n] == 0.0 and u > 0.0:
             came[n] = u
-            e = bounce(law, spring, u, _near_at(near, n), 0.0, 0.0, 1.0, rows).restitution
+            e = bounce(law, spring, (0.0, 0.0, -u), _UP, _near_at(near, n), 0.0, 1.0, rows).restitution
             restitution[n] = e if soft.lost[n] == 0.0 else min(e, restitution[n])
         stiffness, last = spring.stiffness / softening, _soft_at(soft, n)
         now = advance_softened(stiffness, spring.mass, restitution[n], last, overlap[n], step)
@@ -260,16 +262,15 @@ def _slide_softened_all(
         up = dot(slip, at)
         slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
         now, spring, out = _soft_at(soft, n), _spring_at(springs, n), (0.0, 0.0, 0.0)
-        row, size = rows[n], math.sqrt(dot(slip, slip))
+        row = rows[n]
         if now.force + now.kick == 0.0:
             clear_friction(row)
         else:
             if row.normal != came[n] > 0.0:  # an impact whose speed has just become known
                 one = rows[n : n + 1]
-                ratio = bounce(law, spring, came[n], _near_at(near, n), size, friction, kappa, one).impulse_ratio
-                row.width, row.normal = ratio, came[n]
-                for i in range(3):
-                    row.along[i] = slip[i] / size if size > 0.0 else 0.0
+                v = slip[0] - came[n] * at[0], slip[1] - came[n] * at[1], slip[2] - came[n] * at[2]
+                keep_drag(row, bounce(law, spring, v, at, _near_at(near, n), friction, kappa, one).drag, v)
+                row.normal = came[n]
             lasting, e, x, largest = now.damped * DAMPED, restitution[n], now.overlap, now.largest
             push = now.force + now.kick
             out = tangential_push(row, lasting, e, friction, kappa, x, largest, push, spring.mass, at, slip, step)

@@ -48,7 +48,7 @@ FILES = {
         "sensitivity speed_table law_errors uncertainty inverse"
     ),
     "walls": "memory profile edges motion plate mesh round facet grid frame surface rest",
-    "stepping": "edge spring energy friction bounce softened plate_rows contact bead",
+    "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
     "fitting": "measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall web_page",

@@ -285,7 +285,7 @@ def _end_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, k: int, 
     if t.x > -bead.r:  # else something has moved the bead far away between two steps
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
         contact = contact_of(scene, bead, body, facet, t, (t.nx, t.ny, t.nz), True, merged_into)
-        apply_contact(scene, clock, bead, contact, k)
+        apply_contact(scene, clock, bead, body, contact, k)
     else:
         clear_contact(bead, k)
 
@@ -325,7 +325,7 @@ def _begin_all(scene: WallScene, clock: Clock, bead: Bead, body: Any, count: int
                 return
             _end_contact(scene, clock, bead, body, at, count)
             clear_contact(bead, at)
-        apply_contact(scene, clock, bead, _contact_with(scene, bead, body, new, touching), at)
+        apply_contact(scene, clock, bead, body, _contact_with(scene, bead, body, new, touching), at)
         if found[new].shared > 0.0:
             bead.contacts[at].disturbance = SHARING
 
@@ -374,7 +374,7 @@ def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
         n = _index_in_list(found, count, _facet_of(row))
         if n >= 0 and found[n].representative == n:
             row.disturbance = max(row.disturbance, disturbance)
-            apply_contact(scene, clock, bead, _contact_with(scene, bead, body, n, touching), k)
+            apply_contact(scene, clock, bead, body, _contact_with(scene, bead, body, n, touching), k)
         elif clock.advancing or row.extra_force != 0.0:
             _end_contact(scene, clock, bead, body, k, count)
     if clock.advancing:

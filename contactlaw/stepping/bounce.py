@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.force import room_for
-from contactlaw.equation.tangential import POINT
 from contactlaw.stepping import energy
 from contactlaw.stepping.edge import EdgeEcho
+from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
+from contactlaw.stepping.rigid import known, point_answer
 from contactlaw.stepping.spring import PARTED, Spring, at_largest, impact
+from contactlaw.walls.facet import Point
 
 Array = NDArray[np.float64]
 
@@ -40,7 +42,7 @@ class Bounce(NamedTuple):
     compression: float  # the largest [m]
     plastic_share: float  # of the energy that is lost
     wave_share: float  # of the energy that is lost
-    impulse_ratio: float  # tangential impulse over the normal one; against the sliding
+    drag: Point  # tangential impulse on the bead over the normal one
     recedes: float  # 1.0 if the plate does so before the bead, and will strike it again
 
 
@@ -48,19 +50,27 @@ class Bounce(NamedTuple):
 def bounce(
     law: Array,
     spring: Spring,
-    speed: float,
+    came: Point,
+    n: Point,
     near: EdgeEcho | None,
-    sliding: float,
     friction: float,
     kappa: float,
     rows: Any,
+    body: Any = None,
+    s: float = 0.0,
 ) -> Bounce:
-    """Impact at these speeds [m/s]; `rows` are the FRICTION rows to use, none without friction."""
+    """Impact of a point with this velocity [m/s] at the distance s [m] from the bead's centre.
+
+    `rows` are the FRICTION rows to use, none without friction. The bead is a part of `body` or a
+    solid sphere.
+    """
+    speed = -dot(came, n)
     m, expected, room = spring.mass, impact(law, spring, speed), room_for(law)
     h = CONTACT_TIME * expected.time / STEPS
-    state, x, u, s, wave, steps = PARTED, 0.0, speed, sliding, 0.0, 0
-    n = 0.0, 0.0, 1.0
+    state, x, v, wave, steps = PARTED, 0.0, came, 0.0, 0
+    pushed, dragged = 0.0, (0.0, 0.0, 0.0)
     for steps in range(1, LONGEST * STEPS):
+        u = -dot(v, n)
         x += h * u
         last = state
         state, extra = energy.step(law, spring, last, x, u, h, h, near)
@@ -68,7 +78,10 @@ def bounce(
         if state.force == 0.0 and steps > 1:
             state = last
             break
+        drag = 0.0, 0.0, 0.0
         if len(rows) > 0:
+            up = -u
+            slip = v[0] - up * n[0], v[1] - up * n[1], v[2] - up * n[2]
             drag = tangential_force(
                 rows[0],
                 friction,
@@ -80,22 +93,26 @@ def bounce(
                 x,
                 speed,
                 n,
-                (s, 0.0, 0.0),
+                slip,
                 h,
                 extra,
                 room,
             )
-            s += POINT * h / m * drag[0]
-        u -= h * (state.force + extra) / m
+        force = state.force + extra
+        dragged = dragged[0] + h * drag[0], dragged[1] + h * drag[1], dragged[2] + h * drag[2]
+        change = point_answer(body, m, (drag[0] + force * n[0], drag[1] + force * n[1], drag[2] + force * n[2]), n, s)
+        v = v[0] + h * change[0], v[1] + h * change[1], v[2] + h * change[2]
+        pushed += h * force
     if len(rows) > 0:
         clear_friction(rows[0])
-    ended, came = at_largest(law, spring, state), 0.5 * m * speed * speed
+    ended, put, u = at_largest(law, spring, state), 0.5 * m * speed * speed, -dot(v, n)
     gone, other = ended.lost * ended.unit * ended.scale, ended.other * ended.unit * ended.scale
     # The steps' energies are more precise where little is lost, the speed where nearly all is.
-    lost, by_speed = gone + wave, max(-u / speed, 0.0)
-    left = max(1.0 - lost / came, 0.0) if u < 0.0 else 0.0
-    restitution = by_speed + left * (math.sqrt(left) - by_speed)
-    ratio = (sliding - s) / (POINT * (1.0 + restitution) * speed)
+    # Friction on a body changes its normal motion, so that these energies do not say the speed.
+    lost, restitution = gone + wave, min(max(-u / speed, 0.0), 1.0)
+    if not (known(body) and len(rows) > 0):
+        left = max(1.0 - lost / put, 0.0) if u < 0.0 else 0.0
+        restitution += left * (math.sqrt(left) - restitution)
     gap = ended.residual * ended.scale + state.plate_displacement - x
     since = min(max(gap / -u, 0.0), h) if u < 0.0 else 0.0  # since the end of the contact
     return Bounce(
@@ -105,6 +122,6 @@ def bounce(
         state.largest_compression,
         (gone - other) / lost if lost > 0.0 else 0.0,
         wave / lost if lost > 0.0 else 0.0,
-        ratio,
+        (dragged[0] / pushed, dragged[1] / pushed, dragged[2] / pushed),
         1.0 if u >= 0.0 and near is not None and near.rate > 0.0 else 0.0,
     )

@@ -27,8 +27,8 @@ from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.loads import bear
-from contactlaw.stepping.rigid import answer
 from contactlaw.stepping.plate_rows import SOLID, limits_of, solid_mass, spring_of
+from contactlaw.stepping.rigid import answer
 from contactlaw.stepping.softened import (
     BOUNCING,
     DAMPED,
@@ -36,6 +36,7 @@ from contactlaw.stepping.softened import (
     HELD,
     Softened,
     keep,
+    keep_drag,
     push,
     residual,
     settling_kick,
@@ -194,14 +195,7 @@ class Contact(NamedTuple):
 
 @kernel
 def contact_of(
-    scene: WallScene,
-    bead: Bead,
-    body: Any,
-    facet: int,
-    touch: Touch,
-    along: Point,
-    touching: bool,
-    merged_into: int,
+    scene: WallScene, bead: Bead, body: Any, facet: int, touch: Touch, along: Point, touching: bool, merged_into: int
 ) -> Contact:
     """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
@@ -211,7 +205,7 @@ def contact_of(
     w = velocity(frame, frame.rate, point)
     bent = bending(row, to_frame(frame, bead.x), bead.r, bead.r / scene.parcel)
     n = touch.nx, touch.ny, touch.nz
-    answers = answer(body, n, bead.r - touch.x)
+    answers = answer(body, n, n, bead.r)
     per = dot(answers, n)
     mass = 1.0 / per if per > 0.0 else bead.mass
     one, wall = facet, row.wall
@@ -549,6 +543,7 @@ def _ask(
     law: Array,
     scene: WallScene,
     bead: Bead,
+    body: Any,
     contact: Contact,
     k: int,
     spring: Spring,
@@ -570,15 +565,14 @@ def _ask(
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     edge = _near_edge(scene, bead, contact, plate_row, spring)
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
-    came = sliding(contact.v, bead.omega, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
+    n = touch.nx, touch.ny, touch.nz
+    came = surface_velocity(contact.v, bead.omega, bead.r, n)
     rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
     if not begins:  # what friction has done so far stays, because a spring holds now
         rows = bead.friction[0:0]
-    true = bounce(law, spring, u, near, came.size, mu, kappa, rows)
+    true = bounce(law, spring, came, n, near, mu, kappa, rows, body, bead.r)
     if rough and begins:
-        bead.friction[k].width = true.impulse_ratio
-        for i in range(3):
-            bead.friction[k].along[i] = came.along[i] / came.size if came.size > 0.0 else 0.0
+        keep_drag(bead.friction[k], true.drag, came)
     r, thickness = bead.r / scene.parcel, plate_row.thickness
     force = true.peak_force / scene.parcel**3  # of one of the true beads
     scale = impact(law, spring, u).compression
@@ -619,7 +613,7 @@ def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: Stat
 
 
 @kernel
-def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     n, along = (touch.nx, touch.ny, touch.nz), contact.along
@@ -671,7 +665,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         elif clock.dt > clock.before and row.approach_speed > 0.0:
             _check_step(law, scene, clock, contact, spring, row.approach_speed)
     if softened:
-        _ask(law, scene, bead, contact, k, spring, state, last.force == 0.0, u)
+        _ask(law, scene, bead, body, contact, k, spring, state, last.force == 0.0, u)
     else:
         row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, near)
     pressed = state.force + extra
@@ -737,7 +731,7 @@ def _finish_work(clock: Clock, bead: Bead, k: int) -> None:
 
 
 @kernel
-def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
     """Add the force of one contact to a bead, and update the row of the contact."""
     row, touch = bead.contacts[k], contact.touch
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
@@ -749,7 +743,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
     if clock.advancing:
         if rough and (row.force > 0.0 or row.extra_force != 0.0):
             _finish_work(clock, bead, k)
-        _advance(scene, clock, bead, contact, k)
+        _advance(scene, clock, bead, body, contact, k)
     ended = scene.status[0].impacts > recorded
     n, drag, torque = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if row.force != 0.0 or row.extra_force != 0.0:

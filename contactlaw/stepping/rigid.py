@@ -10,11 +10,13 @@ friction adds to the normal motion. A free sphere has none.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
-from contactlaw._arrays import Rows
 from contactlaw._jit import kernel
+from contactlaw.equation.tangential import POINT
+from contactlaw.stepping.energy import dot
 from contactlaw.walls.facet import Point
 
 # The body that a bead is a part of. Arm and inertia are along the body's principal axes, which the
@@ -39,32 +41,54 @@ def _turned(w: float, u: Point, v: Point) -> Point:
     """Vector v turned by the quaternion (w, u)."""
     once = _cross(u, v)
     twice = _cross(u, once)
-    return v[0] + 2.0 * (w * once[0] + twice[0]), v[1] + 2.0 * (w * once[1] + twice[1]), v[2] + 2.0 * (w * once[2] + twice[2])
+    return (
+        v[0] + 2.0 * (w * once[0] + twice[0]),
+        v[1] + 2.0 * (w * once[1] + twice[1]),
+        v[2] + 2.0 * (w * once[2] + twice[2]),
+    )
 
 
 @kernel
-def answer(body: Rows | None, n: Point, s: float) -> Point:
-    """Answer of the contact at the distance s [m] from a bead's centre to forces there [1/kg].
+def known(body: Any) -> bool:
+    """Whether a bead is a part of a body of known mass."""
+    if body is None:
+        return False
+    return len(body) > 0 and body[0].inverse_mass > 0.0
+
+
+@kernel
+def answer(body: Any, force: Point, n: Point, s: float) -> Point:
+    """Acceleration [m/s2] of the contact at the distance s [m] from a bead's centre under a force there.
 
     Zero for a bead that is no part of a known body.
     """
-    if body is None:
-        return 0.0, 0.0, 0.0
-    if len(body) == 0 or body[0].inverse_mass == 0.0:
+    if body is None or not known(body):
         return 0.0, 0.0, 0.0
     row = body[0]
-    q, less = row.turn, row.inverse_inertia
-    m = _turned(q[0], (-q[1], -q[2], -q[3]), n)
+    q, less, per = row.turn, row.inverse_inertia, row.inverse_mass
+    w, back, turned = q[0], (-q[1], -q[2], -q[3]), (q[1], q[2], q[3])
+    m, f = _turned(w, back, n), _turned(w, back, force)
     p = row.arm[0] - s * m[0], row.arm[1] - s * m[1], row.arm[2] - s * m[2]
-    spin = _cross(p, m)
+    spin = _cross(p, f)
     more = _cross((less[0] * spin[0], less[1] * spin[1], less[2] * spin[2]), p)
-    per = row.inverse_mass
-    inside = per * m[0] + more[0], per * m[1] + more[1], per * m[2] + more[2]
-    return _turned(q[0], (q[1], q[2], q[3]), inside)
+    return _turned(w, turned, (per * f[0] + more[0], per * f[1] + more[1], per * f[2] + more[2]))
 
 
 @kernel
-def turn(row: Rows, omega: Point, dt: float) -> None:
+def point_answer(body: Any, mass: float, force: Point, n: Point, s: float) -> Point:
+    """As `answer`, or of a solid sphere of this mass [kg] that is no part of a body."""
+    if known(body):
+        return answer(body, force, n, s)
+    up, per = (1.0 - POINT) * dot(force, n), 1.0 / mass
+    return (
+        per * (POINT * force[0] + up * n[0]),
+        per * (POINT * force[1] + up * n[1]),
+        per * (POINT * force[2] + up * n[2]),
+    )
+
+
+@kernel
+def turn(row: Any, omega: Point, dt: float) -> None:
     """Turn the axes of a body by a step of this angular velocity [rad/s]."""
     q, h = row.turn, 0.5 * dt
     w, u = q[0], (q[1], q[2], q[3])

@@ -175,6 +175,17 @@ def advance_softened(
 
 
 @kernel
+def keep_drag(row: Any, drag: Point, came: Point) -> None:
+    """Keep the tangential impulse of the true impact over the normal one, as a size and a direction.
+
+    The size is negative where a rigid body is pushed on in the direction in which its point slides.
+    """
+    row.width = math.copysign(math.sqrt(dot(drag, drag)), -dot(drag, came))
+    for i in range(3):
+        row.along[i] = -drag[i] / row.width if row.width != 0.0 else 0.0
+
+
+@kernel
 def tangential_push(
     row: Any,
     lasting: float,

@@ -45,7 +45,7 @@ RESIZED, REWEIGHED, RETYPED = range(max(Trouble) + 1, max(Trouble) + 4)
 MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 
 # Integers up to "status" are addresses. "calls" counts the calls of the C function, "step" is the
-# time step of the last one. "body" and "look" are 0 without rigid bodies. Walls move by a clock of their own: `ticks` steps of length `tick`
+# time step of the last one. Walls move by a clock of their own: `ticks` steps of length `tick`
 # since `base`. LAMMPS's clock rounds differently if a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
