@@ -269,7 +269,7 @@ def _slide_softened_all(
             if row.normal != came[n] > 0.0:  # an impact whose speed has just become known
                 one = rows[n : n + 1]
                 v = slip[0] - came[n] * at[0], slip[1] - came[n] * at[1], slip[2] - came[n] * at[2]
-                keep_drag(row, bounce(law, spring, v, at, _near_at(near, n), friction, kappa, one).drag, v)
+                keep_drag(row, bounce(law, spring, v, at, _near_at(near, n), friction, kappa, one).drag, slip)
                 row.normal = came[n]
             lasting, e, x, largest = now.damped * DAMPED, restitution[n], now.overlap, now.largest
             push = now.force + now.kick

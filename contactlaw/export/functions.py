@@ -485,7 +485,7 @@ def rub_softened(
         e, left = bounced(pair, bead, -up, size, friction, row)
         clear_friction(row)
         row.normal = -up
-        row.along[0], row.along[1], row.along[2] = velocity
+        row.stretch[3], row.stretch[4], row.stretch[5] = velocity
         row.width = (left - size) / (POINT * (1.0 + e) * up * size) if size > 0.0 else 0.0
     tangential_push(
         row,

@@ -354,6 +354,7 @@ def _end(
     scene: WallScene,
     clock: Clock,
     bead: Bead,
+    body: Any,
     contact: Contact,
     k: int,
     spring: Spring,
@@ -454,9 +455,9 @@ def _end(
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
     bent = curved_flags(contact.bending)
-    if _of_body(contact) and len(bead.friction) > 0:
-        total -= bead.friction[k].coupled
-        if abs(bead.friction[k].coupled) > _WORK * 0.5 * contact.mass * row.approach_speed * row.approach_speed:
+    if body is not None and _of_body(contact):
+        total -= body[0].coupled
+        if abs(body[0].coupled) > _WORK * 0.5 * contact.mass * row.approach_speed * row.approach_speed:
             bent |= _COUPLED
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
@@ -567,12 +568,13 @@ def _ask(
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     n = touch.nx, touch.ny, touch.nz
     came = surface_velocity(contact.v, bead.omega, bead.r, n)
+    slip = sliding(contact.v, bead.omega, n, (0.0, 0.0, 0.0), bead.r).along
     rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
     if not begins:  # what friction has done so far stays, because a spring holds now
         rows = bead.friction[0:0]
     true = bounce(law, spring, came, n, near, mu, kappa, rows, body, bead.r)
     if rough and begins:
-        keep_drag(bead.friction[k], true.drag, came)
+        keep_drag(bead.friction[k], true.drag, slip)
     r, thickness = bead.r / scene.parcel, plate_row.thickness
     force = true.peak_force / scene.parcel**3  # of one of the true beads
     scale = impact(law, spring, u).compression
@@ -652,6 +654,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
             row.arrival = HIT_BACK
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
             clear_friction(bead.friction[k])
+        if body is not None and _of_body(contact):
+            body[0].coupled = 0.0
     else:
         first = 0.0 < row.duration < clock.before
         if not touch.face and last.force > 0.0 and first and row.disturbance == ALONE:
@@ -675,7 +679,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     if softened and state.largest_compression > last.largest_compression:
         _store(scene, clock, row, spring, state, u)
     if state.force == 0.0 and last.force > 0.0:
-        pushes = _end(law, scene, clock, bead, contact, k, spring, last, u, edge)
+        pushes = _end(law, scene, clock, bead, body, contact, k, spring, last, u, edge)
         extra = dot(pushes, n)
     row.plate_displacement = state.plate_displacement
     row.largest_compression = state.largest_compression
@@ -791,7 +795,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
                 -bead.r * (n[0] * drag[1] - n[1] * drag[0]),
             )
             if clock.advancing:
-                bead.friction[k].coupled += clock.dt * contact.mass * dot(contact.v, n) * dot(contact.answer, drag)
+                if body is not None and _of_body(contact):
+                    body[0].coupled += clock.dt * contact.mass * dot(contact.v, n) * dot(contact.answer, drag)
                 slip = surface_velocity(bead.v, bead.omega, bead.r, n)
                 bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
         both = row.push[0] + drag[0], row.push[1] + drag[1], row.push[2] + drag[2]

@@ -41,7 +41,6 @@ FRICTION = np.dtype(
         ("force", "f8", 3),  # on the bead in the last step [N]
         ("normal", "f8"),  # normal force in the last step [N]
         ("work", "f8"),  # done on the bead so far, in the frame of the wall [J]
-        ("coupled", "f8"),  # energy that friction has given to the normal motion of a rigid body [J]
     ]
 )
 _NO_DIRECTION = 1e-6  # least share of a vector along the wall; below, rounding decides
@@ -64,7 +63,7 @@ def clear_friction(row: Any) -> None:
         row.stretch[n] = 0.0
     for n in range(3):
         row.along[n] = row.force[n] = 0.0
-    row.width = row.stiffness = row.normal = row.work = row.coupled = 0.0
+    row.width = row.stiffness = row.normal = row.work = 0.0
 
 
 @kernel

@@ -27,6 +27,7 @@ BODY = np.dtype(
         ("arm", "f8", 3),  # from the body's centre of mass to the bead's centre [m]
         ("inverse_inertia", "f8", 3),  # [1/(kg m^2)]
         ("turn", "f8", 4),  # real part first
+        ("coupled", "f8"),  # energy that friction has given to the normal motion in this contact [J]
     ]
 )
 

@@ -175,14 +175,15 @@ def advance_softened(
 
 
 @kernel
-def keep_drag(row: Any, drag: Point, came: Point) -> None:
-    """Keep the tangential impulse of the true impact over the normal one, as a size and a direction.
+def keep_drag(row: Any, drag: Point, slip: Point) -> None:
+    """Keep the direction of sliding, and the tangential impulse of the true impact over the normal one.
 
-    The size is negative where a rigid body is pushed on in the direction in which its point slides.
+    That is against the sliding, but for a rigid body, which may turn.
     """
-    row.width = math.copysign(math.sqrt(dot(drag, drag)), -dot(drag, came))
+    row.width, size = math.sqrt(dot(drag, drag)), math.sqrt(dot(slip, slip))
     for i in range(3):
-        row.along[i] = -drag[i] / row.width if row.width != 0.0 else 0.0
+        row.along[i] = slip[i] / size if size > 0.0 else 0.0
+        row.stretch[3 + i] = -drag[i] / row.width if row.width > 0.0 else 0.0
 
 
 @kernel
@@ -202,13 +203,13 @@ def tangential_push(
 ) -> Point:
     """Tangential force on a bead [N], from its normal force f in this step.
 
-    A step h of 0 gives the last step's force again. ``row.along`` is the direction in which the
-    bead slid at first touch, ``row.width`` the ratio of both forces in an impact, and
-    ``row.stretch`` the force of the spring of a contact that lasts.
+    A step h of 0 gives the last step's force again. ``row.width`` is the ratio of both forces in an
+    impact. ``row.stretch`` has the force of the spring of a contact that lasts, and the direction
+    against the tangential force of an impact.
     """
     if h == 0.0:
         return row.force[0], row.force[1], row.force[2]
-    ax, ay, az = row.along[0], row.along[1], row.along[2]
+    ax, ay, az = row.stretch[3], row.stretch[4], row.stretch[5]
     if lasting == BOUNCING:
         up, size = dot((ax, ay, az), n), -f * row.width
         force = size * (ax - up * n[0]), size * (ay - up * n[1]), size * (az - up * n[2])

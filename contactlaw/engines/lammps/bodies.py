@@ -93,7 +93,6 @@ class Bodies:
         columns = self.rows
         if columns is None:
             return
-        columns[:] = 0.0
         own = np.asarray(lmp.numpy.extract_atom("molecule")[: len(columns)])
         at = np.searchsorted(molecules, own).clip(max=len(molecules) - 1)
         found = (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
@@ -107,6 +106,8 @@ class Bodies:
         w, u = body[:, 5:6], -body[:, 6:9]
         across = np.cross(u, arm)
         rows["arm"] = length * (arm + 2.0 * (w * across + np.cross(u, across)))
+        rows["coupled"] = columns[found, -1]
+        columns[:] = 0.0
         columns[found] = rows.view(np.float64).reshape(len(rows), -1)
 
     def _nearest(self, apart: NDArray[np.float64]) -> NDArray[np.float64]:
