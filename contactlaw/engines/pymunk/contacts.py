@@ -25,7 +25,7 @@ RESTING = 2.0
 # Speeds below this many smallest radii per step are rounding errors. Without gravity this is the
 # only limit.
 ROUNDING = 1e-12
-IMPACT, STRUCK = int(Kind.IMPACT), int(Kind.STRUCK)
+IMPACT, STRUCK, IN_CLUMP, OF_BODY = map(int, (Kind.IMPACT, Kind.STRUCK, Kind.IN_CLUMP, Kind.OF_BODY))
 
 
 class Contacts:
@@ -80,13 +80,12 @@ class Contacts:
                 if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
-                x, y = body.position
+                (x, y), (vx, vy) = bead.at(circle)
                 if plate.joints and belongs_to_neighbour(bead, plate, circle, shape, x, y):
                     self._cede(arbiter, bead, plate)
                     return
                 nx, ny = arbiter.normal  # from the bead to the plate
                 x, y = x + bead.radius * nx, y + bead.radius * ny
-                vx, vy = body.velocity
                 ux, uy = plate.velocity_at(shape, x, y)
                 speed = (vx - ux) * nx + (vy - uy) * ny
                 if plate.passed(bead, nx, ny, self.steps):
@@ -100,12 +99,17 @@ class Contacts:
                 if plate.edge is not None:
                     near = self.edges.near(bead, plate, (x, y), speed)
                     curve = near and plate.models.near(bead.kind, plate.thickness, near)
+                if bead.of_body:
+                    mass = self.record.mass[len(self.record)] = bead.answering(body, x, y, nx, ny)
+                    curve = plate.models.of_body(bead.kind, plate.thickness, near, mass)
                 cor = self._answer(arbiter, bead, plate, circle, shape, speed, curve)
-                kind = IMPACT if arbiter.is_first_contact else STRUCK
+                kind = (OF_BODY if bead.of_body else IMPACT) if arbiter.is_first_contact else STRUCK
                 spin = body.angular_velocity
                 slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * spin
                 after, work = abs(slip), 0.0
-                if friction is not None:
+                if friction is not None and bead.of_body:
+                    arbiter.friction = friction
+                if friction is not None and not bead.of_body:
                     gain = (1.0 + cor) / (1.0 + plate.curve(bead, shape)(speed)) if near else 1.0
                     slip, after, spin, work = self._slide(arbiter, bead, plate, body, (nx, ny), speed, slip, gain)
                 elif arbiter.friction > 0.0:
@@ -138,14 +142,13 @@ class Contacts:
                 body: Any = circle.body
                 other_body: Any = shape.body
                 nx, ny = arbiter.normal  # through both centres, so that spin has no part
-                (vx, vy), (ux, uy) = body.velocity, other_body.velocity
+                ((x, y), (vx, vy)), (_, (ux, uy)) = bead.at(circle), other.at(shape)
                 speed = (vx - ux) * nx + (vy - uy) * ny
                 if speed <= self._resting_speed:
                     self._rest(arbiter, speed)
                     return
                 cor = self._answer(arbiter, bead, other, circle, shape, speed)
-                kind = IMPACT if arbiter.is_first_contact else STRUCK
-                x, y = body.position
+                kind = (IN_CLUMP if bead.of_body or other.of_body else IMPACT) if arbiter.is_first_contact else STRUCK
                 x, y = x + bead.radius * nx, y + bead.radius * ny
                 spin = body.angular_velocity
                 turning = bead.radius * spin + other.radius * other_body.angular_velocity
@@ -220,7 +223,7 @@ class Contacts:
             target += sliding(arbiter) - along  # between the surfaces, which overlap
         if mount.free:  # it falls as the bead does, and a light one limits the impulses
             arbiter.friction = friction
-            self._rubbing[len(self.record)] = Rubbing(body, arbiter.shapes, slip, carried)
+            self._rubbing[len(self.record)] = Rubbing(body, arbiter.shapes, slip, carried, body.mass)
         else:
             arbiter.friction = LOOSE * friction
             target += nx * gy - ny * gx
@@ -233,7 +236,8 @@ class Contacts:
         """Note an impact with the engine's friction, in a row of the record."""
         carried = belt(arbiter, *arbiter.normal)
         before = sliding(arbiter) - carried
-        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried)
+        mass = self.record.mass.get(row, circle.body.mass)
+        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried, mass)
 
     def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""

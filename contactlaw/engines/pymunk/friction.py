@@ -84,6 +84,7 @@ class Rubbing(NamedTuple):
     shapes: tuple[Any, Any]  # the bead, and what it hits
     before: float  # sliding speed before [m/s]
     belt: float  # [m/s]
+    mass: float  # of the bead in the record [kg]
 
     def outcome(self) -> tuple[float, float, float]:
         """Sliding speed [m/s], spin [rad/s], and work of friction over the bead's mass [m2/s2].
@@ -100,5 +101,5 @@ class Rubbing(NamedTuple):
 
         body.each_arbiter(look)
         after, impulse = found[-1]
-        work = -impulse * (self.before + after) / 2.0 / body.mass
+        work = -impulse * (self.before + after) / 2.0 / self.mass
         return math.copysign(1.0, self.before) * after, body.angular_velocity, work

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.engines.needs import RestitutionModel
+from contactlaw.engines.needs import RestitutionModel, knows
 from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.edges import edges_of
 from contactlaw.engines.pymunk.handlers import Handlers
@@ -72,7 +72,7 @@ class PymunkImpacts:
         self._space = space
         self._models = models
         self._contacts = Contacts()
-        self._bodies: dict[int, BeadShape] = {}  # by id of the body
+        self._bodies: dict[int, list[BeadShape]] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
         self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
@@ -106,7 +106,10 @@ class PymunkImpacts:
         circle : pymunk.Circle
             A circle of collision type 0, centred on a dynamic body of its own. The body's mass
             should be the sphere's, ``4/3 pi radius**3 density`` [kg]; a warning says if it is not.
-            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction.
+            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction. A
+            circle of a body that has others, or with an offset, is a part of a rigid body: the mass
+            that answers on plates is the body's, from its mass and moment, friction on plates the
+            engine's, and beads are met as by a sphere alone.
         material : Material or str, optional
             Material of spheres in one of the attached models; by default that of the first model.
 
@@ -158,23 +161,31 @@ class PymunkImpacts:
         radius, number = radius_of(circle), self._models.bead(material)
         if body.body_type != pymunk.Body.DYNAMIC:
             raise ArgumentError("circle.body", body, "a bead needs a dynamic body")
-        if circle.offset != (0, 0) or body.center_of_gravity != (0, 0):
-            places = circle.offset, body.center_of_gravity
-            reason = "a bead needs circle.offset and body.center_of_gravity at (0, 0)"
-            raise ArgumentError("circle", places, reason)
-        if body.id in self._bodies:
-            reason = f"carries bead {self._bodies[body.id].index} already"
+        of_body = len([shape for shape in body.shapes if not shape.sensor]) > 1 or circle.offset != (0, 0)
+        if not of_body and body.center_of_gravity != (0, 0):
+            reason = "a bead needs it at (0, 0)"
+            raise ArgumentError("circle.body.center_of_gravity", body.center_of_gravity, reason)
+        alone = [str(bead) for bead in self._bodies.get(body.id, []) if not bead.of_body]
+        if alone:
+            reason = f"carries {alone[0]} already, a sphere; of a rigid body make all circles before the first add_bead"
             raise ArgumentError("circle.body", None, reason)
-        check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        for known in self._models.all if of_body else ():
+            if not knows(known, "solve"):
+                raise TypeError(f"circle: a part of a rigid body, and {known!r} knows no mass; give an ImpactModel")
         warn_of_metres("radius", radius, stacklevel=2)
-        plates = self._contacts.plates.values()
-        check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
+        if not of_body:
+            check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+            plates = self._contacts.plates.values()
+            check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
         index = self._register.bead(number, radius)
-        bead = BeadShape(index, shape, owner, body.id, radius, kind, self._sphere_curve)
-        self._contacts.beads[key] = self._bodies[body.id] = bead
+        bead = BeadShape(index, shape, owner, body.id, radius, kind, of_body, self._sphere_curve)
+        self._contacts.beads[key] = bead
+        self._bodies.setdefault(body.id, []).append(bead)
+        if of_body:
+            self._lookahead.of_bodies.append(bead)
         self._kinds[kind] += 1
         circle.collision_type = self.bead_type
         self._lookahead.reach = min(self._lookahead.reach, radius)
@@ -404,7 +415,11 @@ class PymunkImpacts:
 
     def _forget_bead(self, key: int) -> None:
         bead = self._contacts.beads.pop(key)
-        del self._bodies[bead.body_id]
+        self._bodies[bead.body_id].remove(bead)
+        if not self._bodies[bead.body_id]:
+            del self._bodies[bead.body_id]
+        if bead.of_body:
+            self._lookahead.of_bodies.remove(bead)
         self._kinds[bead.kind] -= 1
         if not self._kinds[bead.kind]:
             del self._kinds[bead.kind]

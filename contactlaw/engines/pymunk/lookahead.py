@@ -67,11 +67,16 @@ class LookAhead:
     """Checks of one space; the caller sets `reach`, the radius of the smallest bead [m]."""
 
     def __init__(
-        self, space: pymunk.Space, beads: dict[int, BeadShape], plates: dict[int, PlateShape], mounts: dict[int, Mount]
+        self,
+        space: pymunk.Space,
+        beads: dict[int, list[BeadShape]],
+        plates: dict[int, PlateShape],
+        mounts: dict[int, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 
         self.reach = math.inf
+        self.of_bodies: list[BeadShape] = []  # parts of bodies that are no spheres
         self._space = space
         self._beads = beads  # by id of the body
         self._plates = plates
@@ -83,6 +88,7 @@ class LookAhead:
     def check(self, dt: float, time: float) -> None:
         """Raise if the step from `time` on would lose an impact, or starts from a NaN."""
         plate_speed = max((mount.watch(dt) for mount in self._mounts.values()), default=0.0)
+        plate_speed += max((bead.turning() for bead in self.of_bodies), default=0.0)
         reach = self.reach - plate_speed * dt
         self._read(self._motion)
         motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
@@ -101,8 +107,12 @@ class LookAhead:
         for n in np.flatnonzero(~finite.all(axis=1)):
             self._refuse(ids[n], motion[n])
         fast = [n for n in np.flatnonzero(travel >= self.reach) if ids[n] in self._beads]
-        if fast:
-            self._cross([self._beads[ids[n]] for n in fast], motion[fast], dt, time)
+        beads, found = [bead for n in fast for bead in self._beads[ids[n]]], []
+        for bead in beads:
+            circle = bead.shape()
+            found.append(np.ravel(bead.at(circle)) if circle is not None else np.zeros(4))
+        if beads:
+            self._cross(beads, np.array(found), dt, time)
 
     def _read(self, fields: pymunk.batch.BodyFields) -> None:
         from pymunk.batch import get_space_bodies
@@ -117,7 +127,7 @@ class LookAhead:
             shape = plate.shape()
             if shape is not None and shape.body is not None and shape.body.id == key:
                 names.append(f"plate {plate.index}")
-        names += [f"bead {self._beads[key].index}"] if key in self._beads else []
+        names += [f"bead {bead.index}" for bead in self._beads.get(key, [])]
         if names:
             x, y, vx, vy = motion.tolist()
             raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")

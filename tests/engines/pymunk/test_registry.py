@@ -134,7 +134,7 @@ ELSEWHERE = pymunk.Space()
     ("change", "error", "match"),
     [
         (lambda c: "bead", TypeError, "expected a pymunk.Circle, got 'bead'"),
-        (lambda c: pymunk.Circle(c.body, R, (0, R)), ValueError, "offset"),
+        (lambda c: pymunk.Circle(c.body, R, (0, R)), TypeError, "knows no mass"),
         (lambda c: setattr(c.body, "center_of_gravity", (R, 0)), ValueError, "center_of_gravity"),
         (lambda c: pymunk.Circle(None, R), ValueError, "no body"),
         (lambda c: pymunk.Circle(c.space.static_body, R), ValueError, "dynamic body"),
