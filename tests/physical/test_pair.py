@@ -3,7 +3,10 @@
 import dataclasses
 import math
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
 import contactlaw as cl
 from contactlaw import laws
@@ -60,3 +63,30 @@ def test_anything_else_is_refused():
         cl.Pair("glass", 42)
     with pytest.raises(ValueError, match="glas"):
         cl.Pair("glas", "glass")
+
+
+@pytest.mark.parametrize(("ratio", "stiffer"), [(2.0, 1.010), (3.0, 1.025), (5.0, 1.054)])
+def test_two_radii_act_as_the_root_of_their_product(ratio, stiffer):
+    """Hertz's contact of an ellipse (Johnson 1985, 4.2), as docs/laws.md says of bodies that are no spheres."""
+
+    def parts(axes):
+        m = 1.0 - axes**2
+        return m, ellipk(m), ellipe(m)
+
+    def radii(axes):
+        _, k, e = parts(axes)
+        return (e / axes**2 - k) / (k - e) - ratio
+
+    axes = brentq(radii, 0.01, 0.999)  # the shorter axis of the ellipse over the longer one
+    m, k, e = parts(axes)
+    size = (4.0 / (np.pi * m) * axes**1.5 * np.sqrt((e / axes**2 - k) * (k - e))) ** (1.0 / 3.0)
+    exact = (2.0 / np.pi * np.sqrt(axes) / size * k) ** -1.5
+    assert exact == pytest.approx(stiffer, abs=5e-4)
+    model = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
+    mass = 4.0 / 3.0 * np.pi * 1e-9 * model.pair.sphere.density
+    radius, thickness = 1e-3 * np.array([1.0, exact**2]), np.geomspace(0.3e-3, 3e-3, 20)[:, None]
+    cor = model.solve(1.0, radius, thickness, mass=mass).restitution
+        1.0, 1e-3 * np.array([1.0, exact**2]), np.geomspace(0.3e-3, 3e-3, 20)[:, None], mass=mass
+    ).restitution
+    assert (cor[:, 0] > cor[:, 1]).all()
+    assert ratio > 3.0 or np.ptp(cor, axis=1).max() < 0.004
