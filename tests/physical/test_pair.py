@@ -86,7 +86,5 @@ def test_two_radii_act_as_the_root_of_their_product(ratio, stiffer):
     mass = 4.0 / 3.0 * np.pi * 1e-9 * model.pair.sphere.density
     radius, thickness = 1e-3 * np.array([1.0, exact**2]), np.geomspace(0.3e-3, 3e-3, 20)[:, None]
     cor = model.solve(1.0, radius, thickness, mass=mass).restitution
-        1.0, 1e-3 * np.array([1.0, exact**2]), np.geomspace(0.3e-3, 3e-3, 20)[:, None], mass=mass
-    ).restitution
     assert (cor[:, 0] > cor[:, 1]).all()
     assert ratio > 3.0 or np.ptp(cor, axis=1).max() < 0.004
