@@ -15,7 +15,8 @@ from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import Motion, check_motion, vector
 
 Vector = Sequence[float]
-Models = ImpactModel | Mapping[int, ImpactModel]  # for all beads, or by their atom type
+# for all beads, or by their atom type; None for one that flies through the wall
+Models = ImpactModel | Mapping[int, ImpactModel | None]
 
 _SQUARE = 1e-9  # largest cosine between perpendicular edges; a rotated pair has rounding errors
 
@@ -34,7 +35,8 @@ class Plate:
         Thickness in the model [m]; ``inf`` is the half-space. The geometry has none: beads touch
         the rectangle itself, from either side.
     model : ImpactModel or dict of int to ImpactModel, optional
-        For a plate of another material than the attached model's; a dict has one by atom type.
+        For a plate of another material than the attached model's; a dict has one by atom type,
+        with None for beads that fly through the plate, as fines through the deck of a sieve.
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the plate moves; without it, the plate stands still.
     edges : {"free", "supported", "clamped"} or sequence of 4, optional
@@ -84,7 +86,7 @@ def rim(plate: Plate) -> Rows:
     return edges_of(plate.edges, corners, np.roll(corners, -1, axis=0), np.zeros(4, int))
 
 
-def by_type(models: Models | None, types: int) -> dict[int, ImpactModel]:
+def by_type(models: Models | None, types: int) -> dict[int, ImpactModel | None]:
     """Models by atom type, from 1."""
     if models is None:
         return {}
@@ -102,5 +104,5 @@ def check_models(models: Any) -> None:
     for kind, model in models.items():
         if not isinstance(kind, int | np.integer) or isinstance(kind, bool) or kind < 1:
             raise ArgumentError("model", kind, "atom types are integers from 1 on")
-        if not isinstance(model, ImpactModel):
-            raise TypeError(f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}")
+        if not isinstance(model, ImpactModel | None):
+            raise TypeError(f"model: expected a contactlaw.ImpactModel or None for atom type {kind}, got {model!r}")

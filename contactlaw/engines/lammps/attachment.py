@@ -50,10 +50,10 @@ _PARTS = (
     ("group", HISTORY, "empty"),
     ("fix", f"{HISTORY}_force", f"{HISTORY} external pf/callback 1 1"),
     ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
-    ("compute", f"{HISTORY}_error", f"all reduce max v_{HISTORY}_errors"),
+    # It has the group of the beads, because LAMMPS refuses to delete a group that a compute has.
+    ("compute", f"{HISTORY}_error", f"{{group}} reduce max v_{HISTORY}_errors"),
     ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
-    # It has the group of the beads, because LAMMPS refuses to delete a group that a fix has.
-    ("fix", f"{HISTORY}_halt", f"{{group}} halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+    ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
 )
 _REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
@@ -80,7 +80,7 @@ def attach(
         sphere``. On several ranks every rank attaches the same plates.
     model : ImpactModel or dict of int to ImpactModel
         Materials and law. All beads are solid spheres of its material; for several materials, a
-        model for each atom type.
+        model for each atom type, or None for beads that fly through the walls.
     plates : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
         Walls that the beads may hit.
     friction : float, optional
@@ -164,7 +164,7 @@ def attach(
     return LammpsPlates(lmp, models, walls, memory, group, **contact)
 
 
-def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, parcel: float, bit: int) -> float:
+def _most_softening(lmp: lammps, models: dict[int, ImpactModel | None], speeds: Any, parcel: float, bit: int) -> float:
     """Most softening that all beads allow."""
     if np.shape(speeds) != (2,):
         reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
@@ -174,7 +174,7 @@ def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, pa
         reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
         raise ArgumentError("softening", "auto", reason)
     slowest, fastest = map(float, speeds)
-    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values())
+    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values() if model)
 
 
 def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
@@ -190,13 +190,13 @@ def _largest_radius(lmp: lammps, bit: int) -> float:
     return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
 
 
-def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
+def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel | None]]:
     """Refuse walls for other beads than those of the models; return walls and models by type."""
     if models is None:
         raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
     own = by_type(models, types)
-    if not own:
+    if not any(own.values()):
         raise ArgumentError("model", None, "has none for any atom type")
     for kind in own:
         if kind > types:
@@ -212,6 +212,8 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
             raise TypeError(f"plates: expected a wall of contactlaw.engines.lammps, such as Plate, got {wall!r}")
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
+            if model is None:
+                continue
             if beads is None:
                 remedy = f"give them a dict of models for the atom types {sorted(own)}"
                 reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
@@ -294,7 +296,7 @@ class LammpsPlates:
     def __init__(
         self,
         lmp: lammps,
-        models: dict[int, ImpactModel],
+        models: dict[int, ImpactModel | None],
         walls: Sequence[Wall],
         records: NDArray[np.void],
         group: str,
