@@ -52,7 +52,7 @@ FILES = {
     "fitting": "measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall web_page",
-    "record": "columns hdf5 file",
+    "record": "columns hdf5 file waves",
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
@@ -78,19 +78,19 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_079,
+    "contactlaw": 34_131,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
     "contactlaw/engines": 3_727,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_155,
+    "contactlaw/export": 1_157,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_225,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/record": 671,
+    "contactlaw/physical": 3_233,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/record": 710,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_627,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_630,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_444,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_124,
-    "tests": 24_492,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 24_504,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

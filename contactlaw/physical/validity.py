@@ -109,8 +109,11 @@ class Validity(enum.IntFlag):
     CURVED_WALL = 65536
     """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
+    SHARED_PLATE = 131072
+    """In the record of a simulation: another bead hits the plate at the same time, or its bending
+    wave passes. In the model each bead has the plate to itself."""
 
-    ACCURACY = 130559
+    ACCURACY = 261631
     """All limits of accuracy."""
 
 
@@ -197,6 +200,11 @@ _WORDS = {
         "a wall so round beside the bead that R* differs by more than 16 %",
         "take the values for estimates, the COR is up to 0.06 too high where the wall is hollow, 0.04 "
         "too low where it bulges",
+    ),
+    Validity.SHARED_PLATE: (
+        "the plate moves from the impact of another bead, too",
+        "take the values for estimates, with w the wave's share of the energy the COR is up to w/(1 + COR) "
+        "too low if the other bead is on the other side, as much too high if it is on the same one",
     ),
 }
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.record.file import Record, Surface, bodies_of
+from contactlaw.record.waves import flag_shared
 from contactlaw.stepping.contact import (
     ALONE,
     AT_REST,
@@ -165,7 +166,9 @@ class WallContacts:
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
         surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
-        return Record(rows.copy(), bodies, number[which.ravel()], surface, made)
+        whole = Record(rows.copy(), bodies, number[which.ravel()], surface, made)
+        flag_shared(whole)
+        return whole
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:
         """Empty rows of CONTACT and of FRICTION for a number of beads, shape (beads, n) each."""
