@@ -12,7 +12,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
-from contactlaw.walls.motion import Motion, check_motion, vector
+from contactlaw.walls.motion import Motion, check_motion, keep, vector
 
 Vector = Sequence[float]
 # for all beads, or by their atom type; None for one that flies through the wall
@@ -66,12 +66,12 @@ class Plate:
 
     def __post_init__(self) -> None:
         """Check the arguments."""
-        vector("corner", self.corner)
         a, b = vector("edge_a", self.edge_a), vector("edge_b", self.edge_b)
         area = float(np.linalg.norm(a) * np.linalg.norm(b))
         if not area > 0.0 or not abs(a @ b) <= _SQUARE * area:
             reason = "must be perpendicular and of some length [m]"
             raise ArgumentError("edge_a, edge_b", (self.edge_a, self.edge_b), reason)
+        keep(self, corner=vector("corner", self.corner), edge_a=a, edge_b=b)
         scalars(thickness=self.thickness)
         warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)

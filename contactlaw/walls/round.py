@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import number, scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
-from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, keep, vector
 from contactlaw.walls.plate import Models, check_models
 from contactlaw.walls.profile import ARC, SEGMENT
 
@@ -44,6 +44,8 @@ class Round:
     def __post_init__(self) -> None:
         """Check the arguments."""
         self.rim()
+        names = {"start", "end", "centre", "normal", "axis", "polar"} & vars(self).keys()
+        keep(self, **{name: floats(getattr(self, name)) for name in names})
         scalars(thickness=self.thickness)
         warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)
@@ -65,6 +67,8 @@ class Round:
         if profile.kind == ARC:
             widens = np.cos(profile.shape[1] + np.array([0.0, profile.length]) / profile.shape[0]) * [1.0, -1.0]
         ends = np.flatnonzero(rho > _CLOSED * profile.length)
+        if self.edges and not ends.size:
+            raise ArgumentError("edges", self.edges, "a whole sphere has none; leave it out")
         hole = np.where(widens > _CLOSED, rho / np.maximum(widens, _CLOSED), math.inf)[ends]
         starts = np.outer(profile.length * ends, [1.0, 0.0, 0.0])
         rows = edges_of(self.edges, starts, starts, np.zeros(len(ends), int), hole)

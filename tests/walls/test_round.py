@@ -205,6 +205,7 @@ def test_in_pictures_an_impact_is_on_the_triangle_where_it_was(name):
         (lambda: Sphere((0, 0, 0), 1.0, 1e-3, polar=(1.0, 0.5)), "polar: got .*ascend from 0 to at most math.pi"),
         (lambda: Cone((0, 0, 0), (0, 0, 1), 0.0, math.nan, 1e-3), "start_radius, end_radius: got .*must be from 0"),
         (lambda: Sphere((0, 0, 0), 1.0, 1e-3, axis=(0, 0, 0)), "axis: got .*must have a direction"),
+        (lambda: Sphere((0, 0, 0), 1.0, 1e-3, edges="free"), "edges: got 'free'; a whole sphere has none"),
         (lambda: Disc((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "normal: got .*must have a direction"),
         (lambda: Ring((0, 0, 0), (0, 0, 1), 0.02, 0.01, 1e-3), "inner_radius, outer_radius: got .*smaller"),
     ],

@@ -205,7 +205,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
         raise TypeError(f"plates: expected a list of walls, got {walls!r}")
     found = list(walls)
     if not found:
-        reason = "at least one contactlaw.engines.lammps.Plate or Mesh is needed"
+        reason = "at least one wall of contactlaw.engines.lammps is needed, such as Plate, Mesh or Cylinder"
         raise ArgumentError("plates", None, reason)
     for wall in found:
         if not isinstance(wall, Wall):
