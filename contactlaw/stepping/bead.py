@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
-from contactlaw.record.file import Record, Surface, bodies_of
-from contactlaw.record.waves import flag_shared
+from contactlaw.record.file import Record, Surface, bodies_of, flagged
 from contactlaw.stepping.contact import (
     ALONE,
     AT_REST,
@@ -39,7 +38,7 @@ from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
-from contactlaw.walls.rest import at_rest
+from contactlaw.walls.rest import at_rest, crossing
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
 
 Rows = NDArray[np.void]
@@ -111,6 +110,9 @@ class WallContacts:
         rows, numbers, self._held = plate_rows(walls, own, types)
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
+        if crossed := crossing(facets):
+            said = "walls: {} and {} cross; if that is not meant, end one where it meets the other".format(*crossed)
+            warnings.warn(said, stacklevel=4)  # the caller of `attach`
         self.places = min(len(facets), _MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status, loads = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS), np.zeros(len(walls), LOAD)
@@ -166,9 +168,7 @@ class WallContacts:
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
         surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
-        whole = Record(rows.copy(), bodies, number[which.ravel()], surface, made)
-        flag_shared(whole)
-        return whole
+        return flagged(Record(rows.copy(), bodies, number[which.ravel()], surface, made))
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:
         """Empty rows of CONTACT and of FRICTION for a number of beads, shape (beads, n) each."""

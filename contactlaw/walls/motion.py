@@ -212,12 +212,7 @@ class Tabulated:
 
     def __post_init__(self) -> None:
         """Refuse what is no table."""
-        try:
-            times = np.array(self.times, dtype=float)
-            places = np.array(self.displacements, dtype=float)
-        except (TypeError, ValueError) as error:
-            reason = f"expected numbers [s], [m]: {error}"
-            raise ArgumentError("times, displacements", None, reason) from error
+        times, places = floats(self.times), floats(self.displacements)
         n = times.size
         if times.shape != (n,) or n < 2 or places.shape != (n, 3):
             reason = "expected shapes (n,) and (n, 3) with n of 2 or more"

@@ -123,7 +123,7 @@ class Cone(Round):
         if self.start_radius == self.end_radius:
             radii = self.start_radius, self.end_radius
             raise ArgumentError("start_radius, end_radius", radii, "must differ, or take a Cylinder")
-        return _between(self.start, self.end, self.start_radius, self.end_radius)
+        return between(self.start, self.end, self.start_radius, self.end_radius)
 
 
 @dataclass(frozen=True)
@@ -173,8 +173,8 @@ class Cylinder(Round):
 
     def profile(self) -> Profile:
         """Segment along the axis."""
-        _positive("radius", self.radius)
-        return _between(self.start, self.end, self.radius, self.radius)
+        positive("radius", self.radius)
+        return between(self.start, self.end, self.radius, self.radius)
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ class Sphere(Round):
 
     def profile(self) -> Profile:
         """Arc of the polar angles."""
-        centre, radius = vector("centre", self.centre), _positive("radius", self.radius)
+        centre, radius = vector("centre", self.centre), positive("radius", self.radius)
         angles = floats(self.polar)
         if angles.shape != (2,) or not 0.0 <= angles[0] < angles[1] <= math.pi:
             raise ArgumentError("polar", self.polar, "expected two angles [rad] that ascend from 0 to at most math.pi")
@@ -254,7 +254,7 @@ class Ring(Round):
 
     def profile(self) -> Profile:
         """Segment across the axis."""
-        inner, outer = _positive("inner_radius", self.inner_radius), _positive("outer_radius", self.outer_radius)
+        inner, outer = positive("inner_radius", self.inner_radius), positive("outer_radius", self.outer_radius)
         if not inner < outer:
             radii = self.inner_radius, self.outer_radius
             raise ArgumentError("inner_radius, outer_radius", radii, "the inner one must be the smaller one [m]")
@@ -287,10 +287,11 @@ class Disc(Round):
 
     def profile(self) -> Profile:
         """Segment across the axis, from the centre."""
-        return _flat(self.centre, self.normal, 0.0, _positive("radius", self.radius))
+        return _flat(self.centre, self.normal, 0.0, positive("radius", self.radius))
 
 
-def _positive(name: str, given: float) -> float:
+def positive(name: str, given: float) -> float:
+    """Return a radius, or raise an error that names the argument."""
     found = number(name, given)
     if not 0.0 < found <= FARTHEST:
         raise ArgumentError(name, given, f"must be positive, at most {FARTHEST:g} [m]")
@@ -302,14 +303,15 @@ def _flat(centre: Vector, normal: Vector, inner: float, outer: float) -> Profile
     return Profile(SEGMENT, vector("centre", centre), direction("normal", normal), shape, outer - inner)
 
 
-def _between(start: Vector, end: Vector, start_radius: float, end_radius: float) -> Profile:
+def between(start: Vector, end: Vector, start_radius: float, end_radius: float) -> Profile:
+    """Profile of a cone or a cylinder between two ends of its axis."""
     first, last = vector("start", start), vector("end", end)
     height = float(np.linalg.norm(last - first))
     radii = number("start_radius", start_radius), number("end_radius", end_radius)
     if not height > 0.0:
         raise ArgumentError("start, end", (start, end), "must differ")
-    if not all(0.0 <= one <= FARTHEST for one in radii):
-        raise ArgumentError("start_radius, end_radius", radii, f"must be from 0 to {FARTHEST:g} [m]")
+    if not all(0.0 <= one <= FARTHEST for one in radii) or not any(radii):
+        raise ArgumentError("start_radius, end_radius", radii, f"must be from 0 to {FARTHEST:g} [m], one above 0")
     length = math.hypot(height, radii[1] - radii[0])
     shape = np.array([radii[0], (radii[1] - radii[0]) / length, height / length])
     return Profile(SEGMENT, first, (last - first) / height, shape, length)

@@ -97,9 +97,8 @@ def attach(
         Radius of the simulated beads over that of the true beads for which they stand: each stands
         for ``parcel**3`` beads, and rebounds as one of them.
     group : str, optional
-        LAMMPS's group of the beads that touch the walls; the others, of any mass and speed, fly
-        through them. A group may change: a bead that leaves it (a dynamic group: for 100 steps or
-        more) has then left the walls, without a row in the record.
+        LAMMPS's group of the beads that touch the walls; others, of any mass and speed, fly through
+        them. A bead that leaves the group has left the walls, without a row in the record.
 
     Returns
     -------

@@ -94,7 +94,7 @@ def test_a_plate_may_differ_for_one_type_only():
 
 def test_fines_fly_through_the_deck_of_a_sieve():
     """They hit walls below as if it were not there, also while they overlap it."""
-    wall = Plate((0.02 + R, -0.05, -0.01), (0, 0.1, 0), (0, 0, 0.01), thickness=2e-3)
+    wall = Plate((0.02 + R, -0.05, -2.1 * R), (0, 0.1, 0), (0, 0, 2.1 * R), thickness=2e-3)
     floor = flat(1e-3, height=-2.1 * R)
     fine, coarse = above(-2 * R, 0.02 - 1e-5), above(1e-5, -0.01)
     beads = [(k, x, (2, 0, -3), cl.material(SPHERES[k - 1]).density) for k, x in ((2, fine), (1, coarse))]

