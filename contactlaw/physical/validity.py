@@ -109,12 +109,15 @@ class Validity(enum.IntFlag):
     CURVED_WALL = 65536
     """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
+    SHARED_PLATE = 131072
+    """In the record of a simulation: another bead hits the plate at the same time, or its bending
+    wave passes. In the model each bead has the plate to itself."""
 
-    COUPLED = 131072
+    COUPLED = 262144
     """In a simulation: friction has changed the normal motion of a rigid body by more than 2 % of the
     energy of its approach. The COR is that of the motion, and not of the contact."""
 
-    ACCURACY = 261631
+    ACCURACY = 523775
     """All limits of accuracy."""
 
 
@@ -205,6 +208,11 @@ _WORDS = {
     Validity.COUPLED: (
         "a rigid body whose normal motion friction has changed",
         "take the energies, which hold; the COR is not that of the contact",
+    ),
+    Validity.SHARED_PLATE: (
+        "the plate moves from the impact of another bead, too",
+        "take the values for estimates, with w the wave's share of the energy the COR is up to w/(1 + COR) "
+        "too low if the other bead is on the other side, as much too high if it is on the same one",
     ),
 }
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
-from contactlaw.record.file import Record, Surface, bodies_of
+from contactlaw.record.file import Record, Surface, bodies_of, flagged
 from contactlaw.stepping.contact import (
     ALONE,
     AT_REST,
@@ -38,7 +38,7 @@ from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
-from contactlaw.walls.rest import at_rest
+from contactlaw.walls.rest import at_rest, crossing
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
 
 Rows = NDArray[np.void]
@@ -61,7 +61,8 @@ class WallContacts:
     walls : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
         Walls of `contactlaw.walls` that the beads may hit.
     models : ImpactModel or dict of int to ImpactModel
-        Materials and law, one model for all beads or one for each type of beads, from 1.
+        Materials and law, one model for all beads or one for each type of beads, from 1; None for
+        beads that fly through the walls. A wall may have models of its own.
     largest : float
         Radius of the largest bead [m].
     impacts : structured array
@@ -109,6 +110,9 @@ class WallContacts:
         rows, numbers, self._held = plate_rows(walls, own, types)
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
+        if crossed := crossing(facets):
+            said = "walls: {} and {} cross; if that is not meant, end one where it meets the other".format(*crossed)
+            warnings.warn(said, stacklevel=4)  # the caller of `attach`
         self.places = min(len(facets), _MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status, loads = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS), np.zeros(len(walls), LOAD)
@@ -164,7 +168,7 @@ class WallContacts:
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
         surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
-        return Record(rows.copy(), bodies, number[which.ravel()], surface, made)
+        return flagged(Record(rows.copy(), bodies, number[which.ravel()], surface, made))
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:
         """Empty rows of CONTACT and of FRICTION for a number of beads, shape (beads, n) each."""
@@ -350,6 +354,18 @@ def _disturbance_of(bead: Bead) -> float:
     return ALONE
 
 
+@kernel
+def _without_passed(scene: WallScene, bead: Bead, count: int) -> int:
+    """Take the walls that the bead flies through out of the list; return how many facets are left."""
+    found, kept = scene.found, 0
+    for n in range(count):
+        if scene.plate_rows[bead.kind, scene.facets[found[n].facet].plate_row].passes == 0:
+            if kept < n:
+                found[kept] = found[n]
+            kept += 1
+    return kept
+
+
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
 @kernel(inline=True)
 def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
@@ -358,7 +374,7 @@ def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
     found = scene.found
-    count = overlaps(scene.frames, scene.facets, bead.x, bead.r, found)
+    count = _without_passed(scene, bead, overlaps(scene.frames, scene.facets, bead.x, bead.r, found))
     if count == 0 and not touches(bead):
         return
     sharing = group_surfaces(bead.r, found, count)

@@ -49,13 +49,13 @@ PLATE_ROW = np.dtype(
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # address of the law at any strength (0: there is no model for beads of this type), and its size
-    + [("law", "i8"), ("law_size", "i8")],
+    + [("law", "i8"), ("law_size", "i8"), ("passes", "i8")],  # passes: beads fly through the wall
     align=True,
 )
 
 
 def plate_rows(
-    walls: Sequence[Wall], models: Mapping[int, ImpactModel], types: int
+    walls: Sequence[Wall], models: Mapping[int, ImpactModel | None], types: int
 ) -> tuple[Rows, list[NDArray[np.intp]], list[Any]]:
     """Plate rows by bead type and number, their numbers for each wall's facets, what they need."""
     table: dict[Any, int] = {}
@@ -72,10 +72,14 @@ def plate_rows(
     laws: list[list[Any]] = [[""] * len(table) for _ in range(types)]
     held: list[Any] = list(by_id.values())
     for (kinds, thickness), number in table.items():
-        for kind, model in kinds:
-            _fill(rows[kind - 1, number], by_id[model], thickness)
-            law = by_strength(by_id[model].pair, by_id[model].force_law, COARSE)
+        for kind, key in kinds:
             row = rows[kind - 1, number]
+            row["passes"] = by_id[key] is None
+            model = by_id[key] or models.get(kind)  # which has the mass of the beads
+            if model is None:
+                continue
+            _fill(row, model, thickness)
+            law = by_strength(model.pair, model.force_law, COARSE)
             row["law"], row["law_size"] = law.ctypes.data, law.size
             laws[kind - 1][number], held = law.tobytes(), [*held, law]
     rows["alike"] = _first_alike(rows, laws)[:, None]

@@ -19,6 +19,7 @@ from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models
+from contactlaw.walls.round import between, positive
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -109,14 +110,8 @@ class Mesh:
         rim: Any = ()
         if self.edges is not None:
             rim = edges_of(self.edges, *boundary(vertices, triangles[good]))
-        for name, value in (
-            ("vertices", vertices),
-            ("triangles", triangles[good]),
-            ("thickness", thickness[good]),
-            ("dropped", lost),
-            ("kept", good),
-            ("rim", rim),
-        ):
+        found = {"vertices": vertices, "triangles": triangles[good], "thickness": thickness[good]}
+        for name, value in {**found, "dropped": lost, "kept": good, "rim": rim}.items():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked
             object.__setattr__(self, name, value)
@@ -244,17 +239,10 @@ class Mesh:
         >>> f"{hopper.area.sum():.4f} m2"
         '0.0482 m2'
         """
-        first, last = vector("start", start), vector("end", end)
-        axis = last - first
-        length = float(np.linalg.norm(axis))
-        radii = number("start_radius", start_radius), number("end_radius", end_radius)
-        if not length > 0.0:
-            raise ArgumentError("start, end", (start, end), "must differ")
-        if not (min(radii) >= 0.0 and 0.0 < max(radii) <= FARTHEST):
-            raise ArgumentError("start_radius, end_radius", radii, "must not be negative [m]")
-        around = _circle(axis / length, facets)
+        profile, radii = between(start, end, start_radius, end_radius), (start_radius, end_radius)
+        around = _circle(profile.axis, facets)
         n = len(around)
-        rings = [place + r * around for place, r in zip((first, last), radii, strict=True)]
+        rings = [place + r * around for place, r in zip((profile.origin, vector("end", end)), radii, strict=True)]
         here, there = np.arange(n), np.roll(np.arange(n), -1)
         lower = np.column_stack((here, there, here + n))
         upper = np.column_stack((there, there + n, here + n))
@@ -319,13 +307,11 @@ class Mesh:
         72
         """
         middle, across = vector("centre", centre), direction("normal", normal)
-        if not 0.0 < number("radius", radius) <= FARTHEST:
-            raise ArgumentError("radius", radius, "must be positive [m]")
-        around = _circle(across, facets)
+        around = positive("radius", radius) * _circle(across, facets)
         n = len(around)
         here = np.arange(n)
         fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))
-        return cls(np.vstack((middle + radius * around, middle)), fan, thickness, model, motion, edges)
+        return cls(np.vstack((middle + around, middle)), fan, thickness, model, motion, edges)
 
 
 def _stl(path: str | Path) -> io.BytesIO:

@@ -86,7 +86,7 @@ class Translation:
 
     def __post_init__(self) -> None:
         """Refuse what is no velocity."""
-        _keep(self, velocity=vector("velocity", self.velocity, "m/s"))
+        keep(self, velocity=vector("velocity", self.velocity, "m/s"))
 
     def fill(self, row: Any) -> None:
         """Write the motion into a row of the kernel's memory."""
@@ -127,7 +127,7 @@ class Rotation:
     def __post_init__(self) -> None:
         """Refuse what is no rotation."""
         direction("axis", self.axis)
-        _keep(self, axis=vector("axis", self.axis, "-"), centre=vector("centre", self.centre))
+        keep(self, axis=vector("axis", self.axis, "-"), centre=vector("centre", self.centre))
         _keep_number(self, "speed", self.speed, "rad/s")
 
     def fill(self, row: Any) -> None:
@@ -167,7 +167,7 @@ class Vibration:
 
     def __post_init__(self) -> None:
         """Refuse what is no vibration."""
-        _keep(self, amplitude=vector("amplitude", self.amplitude))
+        keep(self, amplitude=vector("amplitude", self.amplitude))
         _keep_number(self, "frequency", self.frequency, "Hz")
         _keep_number(self, "phase", self.phase, "rad")
         if not self.frequency > 0.0:
@@ -189,7 +189,9 @@ class Tabulated:
         Ascending times [s], at least two. Between them the wall moves at a constant velocity;
         before the first and after the last it stands still.
     displacements : array_like, shape (n, 3)
-        Displacement of the wall from its given position at these times [m].
+        Displacement of the wall from its given position at these times [m]. Those of times to come
+        may be changed in place between runs, as a controller does: the attribute is the table that
+        the simulation reads, in which every number has to stay finite.
 
     Raises
     ------
@@ -210,12 +212,7 @@ class Tabulated:
 
     def __post_init__(self) -> None:
         """Refuse what is no table."""
-        try:
-            times = np.array(self.times, dtype=float)
-            places = np.array(self.displacements, dtype=float)
-        except (TypeError, ValueError) as error:
-            reason = f"expected numbers [s], [m]: {error}"
-            raise ArgumentError("times, displacements", None, reason) from error
+        times, places = floats(self.times), floats(self.displacements)
         n = times.size
         if times.shape != (n,) or n < 2 or places.shape != (n, 3):
             reason = "expected shapes (n,) and (n, 3) with n of 2 or more"
@@ -225,9 +222,9 @@ class Tabulated:
         if not (abs(places) <= FARTHEST).all():
             reason = f"must be finite [m], none beyond {FARTHEST:g}"
             raise ArgumentError("displacements", None, reason)
-        for name, value in (("times", times), ("displacements", places)):
-            value.setflags(write=False)  # because a simulation reads them in every step
-            object.__setattr__(self, name, value)
+        times.setflags(write=False)  # because a simulation reads them in every step
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "displacements", places)
 
     def fill(self, row: Any) -> None:
         """Write the motion into a row of the kernel's memory."""
@@ -239,9 +236,10 @@ class Tabulated:
 Motion = Translation | Rotation | Vibration | Tabulated
 
 
-def _keep(motion: Any, **vectors: Floats) -> None:
+def keep(given: Any, **vectors: Floats) -> None:
+    """Replace attributes of a frozen object by tuples, which the caller cannot change."""
     for name, value in vectors.items():
-        object.__setattr__(motion, name, tuple(value.tolist()))
+        object.__setattr__(given, name, tuple(value.tolist()))
 
 
 def _keep_number(motion: Any, name: str, value: Any, unit: str) -> None:

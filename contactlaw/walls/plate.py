@@ -12,10 +12,11 @@ from contactlaw._errors import ArgumentError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
-from contactlaw.walls.motion import Motion, check_motion, vector
+from contactlaw.walls.motion import Motion, check_motion, keep, vector
 
 Vector = Sequence[float]
-Models = ImpactModel | Mapping[int, ImpactModel]  # for all beads, or by their atom type
+# for all beads, or by their atom type; None for one that flies through the wall
+Models = ImpactModel | Mapping[int, ImpactModel | None]
 
 _SQUARE = 1e-9  # largest cosine between perpendicular edges; a rotated pair has rounding errors
 
@@ -34,7 +35,8 @@ class Plate:
         Thickness in the model [m]; ``inf`` is the half-space. The geometry has none: beads touch
         the rectangle itself, from either side.
     model : ImpactModel or dict of int to ImpactModel, optional
-        For a plate of another material than the attached model's; a dict has one by atom type.
+        For a plate of another material than the attached model's; a dict has one by atom type,
+        with None for beads that fly through the plate, as fines through the deck of a sieve.
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the plate moves; without it, the plate stands still.
     edges : {"free", "supported", "clamped"} or sequence of 4, optional
@@ -64,12 +66,12 @@ class Plate:
 
     def __post_init__(self) -> None:
         """Check the arguments."""
-        vector("corner", self.corner)
         a, b = vector("edge_a", self.edge_a), vector("edge_b", self.edge_b)
         area = float(np.linalg.norm(a) * np.linalg.norm(b))
         if not area > 0.0 or not abs(a @ b) <= _SQUARE * area:
             reason = "must be perpendicular and of some length [m]"
             raise ArgumentError("edge_a, edge_b", (self.edge_a, self.edge_b), reason)
+        keep(self, corner=vector("corner", self.corner), edge_a=a, edge_b=b)
         scalars(thickness=self.thickness)
         warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)
@@ -84,7 +86,7 @@ def rim(plate: Plate) -> Rows:
     return edges_of(plate.edges, corners, np.roll(corners, -1, axis=0), np.zeros(4, int))
 
 
-def by_type(models: Models | None, types: int) -> dict[int, ImpactModel]:
+def by_type(models: Models | None, types: int) -> dict[int, ImpactModel | None]:
     """Models by atom type, from 1."""
     if models is None:
         return {}
@@ -102,5 +104,5 @@ def check_models(models: Any) -> None:
     for kind, model in models.items():
         if not isinstance(kind, int | np.integer) or isinstance(kind, bool) or kind < 1:
             raise ArgumentError("model", kind, "atom types are integers from 1 on")
-        if not isinstance(model, ImpactModel):
-            raise TypeError(f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}")
+        if not isinstance(model, ImpactModel | None):
+            raise TypeError(f"model: expected a contactlaw.ImpactModel or None for atom type {kind}, got {model!r}")

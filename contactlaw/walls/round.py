@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import number, scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
-from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, keep, vector
 from contactlaw.walls.plate import Models, check_models
 from contactlaw.walls.profile import ARC, SEGMENT
 
@@ -44,6 +44,8 @@ class Round:
     def __post_init__(self) -> None:
         """Check the arguments."""
         self.rim()
+        names = {"start", "end", "centre", "normal", "axis", "polar"} & vars(self).keys()
+        keep(self, **{name: floats(getattr(self, name)) for name in names})
         scalars(thickness=self.thickness)
         warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)
@@ -65,6 +67,8 @@ class Round:
         if profile.kind == ARC:
             widens = np.cos(profile.shape[1] + np.array([0.0, profile.length]) / profile.shape[0]) * [1.0, -1.0]
         ends = np.flatnonzero(rho > _CLOSED * profile.length)
+        if self.edges and not ends.size:
+            raise ArgumentError("edges", self.edges, "a whole sphere has none; leave it out")
         hole = np.where(widens > _CLOSED, rho / np.maximum(widens, _CLOSED), math.inf)[ends]
         starts = np.outer(profile.length * ends, [1.0, 0.0, 0.0])
         rows = edges_of(self.edges, starts, starts, np.zeros(len(ends), int), hole)
@@ -119,7 +123,7 @@ class Cone(Round):
         if self.start_radius == self.end_radius:
             radii = self.start_radius, self.end_radius
             raise ArgumentError("start_radius, end_radius", radii, "must differ, or take a Cylinder")
-        return _between(self.start, self.end, self.start_radius, self.end_radius)
+        return between(self.start, self.end, self.start_radius, self.end_radius)
 
 
 @dataclass(frozen=True)
@@ -169,8 +173,8 @@ class Cylinder(Round):
 
     def profile(self) -> Profile:
         """Segment along the axis."""
-        _positive("radius", self.radius)
-        return _between(self.start, self.end, self.radius, self.radius)
+        positive("radius", self.radius)
+        return between(self.start, self.end, self.radius, self.radius)
 
 
 @dataclass(frozen=True)
@@ -214,7 +218,7 @@ class Sphere(Round):
 
     def profile(self) -> Profile:
         """Arc of the polar angles."""
-        centre, radius = vector("centre", self.centre), _positive("radius", self.radius)
+        centre, radius = vector("centre", self.centre), positive("radius", self.radius)
         angles = floats(self.polar)
         if angles.shape != (2,) or not 0.0 <= angles[0] < angles[1] <= math.pi:
             raise ArgumentError("polar", self.polar, "expected two angles [rad] that ascend from 0 to at most math.pi")
@@ -250,7 +254,7 @@ class Ring(Round):
 
     def profile(self) -> Profile:
         """Segment across the axis."""
-        inner, outer = _positive("inner_radius", self.inner_radius), _positive("outer_radius", self.outer_radius)
+        inner, outer = positive("inner_radius", self.inner_radius), positive("outer_radius", self.outer_radius)
         if not inner < outer:
             radii = self.inner_radius, self.outer_radius
             raise ArgumentError("inner_radius, outer_radius", radii, "the inner one must be the smaller one [m]")
@@ -283,10 +287,11 @@ class Disc(Round):
 
     def profile(self) -> Profile:
         """Segment across the axis, from the centre."""
-        return _flat(self.centre, self.normal, 0.0, _positive("radius", self.radius))
+        return _flat(self.centre, self.normal, 0.0, positive("radius", self.radius))
 
 
-def _positive(name: str, given: float) -> float:
+def positive(name: str, given: float) -> float:
+    """Return a radius, or raise an error that names the argument."""
     found = number(name, given)
     if not 0.0 < found <= FARTHEST:
         raise ArgumentError(name, given, f"must be positive, at most {FARTHEST:g} [m]")
@@ -298,14 +303,15 @@ def _flat(centre: Vector, normal: Vector, inner: float, outer: float) -> Profile
     return Profile(SEGMENT, vector("centre", centre), direction("normal", normal), shape, outer - inner)
 
 
-def _between(start: Vector, end: Vector, start_radius: float, end_radius: float) -> Profile:
+def between(start: Vector, end: Vector, start_radius: float, end_radius: float) -> Profile:
+    """Profile of a cone or a cylinder between two ends of its axis."""
     first, last = vector("start", start), vector("end", end)
     height = float(np.linalg.norm(last - first))
     radii = number("start_radius", start_radius), number("end_radius", end_radius)
     if not height > 0.0:
         raise ArgumentError("start, end", (start, end), "must differ")
-    if not all(0.0 <= one <= FARTHEST for one in radii):
-        raise ArgumentError("start_radius, end_radius", radii, f"must be from 0 to {FARTHEST:g} [m]")
+    if not all(0.0 <= one <= FARTHEST for one in radii) or not any(radii):
+        raise ArgumentError("start_radius, end_radius", radii, f"must be from 0 to {FARTHEST:g} [m], one above 0")
     length = math.hypot(height, radii[1] - radii[0])
     shape = np.array([radii[0], (radii[1] - radii[0]) / length, height / length])
     return Profile(SEGMENT, first, (last - first) / height, shape, length)

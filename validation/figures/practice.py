@@ -559,7 +559,7 @@ def fig30_clump() -> chart.Drawn:
         "with that of both": (2.0 * mass, MUTED, (2.0, 0.651)),
     }
     for name, (heavy, colour, place) in lines.items():
-        found = np.asarray(model.restitution(1.0, radius, thickness, mass=heavy + 0.0 * angle))
+        found = np.asarray(model.restitution(1.0, radius, thickness, mass=np.ones(91) * np.asarray(heavy)))
         cor.plot(angle, found, "-" if colour == BLUE else "--", color=colour)
         chart.note(cor, *place, name, colour)
         numbers[f"COR at 45 degrees {name}"] = found[45]

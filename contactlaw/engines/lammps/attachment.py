@@ -51,7 +51,8 @@ _PARTS = (
     ("group", HISTORY, "empty"),
     ("fix", f"{HISTORY}_force", f"{HISTORY} external pf/callback 1 1"),
     ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
-    ("compute", f"{HISTORY}_error", f"all reduce max v_{HISTORY}_errors"),
+    # It has the group of the beads, because LAMMPS refuses to delete a group that a compute has.
+    ("compute", f"{HISTORY}_error", f"{{group}} reduce max v_{HISTORY}_errors"),
     ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
     ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
 )
@@ -69,6 +70,7 @@ def attach(
     softening: float | Literal["auto"] = 1.0,
     speeds: tuple[float, float] | None = None,
     parcel: float = 1.0,
+    group: str = "all",
 ) -> LammpsPlates:
     """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
 
@@ -79,7 +81,7 @@ def attach(
         sphere``. On several ranks every rank attaches the same plates.
     model : ImpactModel or dict of int to ImpactModel
         Materials and law. All beads are solid spheres of its material; for several materials, a
-        model for each atom type.
+        model for each atom type, or None for beads that fly through the walls.
     plates : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
         Walls that the beads may hit.
     friction : float, optional
@@ -95,6 +97,9 @@ def attach(
     parcel : float, optional
         Radius of the simulated beads over that of the true beads for which they stand: each stands
         for ``parcel**3`` beads, and rebounds as one of them.
+    group : str, optional
+        LAMMPS's group of the beads that touch the walls; others, of any mass and speed, fly through
+        them. A bead that leaves the group has left the walls, without a row in the record.
 
     Returns
     -------
@@ -150,43 +155,48 @@ def attach(
     _check_simulation(lmp)
     commands.check_integrator(lmp)
     walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
+    groups = lmp.available_ids("group")  # by the numbers of their bits, None where one was deleted
+    if group is None or group not in groups:
+        raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(filter(None, groups))}")
     if auto:
-        softening = _most_softening(lmp, models, speeds, parcel)
-    return LammpsPlates(lmp, models, walls, memory, friction=friction, softening=float(softening), parcel=parcel)
+        softening = _most_softening(lmp, models, speeds, parcel, 1 << groups.index(group))
+    contact = {"friction": friction, "softening": float(softening), "parcel": parcel}
+    return LammpsPlates(lmp, models, walls, memory, group, **contact)
 
 
-def _most_softening(lmp: lammps, models: dict[int, ImpactModel], speeds: Any, parcel: float) -> float:
+def _most_softening(lmp: lammps, models: dict[int, ImpactModel | None], speeds: Any, parcel: float, bit: int) -> float:
     """Most softening that all beads allow."""
     if np.shape(speeds) != (2,):
         reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
         raise ArgumentError("speeds", speeds, reason)
-    radius = _largest_radius(lmp)
+    radius = _largest_radius(lmp, bit)
     if radius == 0.0:
         reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
         raise ArgumentError("softening", "auto", reason)
     slowest, fastest = map(float, speeds)
-    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values())
+    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values() if model)
 
 
-def _beads(lmp: lammps, name: str) -> NDArray[Any]:
-    """Read a number of each bead on this rank, in LAMMPS's units."""
+def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
+    """Read a number of each bead on this rank, in LAMMPS's units; `bit` is that of a group."""
     n = lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
-    return np.asarray(lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, int))
+    found = np.asarray(lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, int))
+    return found if bit == 1 else found[_beads(lmp, "mask").astype(int) & bit != 0]
 
 
-def _largest_radius(lmp: lammps) -> float:
-    """Radius of the largest bead on all ranks so far [m]."""
-    length, largest = _UNITS[lmp.extract_global("units")][0], _beads(lmp, "radius")
+def _largest_radius(lmp: lammps, bit: int) -> float:
+    """Radius of the largest bead of a group on all ranks so far [m]."""
+    length, largest = _UNITS[lmp.extract_global("units")][0], _beads(lmp, "radius", bit)
     return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
 
 
-def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
+def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel | None]]:
     """Refuse walls for other beads than those of the models; return walls and models by type."""
     if models is None:
         raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
     own = by_type(models, types)
-    if not own:
+    if not any(own.values()):
         raise ArgumentError("model", None, "has none for any atom type")
     for kind in own:
         if kind > types:
@@ -195,13 +205,15 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
         raise TypeError(f"plates: expected a list of walls, got {walls!r}")
     found = list(walls)
     if not found:
-        reason = "at least one contactlaw.engines.lammps.Plate or Mesh is needed"
+        reason = "at least one wall of contactlaw.engines.lammps is needed, such as Plate, Mesh or Cylinder"
         raise ArgumentError("plates", None, reason)
     for wall in found:
         if not isinstance(wall, Wall):
             raise TypeError(f"plates: expected a wall of contactlaw.engines.lammps, such as Plate, got {wall!r}")
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
+            if model is None:
+                continue
             if beads is None:
                 remedy = f"give them a dict of models for the atom types {sorted(own)}"
                 reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
@@ -284,16 +296,18 @@ class LammpsPlates:
     def __init__(
         self,
         lmp: lammps,
-        models: dict[int, ImpactModel],
+        models: dict[int, ImpactModel | None],
         walls: Sequence[Wall],
         records: NDArray[np.void],
+        group: str,
         **contact: float,
     ) -> None:
         self._lmp = lmp
         self._comm = lmp.get_mpi_comm()
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
-        types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp)
+        self._group, self._bit = group, 1 << lmp.available_ids("group").index(group)
+        types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp, self._bit)
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
         self.softening, self.parcel = float(contact["softening"]), float(contact["parcel"])
@@ -317,10 +331,11 @@ class LammpsPlates:
     def _check_masses(self) -> None:
         """Refuse beads that are no solid spheres of their model's material; all ranks call it."""
         length, _, unit = _UNITS[self._lmp.extract_global("units")]
-        rows = self._contacts.scene.plate_rows[_beads(self._lmp, "type") - 1, 0]
-        mass, radius = unit * _beads(self._lmp, "rmass"), length * _beads(self._lmp, "radius")
+        kind, mass, radius, bead = (_beads(self._lmp, one, self._bit) for one in ("type", "rmass", "radius", "id"))
+        rows = self._contacts.scene.plate_rows[kind - 1, 0]
+        mass, radius = unit * mass, length * radius
         solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
-        step, bead = self._lmp.extract_global("ntimestep"), _beads(self._lmp, "id")
+        step = self._lmp.extract_global("ntimestep")
         free = ~np.isin(bead, self._clumped())  # parts of bodies may have any mass
         wrong = np.flatnonzero(free & (np.abs(mass - solid) > SOLID * solid))[:1]
         said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
@@ -332,7 +347,7 @@ class LammpsPlates:
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
         for kind, name, settings in _PARTS:
-            self._lmp.command(f"{kind} {name} {settings.format(columns=columns)}")
+            self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=self._group)}")
         self._clear_marks()
         self._check_memory(columns)
         self._shared = self._share(columns)
@@ -346,7 +361,7 @@ class LammpsPlates:
 
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
-        names = {name: name for name in "v f radius rmass type omega torque elapsed".split()}
+        names = {name: name for name in "v f radius rmass type mask omega torque elapsed".split()}
         names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}"}
         self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
         shared = np.zeros(1, SHARED)
@@ -375,7 +390,7 @@ class LammpsPlates:
             self._lmp.fix_external_set_vector(fix, n + 1, 0.0)
         self._shown = np.zeros((3, numbers)), ctypes.create_string_buffer(fix.encode())
         shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
-        shared["walls"] = scene.loads.size
+        shared["walls"], shared["group"] = scene.loads.size, self._bit
         shared["places"], shared["columns"] = self._contacts.places, columns
         shared["look"] = self._bodies.look
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]

@@ -84,13 +84,15 @@ def _look_at_all(
     radius: Any,
     mass: Any,
     kind: Any,
+    mask: Any,
     history: Any,
     last: Any,
     bodies: Any,
 ) -> None:
     """Report beads that could jump through a wall in one step, or of another radius or density.
 
-    A new bead in the row of a removed one does not inherit the last COR.
+    A new bead in the row of a removed one does not inherit the last COR. A bead that has left the
+    group has left the walls.
     """
     fastest = 0.0
     for frame in scene.frames:
@@ -99,12 +101,15 @@ def _look_at_all(
     for i in range(len(radius)):
         speed = per * math.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2) + fastest
         size, head = shared.length * radius[i], _head(history, i)
+        if head.owner != tags[i]:
+            last[i] = 0.0
+        if not mask[i] & shared.group:
+            _forget(history[i])
+            continue
         if not speed * clock.dt < size:
             code = TOO_FAST if speed < math.inf else NOT_FINITE
             mark_error(shared, step, tags[i], head, code, -1, speed, size)
-        if head.owner != tags[i]:
-            last[i] = 0.0
-        elif head.radius != 0.0 and not _same(size, head.radius):
+        if head.owner == tags[i] and head.radius != 0.0 and not _same(size, head.radius):
             # `_check_sphere` misses a bead that has become so small that no wall is near it.
             mark_error(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
@@ -207,6 +212,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     radius = array_at(extract(shared, shared.radius), n, np.float64)
     mass = array_at(extract(shared, shared.rmass), n, np.float64)
     kind = array_at(extract(shared, shared.type), n, np.int32)
+    mask = array_at(extract(shared, shared.mask), n, np.int32)
     history = matrix_at(history_address, n, shared.columns)
     last = array_at(extract(shared, shared.last), n, np.float64)
     omega = matrix_at(extract(shared, shared.omega), n, 3)
@@ -218,7 +224,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if shared.look != 0:
         bodies, count = matrix_at(extract(shared, shared.body), n, _BODY), 1
     if step % _EVERY == 0 or not advancing:
-        _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last, bodies[: count * n])
+        known = bodies[: count * n]
+        _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, mask, history, last, known)
     for i in range(count * n):
         if advancing and bodies[i, 0] != 0.0:
             spin = omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds
@@ -227,6 +234,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     per, status, loads = length / seconds, scene.status[0], shared.bead_loads
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
     for i in range(n):
+        if not mask[i] & shared.group:
+            continue
         centre = x[i, 0] * length, x[i, 1] * length, x[i, 2] * length
         reach = MARGIN * radius[i] * length
         if not (

@@ -52,7 +52,7 @@ _MESSAGES: dict[int, str] = {
     Trouble.NO_FORCE: "no finite force at {value:.4g} m/s and a radius of {limit:.4g} m",
     Trouble.NO_MODEL: (
         "model: there is none for beads of its atom type {value:.0f} here; attach(lmp, "
-        "{{{value:.0f}: model, ...}}, ...)"
+        "{{{value:.0f}: model, ...}}, ...), or None in place of it for beads that fly through"
     ),
     memory.NO_STEPS: (
         "beads were moved without time steps, as minimize and rerun do; the plates, whose force "

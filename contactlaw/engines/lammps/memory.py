@@ -49,11 +49,11 @@ MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 # since `base`. LAMMPS's clock rounds differently if a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
-    + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
+    + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "mask", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "body", "look", "elapsed", "dt", "atime", "atimestep")]
     + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads")]
     + [(name, "i8") for name in ("allreduce", "double", "sum", "comm", "force_fix", "shown")]
-    + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls")]
+    + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls", "group")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in "error_value error_limit friction softening parcel base tick before".split()]

@@ -192,6 +192,8 @@ def test_another_kind_of_simulation(model, commands, words):
         ({"records": 1e3}, "records: expected an integer"),
         ({"records": 10**13}, "records: no memory for 10000000000000"),
         ({"records": 10**30}, "records: no memory"),
+        ({"group": "beads"}, "group: got 'beads'; LAMMPS has none of this name, but all"),
+        ({"group": None}, "group: "),
     ],
 )
 def test_bad_arguments(model, change, words):

@@ -9,7 +9,7 @@ import pytest
 from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, quiet
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Rotation, Translation
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Translation
 
 SPHERES = ("gamma-alumina", "glass", "bearing-steel-52100")
 STEEL, ALUMINIUM = "stainless-steel-304", "aluminium-6061-t6"
@@ -92,6 +92,19 @@ def test_a_plate_may_differ_for_one_type_only():
     assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
 
 
+def test_fines_fly_through_the_deck_of_a_sieve():
+    """They hit walls below as if it were not there, also while they overlap it."""
+    wall = Plate((0.02 + R, -0.05, -2.1 * R), (0, 0.1, 0), (0, 0, 2.1 * R), thickness=2e-3)
+    floor = flat(1e-3, height=-2.1 * R)
+    fine, coarse = above(-2 * R, 0.02 - 1e-5), above(1e-5, -0.01)
+    beads = [(k, x, (2, 0, -3), cl.material(SPHERES[k - 1]).density) for k, x in ((2, fine), (1, coarse))]
+    below = run(scene(beads=beads[:1]), models(STEEL), [wall, floor])
+    both = run(scene(beads=beads), models(STEEL), [wall, floor, flat(1e-3, model={2: None})])
+    assert both["plate"].tolist() == [0, 1, 2]
+    for name in both.dtype.names:
+        assert both[name][:2].tolist() == below[name].tolist(), name
+
+
 def test_a_type_without_a_model_is_named():
     lmp = scene(beads=three())
     some = {kind: model for kind, model in models(STEEL).items() if kind != 2}
@@ -105,8 +118,9 @@ def test_a_type_without_a_model_is_named():
     [
         (lambda: {4: models(STEEL)[1]}, None, "model: there is no atom type 4, the box has 3"),
         (lambda: {}, None, "model: has none for any atom type"),
+        (lambda: {1: None}, None, "model: has none for any atom type"),
         (lambda: {"1": models(STEEL)[1]}, None, "got '1'; atom types are integers from 1 on"),
-        (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel for atom type 1"),
+        (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel or None for atom type 1"),
         (lambda: {1: models(STEEL)[1]}, lambda: {2: models(STEEL)[2]}, "type 2, for which"),
         (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "other beads than"),
         (lambda: models(STEEL), lambda: models(STEEL)[2], "other beads than"),

@@ -8,7 +8,7 @@ import pytest
 from lammps_box import R, above, attach, dropped, flat, restarted, scene, square
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Plate, Tabulated
+from contactlaw.engines.lammps import Mesh, Plate, Sphere, Tabulated
 
 HERTZ = cl.ImpactModel(box.PAIR, law="hertz")
 
@@ -60,6 +60,9 @@ def test_a_restart_with_another_friction_is_refused_in_mid_contact(model, tmp_pa
 def test_nobody_writes_into_walls_that_have_been_checked():
     table = Tabulated([0.0, 1.0], [[0, 0, 0], [0, 0, 1]])
     mesh = Mesh(*square(1, 0.01), 1e-3)
-    for array in (table.times, table.displacements, mesh.vertices, mesh.triangles, mesh.thickness):
+    here = np.zeros(3)
+    plate, ball = Plate(here, (1, 0, 0), (0, 1, 0), 1e-3), Sphere(here, 1.0, 1e-3)
+    assert type(plate.corner) is type(ball.centre) is tuple
+    for array in (table.times, mesh.vertices, mesh.triangles, mesh.thickness):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2

@@ -141,7 +141,7 @@ def test_a_bead_comes_to_rest_and_weighs_what_it_weighs():
 def test_a_bead_that_rolls_into_a_wall_rebounds_as_one_that_flies():
     """Friction of the floor takes nothing of the motion along the wall's normal."""
     dt, place = time_step(MODEL, 1.5, R, 1e-3, softening=300.0), (0.009 - R, 0, R - 1e-8)
-    walls = [box.flat(1e-3), Plate((0.01, -0.05, -0.01), (0, 0.1, 0), (0, 0, 0.05), 1e-3)]
+    walls = [box.flat(1e-3), Plate((0.01, -0.05, 0), (0, 0.1, 0), (0, 0, 0.04), 1e-3)]
     lmp, walls = box.scene(MODEL, walls, place, (1, 0, 0), gravity=9.81, dt=dt, friction=0.3, softening=300.0)
     lmp.commands_string(f"set group all omega 0 {1.0 / R} 0\nrun {round(4e-3 / dt)}")
     (row,) = walls.collisions()[walls.collisions()["plate"] == 1]
