@@ -78,28 +78,28 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_540,
+    "contactlaw": 34_613,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
-    "contactlaw/engines": 3_944,
+    "contactlaw/engines": 3_992,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_155,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_242,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 700,
-    "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_797,  # 550 of them are softened contacts and parcels
+    "contactlaw/reporting": 1_027,
+    "contactlaw/stepping": 2_798,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_471,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
-    "dem_demo": 3_200,
+    "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_185,
-    "tests": 24_808,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 24_845,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -247,7 +247,9 @@ def test_walls_and_contacts_need_no_engine():
     )
     subprocess.run([sys.executable, "-c", code], check=True)
     adapter = [path.read_text() for path in (ROOT / "engines/lammps").glob("*.py")]
-    assert sum(text.count("\n") for text in adapter) <= 1392  # an adapter has no mechanics; 63 lines show loads
+    assert (
+        sum(text.count("\n") for text in adapter) <= 1562
+    )  # an adapter has no mechanics; rigid bodies and loads take 250
 
 
 def test_every_folder_says_what_it_is():

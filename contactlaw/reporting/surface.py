@@ -15,7 +15,7 @@ _GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most
 
 
 class EnergyMap(NamedTuple):
-    """Energy that parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
+    """What parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
 
     The density is energy over area [J/m2], an average over the neighbourhood on the same wall. Of
     contacts whose points are unknown each part of their triangle has its share, by its area.
@@ -25,6 +25,7 @@ class EnergyMap(NamedTuple):
     impacts: Array  # number of contacts on each triangle
     energy: Array  # that these took [J]
     density: Array
+    pressure: Array | None = None  # mean normal pressure [Pa], of a series of maps
 
 
 def energy_map(surface: Surface, energy: Array) -> EnergyMap:
@@ -119,7 +120,7 @@ def averaged(corners: NDArray[np.floating], energy: Array, reach: float) -> Arra
     return spread(energy) / spread(areas(corners))
 
 
-def vtk(found: EnergyMap, colours: Array) -> bytes:
+def vtk(found: EnergyMap, colours: Array | None = None) -> bytes:
     """Write a map in VTK's legacy text format, which ParaView and OVITO read.
 
     OVITO shows the colours, red, green and blue from 0 to 1, shape (k, 3).
@@ -129,10 +130,11 @@ def vtk(found: EnergyMap, colours: Array) -> bytes:
     lines += ["DATASET UNSTRUCTURED_GRID", f"POINTS {3 * n} double"]
     lines += _rows(found.corners.reshape(-1, 3))
     lines += [f"CELLS {n} {4 * n}", *_faces(n), f"CELL_TYPES {n}", *["5"] * n, f"CELL_DATA {n}"]
-    columns = ("impacts", found.impacts), ("energy_J", found.energy), ("J_per_m2", found.density)
-    for name, values in columns:
+    columns = {"impacts": found.impacts, "energy_J": found.energy, "J_per_m2": found.density}
+    for name, values in (columns if found.pressure is None else columns | {"pressure_Pa": found.pressure}).items():
         lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *_rows(values[:, None])]
-    lines += ["COLOR_SCALARS color 3", *_rows(colours)]  # last, or some readers lose the others
+    if colours is not None:  # last, or some readers lose the others
+        lines += ["COLOR_SCALARS color 3", *_rows(colours)]
     return "\n".join([*lines, ""]).encode()
 
 

@@ -115,10 +115,10 @@ class WallContacts:
             warnings.warn(said, stacklevel=4)  # the caller of `attach`
         self.places = min(len(facets), _MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
-        scratch, status, loads = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS), np.zeros(len(walls), LOAD)
-        self.scene = WallScene(
-            rows, frames, facets, scratch, impacts, status, loads, float(friction), float(softening), float(parcel)
-        )
+        scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
+        borne = np.zeros(len(walls), LOAD), np.zeros(len(facets))
+        contact = float(friction), float(softening), float(parcel)
+        self.scene = WallScene(rows, frames, facets, scratch, impacts, status, *borne, *contact)
 
     def collisions(self) -> Rows:
         """Impacts that have ended, one row each.

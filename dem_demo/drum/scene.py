@@ -31,6 +31,7 @@ class Drum(Bed):
 
     NAME, FRAME_RATE, WALL, FLAT = "drum", 200.0, "drum", "at a seam of shell and end"
     STACKED, FILM_RATE = False, 12.0
+    DRIVE = "torque", "mN m", 4, -1e3
     PAGE = {  # noqa: RUF012
         "heading": "Beads in a turning drum",
         "lede": "Shell and ends of the drum are sheet metal. Under the law the rebound of each "

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from contactlaw import ImpactModel, Pair, laws
 from dem_demo.kit import drawing, lammps, options, session, signals
 from dem_demo.kit.constant import LEAST, constant_model
-from dem_demo.kit.figures import energy, restitution, snapshot
+from dem_demo.kit.figures import energy, load, restitution, snapshot
 from dem_demo.kit.run import Making, Run, simulate
 from dem_demo.kit.scene import Bed
 
@@ -64,7 +64,7 @@ def start(make: Callable[..., Bed], arguments: argparse.Namespace, command: str,
         if stop is not None:
             raise stop  # the command waits until rank 0 has kept the records
         return 0
-    show = session.Show((own, energy, restitution, snapshot), drawing.gif)
+    show = session.Show((own, energy, load, restitution, snapshot), drawing.gif)
     return session.deliver(arguments.out, show, begin)
 
 

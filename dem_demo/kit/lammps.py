@@ -69,6 +69,7 @@ class Simulation:
         walls = scene.meshes(thickness, folder)
         self.walls = attach(self.lmp, model, walls, friction=scene.friction, softening=scene.softening)
         self.place, self.velocity, self.spin = scene.position.copy(), scene.velocity.copy(), 0.0 * scene.position
+        self.borne = np.zeros((len(walls), 7))
         if thickness < math.inf:
             dump = folder / f"{scene.NAME}.lammpstrj"
             self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {dump} {COLUMNS}")
@@ -120,6 +121,7 @@ class Simulation:
             number = max(self.comm.allgather(signals.first()))
             if number:
                 raise signals.Interrupted(number)
+        self.borne = np.column_stack(self.walls.loads()[1:])
 
     def record(self) -> Record | None:
         """Contacts of all ranks, beads counted from 0: on rank 0, None on the others."""
@@ -144,4 +146,4 @@ class Simulation:
             columns[bead] = values
         status = np.full(len(self.place), GONE, np.uint8)
         status[bead] = FLYING
-        return Frame(self.place, self.velocity, self.spin, status, time.perf_counter() - self.began)
+        return Frame(self.place, self.velocity, self.spin, status, time.perf_counter() - self.began, self.borne)

@@ -37,6 +37,7 @@ class Frame(NamedTuple):
     spin: Floats  # shape (N, 3) [rad/s]; in two dimensions (N, 1), counterclockwise
     status: NDArray[np.uint8]  # shape (N,)
     elapsed: float  # computing time so far [s]
+    borne: Floats  # force, torque and power of each wall, as of `Loads`, since the frame before; shape (walls, 7)
 
 
 # Type, unit and description of the dataset for each field of a frame.
@@ -46,6 +47,7 @@ _DATASETS = {
     "spin": ("f4", "rad/s", "angular velocity; in two dimensions counterclockwise seen from the front"),
     "status": ("u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
     "elapsed": ("f8", "s", "computing time so far"),
+    "borne": ("f4", "N, N m, W", "by wall: force, torque and power, means since the frame before; at first 0"),
 }
 
 
@@ -83,6 +85,7 @@ class Run(Generic[S]):
     spin: NDArray[np.float32]
     status: NDArray[np.uint8]
     elapsed: Floats
+    borne: NDArray[np.float32]
 
     @property
     def time(self) -> Floats:

@@ -90,6 +90,7 @@ class Bed(Scene):
     FLAT: ClassVar[str]  # where impacts have no COR of their own: "at a rim or a wall"
     STACKED: ClassVar[bool]  # whether pictures of two runs are one above the other
     FILM_RATE: ClassVar[float]  # frames per second of the film [1/s]
+    DRIVE: ClassVar[tuple[str, str, int, float]] = "power", "mW", 6, 1e3  # of walls: column and factor of `Run.borne`
 
     thickness: float  # of the walls [m]
     softening: float  # by which the modulus of all contacts is divided; 1: true contacts

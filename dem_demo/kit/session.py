@@ -164,6 +164,7 @@ def facts(run: Run[Any]) -> Facts:
         ("  lost at the contact", written(energy.plastic[-1])),
         (f"friction on the {wall}", written(energy.friction[-1])),
         ("beads on beads", written(energy.others[-1])),
+        (f"mean force on the {wall}", f"{-1e3 * run.borne[1:, :, run.position.shape[-1] - 1].sum(1).mean():z.1f} mN"),
         (f"work of the {wall} on the beads", written(energy.walls[-1])),
         ("work of gravity on the beads", written(energy.gravity[-1])),
         ("kinetic energy at the start", written(energy.start[-1])),

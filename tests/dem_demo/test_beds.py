@@ -19,12 +19,12 @@ from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.drum import dissipation as of_drum  # noqa: E402
 from dem_demo.kit import comparison  # noqa: E402
-from dem_demo.kit.figures import energy, restitution, snapshot  # noqa: E402
+from dem_demo.kit.figures import energy, load, restitution, snapshot  # noqa: E402
 from dem_demo.kit.session import title  # noqa: E402
 from dem_demo.sieve import dissipation as of_sieve  # noqa: E402
 
 KINDS = "drum", "sieve"
-FIGURES = {"drum": (of_drum, energy, restitution, snapshot), "sieve": (of_sieve, energy, restitution, snapshot)}
+FIGURES = {name: (own, energy, load, restitution, snapshot) for name, own in (("drum", of_drum), ("sieve", of_sieve))}
 MORE = {"drum": (), "sieve": ("deck.stl",)}
 SHAPES = {"drum": (33, 4, 3), "sieve": (9, 12, 3)}  # of the trajectories
 WORDS = {
@@ -107,6 +107,7 @@ def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(name, fold
         source, least = (energy.gravity, 0.01) if name == "drum" else (energy.walls, 0.05)
         assert abs(source[-1]) > least * energy.start[0]
         assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
+        assert run.borne[..., 6].sum() / run.scene.FRAME_RATE == pytest.approx(energy.walls[-1], rel=1e-4)
 
 
 def test_softened_contacts_rebound_as_true_ones(name, folder, nothing_drawn, tmp_path):

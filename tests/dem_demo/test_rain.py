@@ -135,6 +135,8 @@ def test_energy_is_shared_out(run):
     lost = rows["plastic_energy"] + rows["wave_energy"]
     np.testing.assert_allclose(lost / energy + rows["restitution"] ** 2, 1.0, atol=1e-5)
     assert (lost >= 0).all()
+    impulse = mass @ ((1.0 + rows["restitution"]) * rows["approach_speed"])
+    assert -run.borne[:, :, 1].sum() / run.scene.FRAME_RATE == pytest.approx(impulse, rel=0.01)
 
 
 def test_summary_is_that_of_any_run_with_such_a_record(rain, run):

@@ -41,7 +41,7 @@ class Dust:
 
     def look(self):
         noise = self.random.random((1000, 2))  # does not compress
-        return Frame(noise, 0.0 * noise, 0.0 * noise, np.ones(1000), 0.0)
+        return Frame(noise, 0.0 * noise, 0.0 * noise, np.ones(1000), 0.0, np.zeros((1, 7)))
 
     def record(self):
         rows = np.zeros(IMPACTS, IMPACT)

@@ -213,6 +213,15 @@ def loads_of(lmp, walls):
     return np.concatenate([one.ravel() for one in walls.loads()[1:]] + [shown])
 
 
+def numbers(path):
+    """Corners (n, 3, 3) of a VTK file and the columns of its cells, read line by line."""
+    words = path.read_text().split()
+    points, cells, *columns = (n for n, word in enumerate(words) if word in ("POINTS", "CELLS", "SCALARS"))
+    corners = np.array(words[points + 3 :][: 3 * int(words[points + 1])], float).reshape(-1, 3)
+    faces = np.array(words[cells + 3 :][: int(words[cells + 2])], int).reshape(-1, 4)[:, 1:]
+    return corners[faces], {words[n + 1]: np.array(words[n + 6 :][: len(faces)], float) for n in columns}
+
+
 def in_chunks(path, walls_of, chunks):
     """Run a scene in chunks on every rank; rank 0 writes; return the walls."""
     lmp = rain("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
@@ -227,6 +236,7 @@ def in_chunks(path, walls_of, chunks):
         before = parts
     parts = MPI.COMM_WORLD.gather(own)
     rows, borne = walls.gather(), loads_of(lmp, walls)
+    walls.save_series(Path(path).with_suffix(".vtk.series"))
     if MPI.COMM_WORLD.rank == 0:
         whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
         order = np.argsort(whole["id"])

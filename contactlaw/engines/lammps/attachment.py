@@ -24,11 +24,11 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
 from contactlaw.record.columns import IMPACT, Kind
 from contactlaw.record.file import Record
-from contactlaw.reporting.files import report
+from contactlaw.reporting.files import add_to_series, report
 from contactlaw.softsphere import most_softening
 from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
-from contactlaw.stepping.loads import NUMBERS, Loads, means
+from contactlaw.stepping.loads import NUMBERS, Loads, mean, means
 from contactlaw.stepping.plate_rows import SOLID
 from contactlaw.stepping.softened import check_softening
 from contactlaw.walls.frame import Wall
@@ -354,6 +354,7 @@ class LammpsPlates:
         self._register()
         self._shared["since"] = self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
+        self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
@@ -377,7 +378,7 @@ class LammpsPlates:
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
         scene = self._contacts.scene
-        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads"):
+        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads", "pressed"):
             shared[name] = getattr(scene, name).ctypes.data
         shared["types"], shared["plate_row_count"] = scene.plate_rows.shape
         shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
@@ -642,19 +643,34 @@ class LammpsPlates:
 
         Every rank has to call it; rank 0 writes.
         """
-        self._on_first_rank(lambda record: record.save(path))
+        self._on_first_rank(self.record(), lambda record: record.save(path))
+
+    def save_series(self, path: str | os.PathLike[str]) -> None:
+        """Add a map of what the walls bore since the last call to a series that ParaView plays.
+
+        Every rank has to call it; rank 0 writes the path, NAME.vtk.series, and NAME-0000.vtk and so
+        on beside it: for each triangle, in its place at the start, the mean pressure [Pa], one for a
+        rectangle or a round wall, and number and energy [J] of the contacts that have ended.
+        """
+        (times, before, part), now = self._saved, self.time
+        pressed = self._comm.allreduce(self._contacts.scene.pressed)
+        force = mean(pressed - before, now - times[-1])
+        parts = self._comm.gather(np.concatenate([np.empty(0, IMPACT), *self._parts[part:]]))
+        record = None if parts is None else self._contacts.record(np.concatenate(parts))
+        self._on_first_rank(record, lambda new: add_to_series(path, [*times[1:], now], new, force))
+        self._saved = [*times, now], pressed, len(self._parts)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.
 
         Every rank has to call it; rank 0 writes. The walls are in the energy map.
         """
-        self._on_first_rank(lambda record: report(record, out))
+        self._on_first_rank(self.record(), lambda record: report(record, out))
         return Path(out) / "index.html"
 
-    def _on_first_rank(self, write: Callable[[Record], object]) -> None:
+    def _on_first_rank(self, record: Record | None, write: Callable[[Record], object]) -> None:
         """Let rank 0 write; all ranks raise what goes wrong there."""
-        record, error = self.record(), None
+        error = None
         if record is not None:
             try:
                 write(record)

@@ -196,6 +196,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.impacts, shared.capacity, IMPACT),
         array_at(shared.status, 1, STATUS),
         array_at(shared.loads, shared.walls, LOAD),
+        array_at(shared.pressed, shared.facet_count, np.float64),
         shared.friction,
         shared.softening,
         shared.parcel,

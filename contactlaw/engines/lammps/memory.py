@@ -51,7 +51,7 @@ SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "mask", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "body", "look", "elapsed", "dt", "atime", "atimestep")]
-    + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads")]
+    + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads", "pressed")]
     + [(name, "i8") for name in ("allreduce", "double", "sum", "comm", "force_fix", "shown")]
     + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls", "group")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]

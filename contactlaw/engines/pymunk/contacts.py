@@ -15,6 +15,7 @@ from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, changed, u
 from contactlaw.engines.pymunk.seams import belongs_to_neighbour
 from contactlaw.engines.record import Kind
 from contactlaw.equation.tangential import POINT
+from contactlaw.stepping.loads import NUMBERS
 
 if TYPE_CHECKING:
     import pymunk
@@ -44,19 +45,31 @@ class Contacts:
         self._anew = 0.0  # contacts that approach more slowly do not rest [m/s]
         self._fall = 0.0, 0.0  # change of the velocity in free fall in this step [m/s]
         self._rubbing: dict[int, Rubbing] = {}  # by row of the record
+        self._pressing: list[tuple[Any, PlateShape, float, float]] = []  # contacts with plates in this step
+        self.borne: list[float] = []  # integrals over time of what each plate bears, as in `Loads`
 
     def begin(self, dt: float, gravity: tuple[float, float], reach: float) -> None:
         """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
         gx, gy = gravity
         self._fall = gx * dt, gy * dt
         self._rubbing.clear()
+        self._pressing.clear()
         self._resting_speed = max(RESTING * math.hypot(gx, gy) * dt, ROUNDING * reach / dt)
         self._anew = -self._resting_speed if gx or gy else math.inf
         self.time += dt
         self.steps += 1
 
     def end(self) -> None:
-        """Complete the impacts of this step whose sliding the engine has decided."""
+        """Complete the impacts of this step whose sliding the engine decided, and what plates bore."""
+        for arbiter, plate, x, y in self._pressing:
+            n, (jx, jy), body = NUMBERS * plate.index, arbiter.total_impulse, plate.mount.body()
+            if not plate.mount.still and body is not None:
+                (hub_x, hub_y), (ux, uy) = body.local_to_world(body.center_of_gravity), body.velocity
+                x, y = x - hub_x, y - hub_y
+                self.borne[n + 6] += ux * jx + uy * jy + body.angular_velocity * (x * jy - y * jx)
+            self.borne[n] -= jx
+            self.borne[n + 1] -= jy
+            self.borne[n + 5] -= x * jy - y * jx
         for row, rubbing in self._rubbing.items():
             self.record.settle(row, abs(rubbing.before), rubbing.outcome())
 
@@ -64,7 +77,7 @@ class Contacts:
     # attributes are looked up once, and few functions are called.
     def on_plates(self, hooks: list[Hook]) -> Callback:
         """Make the callback for contacts of beads with plates; it calls those of the user first."""
-        bead_of, plate_of, record = self.beads.get, self.plates.get, self.record.add
+        bead_of, plate_of, record, press = self.beads.get, self.plates.get, self.record.add, self._pressing.append
 
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             try:
@@ -90,6 +103,7 @@ class Contacts:
                 speed = (vx - ux) * nx + (vy - uy) * ny
                 if plate.passed(bead, nx, ny, self.steps):
                     raise TunnellingError(bead.index, plate.index, self.time, abs(speed), None)
+                press((arbiter, plate, x, y))
                 if speed <= self._resting_speed + RESTING * plate.shake:
                     self._rest(arbiter, speed)
                     if friction is not None:

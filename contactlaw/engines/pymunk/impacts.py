@@ -43,6 +43,7 @@ from contactlaw.engines.pymunk.seams import Seams
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
+from contactlaw.stepping.loads import NUMBERS, Loads, means
 
 if TYPE_CHECKING:
     import pymunk
@@ -77,6 +78,7 @@ class PymunkImpacts:
         self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
+        self._asked = 0.0  # time at which loads were asked [s]
         self._seams = Seams()
         self._attached = True
         self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
@@ -260,6 +262,7 @@ class PymunkImpacts:
         noted = KeyedRef(shape, self._gone.append, key)
         plate = PlateShape(index, noted, mount, thickness, chosen, friction, edges)
         mount.plates[index] = plate
+        self._contacts.borne.extend([0.0] * NUMBERS)
         self._contacts.plates[key] = plate
         self._seams.join(plate, shape, body)
         self._contacts.edges.forget()
@@ -335,6 +338,20 @@ class PymunkImpacts:
             where the engine's friction acted.
         """
         return self._contacts.record.read(self._register)
+
+    def loads(self) -> Loads:
+        """Average what each plate ever registered bore since the last call, or since `attach`.
+
+        The torque is about the centre of gravity of the plate's body, of a static one about the
+        origin. Beads at rest count; one that leaves the space in the step of its impact does not.
+        An error says that no step was simulated, or that the plates were detached.
+        """
+        if not self._attached:
+            raise RuntimeError("loads: the plates were detached, and bear nothing; ask before detach()")
+        sums = np.array(self._contacts.borne).reshape(-1, NUMBERS)
+        found = means(sums, self.time - self._asked)
+        self._asked, self._contacts.borne[:] = self.time, [0.0] * sums.size
+        return found
 
     def record(self) -> Record:
         """Every impact so far, with the materials and law of each."""

@@ -9,6 +9,7 @@ from lammps_box import ABOVE, PLATE, R, above, attach, dropped, flat, make, scen
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, pair_coeff
+from contactlaw.reporting.surface import areas
 
 
 def test_a_bead_that_is_likely_in_millimetres_draws_a_warning():
@@ -73,7 +74,11 @@ def test_two_ranks_give_the_same_bits(whole, two_ranks):
 
 def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
     with np.load(two_ranks[1]) as out:
-        rows = out["rows"]
+        rows, borne = out["rows"], out["borne"]
+    corners, columns = box.numbers(two_ranks[1].with_name("shower-0000.vtk"))
+    assert columns["impacts"].sum() == rows.size
+    flat = (corners[:, :, 2] == 0.0).all(axis=1)  # the first wall is the only horizontal one
+    assert columns["pressure_Pa"][flat] @ areas(corners)[flat] == pytest.approx(-borne[2], rel=1e-8)
     folder = two_ranks[1].with_name("report")
     saved = cl.read_record(folder / "record.h5").rows
     saved["flags"] &= ~int(cl.Validity.SHARED_PLATE)  # which a record has, and its rows have not

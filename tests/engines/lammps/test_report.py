@@ -1,11 +1,14 @@
 """The energy map of a run in LAMMPS, as other programs read it."""
 
+import json
+
 import numpy as np
 import pytest
-from lammps_box import ABOVE, above, flat, scene, square
+from lammps_box import ABOVE, above, flat, numbers, scene, square
 
 from contactlaw.cli import main
-from contactlaw.engines.lammps import Mesh, Vibration
+from contactlaw.engines.lammps import Disc, Mesh, Vibration
+from contactlaw.reporting.surface import areas
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -14,43 +17,42 @@ def lost(rows):
     return sum(rows[f"{cause}_energy"] for cause in ("wave", "plastic", "other", "friction"))
 
 
-def numbers(path):
-    """Corners (n, 3, 3) of a VTK file and the columns of its cells, read line by line."""
-    words = path.read_text().split()
-    at = words.index("POINTS")
-    count = int(words[at + 1])
-    corners = np.array(words[at + 3 : at + 3 + 3 * count], float).reshape(-1, 3)
-    at = words.index("CELLS")
-    cells = np.array(words[at + 3 : at + 3 + int(words[at + 2])], int).reshape(-1, 4)
-    columns = {
-        words[at + 1]: np.array(words[at + 6 : at + 6 + len(cells)], float)
-        for at, word in enumerate(words)
-        if word == "SCALARS"
-    }
-    return corners[cells[:, 1:]], columns
-
-
 def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path, empty_pictures):
-    """Also on a wall that moves: energy is where the bead hit it, not where it was then."""
+    """Also on a wall that moves: energy is where the bead hit it, not where it was then.
+
+    A series of maps has the same energies, and the momentum that each wall takes.
+    """
     rng = np.random.default_rng(4)
-    place = [above(x=x, y=y) for x, y in rng.uniform(-0.02, 0.0, (6, 2))] + [above(2e-3, x=0.03)]
+    place = [above(x=x, y=y) for x, y in rng.uniform(-0.02, 0.0, (6, 2))]
+    place += [above(2e-3, x=0.03), above(x=-0.03, y=0.045)]
     corners, triangles = square(2, 0.025)
-    walls = [
-        Mesh(corners - [0.025, 0, 0], triangles, thickness=[0.5e-3] * 4 + [2e-3] * 4),
-        flat(1e-3, x=0.01, width=0.04, motion=Vibration((4e-3, 0, 0), 600.0)),
-    ]
+    moving = {"motion": Vibration((4e-3, 0, 0), 600.0)}
+    mesh = Mesh(corners - [0.025, 0, 0], triangles, thickness=[0.5e-3] * 4 + [2e-3] * 4)
+    walls = [flat(1e-3, x=0.01, width=0.04, **moving), mesh, Disc((-0.03, 0.045, 0), (0, 0, 1), 0.01, 1e-3, **moving)]
     lmp, found = scene(model, walls, place, (1.0, 0.5, -5.0), friction=0.1)
-    lmp.command("run 5500")
-    rows = found.gather()
-    assert rows.size == 7 and set(rows["plate"]) == {0, 1}
+    for steps in (2000, 2000, 1500):
+        lmp.command(f"run {steps}")
+        found.save_series(tmp_path / "walls.vtk.series")
+    rows, on = found.gather(), found.record().surface
+    assert rows.size == 8 and set(rows["plate"]) == {0, 1, 2}
+    files = json.loads((tmp_path / "walls.vtk.series").read_text())["files"]
+    assert [file["time"] for file in files] == pytest.approx([2e-4, 4e-4, 5.5e-4])
+    energy, impulse = 0.0, 0.0
+    for file, time in zip(files, (2e-4, 2e-4, 1.5e-4), strict=True):
+        corners, columns = numbers(tmp_path / file["name"])
+        energy, impulse = energy + columns["energy_J"], impulse + time * columns["pressure_Pa"] * areas(corners)
+    assert energy == pytest.approx(np.bincount(on.triangle, lost(rows), len(energy)), rel=1e-6)
+    stopped = np.bincount(rows["plate"], rows["mass"] * (1.0 + rows["restitution"]) * rows["approach_speed"])
+    assert np.bincount(on.wall, impulse) == pytest.approx(stopped, rel=1e-3)
+    assert np.ptp((impulse / areas(corners))[on.wall == 2]) == pytest.approx(0.0, abs=1e-6)
     found.report(tmp_path / "out")
     corners, columns = numbers(tmp_path / "out/energy.vtk")
     side = np.diff(corners, axis=1)
     area = 0.5 * np.linalg.norm(np.cross(side[:, 0], side[:, 1]), axis=1)
-    assert area.sum() == pytest.approx(0.05**2 + 0.04 * 0.1, rel=1e-6)
+    assert area.sum() == pytest.approx(0.05**2 + 0.04 * 0.1 + np.pi * 0.01**2, rel=1e-4)
     assert columns["energy_J"].sum() == pytest.approx(lost(rows).sum(), rel=1e-6)
-    assert columns["impacts"].sum() == 7
-    (moved,) = rows[rows["plate"] == 1]
+    assert columns["impacts"].sum() == 8
+    (moved,) = rows[rows["plate"] == 0]
     ended = moved["time"] + moved["contact_time"]
     shift = 4e-3 * np.sin(1.2e3 * np.pi * ended)
     assert shift > 3.9e-3

@@ -175,6 +175,7 @@ def test_bouncing_ends_in_rest(restitution):
     assert min(model.speeds) > 2 * G * DT  # slower touches are not looked up
     assert impacts.resting > 0
     assert abs(body.velocity.y) < EXACT and body.position.y == pytest.approx(R, rel=0.02)
+    assert impacts.loads().force[0, 1] == pytest.approx(-body.mass * (G + 0.1 / 0.6), rel=1e-9)  # momentum
 
 
 def test_a_pile_comes_to_rest():
@@ -191,6 +192,24 @@ def test_a_pile_comes_to_rest():
     assert len(times) > 100
     assert times.max() < 0.5  # of 0.6 s; without a threshold 100000 impacts in the last 0.1 s
     assert impacts.resting > 10000
+
+
+def test_a_plate_that_lifts_a_bead_gives_power_and_bears_torque_about_its_body():
+    space = make_space()
+    bead = make_bead(space, (5.2, R), (0.0, 0.1))
+    plate = make_plate(space, body=room.moving_body(space, (0.0, 0.1), position=(5.0, 0.0)))
+    impacts, weight = room.registered(space, Stub(0.6), [bead], [plate]), bead.body.mass * G
+    room.steps(space, 10)
+    loads = impacts.loads()
+    borne = loads.duration, loads.force[0, 1], loads.torque[0, 2], loads.power[0]
+    assert borne == pytest.approx((10 * DT, -weight, -0.2 * weight, 0.1 * weight), rel=1e-9)
+    space.remove(plate)
+    impacts.remove_plate(plate)
+    space.step(DT)
+    assert not impacts.loads().force.any()
+    impacts.detach()
+    with pytest.raises(RuntimeError, match="loads: the plates were detached"):
+        impacts.loads()
 
 
 def test_rest_without_gravity_is_no_row_of_roundings():
