@@ -52,7 +52,7 @@ _CORNERS = tuple((f"corner_{axis}", "corners, three by triangle") for axis in "x
 # looked at, the row itself included; square of the distance over b t up to which a wave has come in
 # the time t; least motion of the plate by the other bead over that by the own one. By superposition
 # on a thin plate, of 500 pairs those beyond these have a COR within 0.04 of that of one bead.
-_NEAREST, _REACH, _MOVED = 9, 16.0, 0.05
+_NEAREST, _REACH, _MOVED = 9, 16.0, 0.1
 _POINTS = tuple((f"point_{axis}", "where on the wall each row is") for axis in "xyz")
 
 

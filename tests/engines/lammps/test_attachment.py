@@ -349,7 +349,7 @@ def test_walls_act_on_the_beads_of_a_group(model):
 
 def test_beads_that_share_a_plate_are_flagged(model):
     """From both sides at once, and by the wave of one before; not far away, late or beside."""
-    places = [above(), (0, 0, -R - 1e-4), above(3e-4, x=4e-3), above(x=-0.04), above(2e-3, y=0.03), above(x=0.041)]
+    places = [above(), (0, 0, -R - 1e-4), above(2e-4, x=4e-3), above(x=-0.04), above(2e-3, y=0.03), above(x=0.041)]
     velocity = np.array([(0, 0, -5)] * len(places))
     velocity[1] *= -1
     lmp = make(places, velocity)
