@@ -78,7 +78,7 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_613,
+    "contactlaw": 34_603,
     "contactlaw/answers": 2_708,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
@@ -88,9 +88,9 @@ BUDGETS = {
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_242,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/record": 700,
+    "contactlaw/record": 702,
     "contactlaw/reporting": 1_027,
-    "contactlaw/stepping": 2_798,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_786,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_471,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_185,
-    "tests": 24_845,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 24_852,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

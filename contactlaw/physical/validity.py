@@ -110,7 +110,7 @@ class Validity(enum.IntFlag):
     """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
     SHARED_PLATE = 131072
-    """In the record of a simulation: another bead hits the plate at the same time, or its bending
+    """In a record of LAMMPS or `WallContacts`: another bead hits the plate too, or its bending
     wave passes. In the model each bead has the plate to itself."""
 
     COUPLED = 262144

@@ -52,7 +52,7 @@ _CORNERS = tuple((f"corner_{axis}", "corners, three by triangle") for axis in "x
 # looked at, the row itself included; square of the distance over b t up to which a wave has come in
 # the time t; least motion of the plate by the other bead over that by the own one. By superposition
 # on a thin plate, of 500 pairs those beyond these have a COR within 0.04 of that of one bead.
-_NEAREST, _REACH, _MOVED = 9, 16.0, 0.05
+_NEAREST, _REACH, _MOVED = 9, 16.0, 0.1
 _POINTS = tuple((f"point_{axis}", "where on the wall each row is") for axis in "xyz")
 
 
@@ -260,8 +260,7 @@ def flagged(record: Record) -> Record:
     time, long, force, plate = (rows[name] for name in ("time", "contact_time", "peak_force", "plate"))
     share = rows["wave_energy"] / (0.5 * rows["mass"] * rows["approach_speed"] ** 2)
     if some.size > 1:
-        scale = np.sqrt(_REACH * np.median(path * long))
-        at = np.column_stack((point / scale, time / np.median(long), 1e12 * plate))  # plates are far apart
+        at = np.column_stack((point / np.sqrt(_REACH * np.median(path * long)), time / np.median(long), 1e12 * plate))
         near = cKDTree(at).query(at, min(_NEAREST, some.size))[1].T
         after = np.maximum(time - time[near], 0.0)
         within = np.maximum(after, long)
@@ -312,8 +311,11 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     for path, one in zip(paths[1:], others, strict=True):
         whole = _joined(whole, one, path)
     if others:  # a run that went on after a save has the rows of before in both files
-        as_bytes = np.ascontiguousarray(whole.rows).view(f"V{whole.rows.itemsize}")
-        whole = whole.part(np.unique(as_bytes, return_index=True)[1])
+        if "flags" in (whole.rows.dtype.names or ()):  # one of them alone may know of a shared plate
+            whole = whole.part(np.argsort(-whole.rows["flags"], kind="stable"))
+        key = whole.rows.copy()
+        key[[name for name in key.dtype.names or () if name == "flags"]] = 0
+        whole = whole.part(np.unique(key.view(f"V{key.itemsize}"), return_index=True)[1])
     keys = [whole.rows[name] for name in ("bead", "time") if name in (whole.rows.dtype.names or ())]
     return whole.part(np.lexsort(keys))
 

@@ -354,18 +354,6 @@ def _disturbance_of(bead: Bead) -> float:
     return ALONE
 
 
-@kernel
-def _without_passed(scene: WallScene, bead: Bead, count: int) -> int:
-    """Take the walls that the bead flies through out of the list; return how many facets are left."""
-    found, kept = scene.found, 0
-    for n in range(count):
-        if scene.plate_rows[bead.kind, scene.facets[found[n].facet].plate_row].passes == 0:
-            if kept < n:
-                found[kept] = found[n]
-            kept += 1
-    return kept
-
-
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
 @kernel(inline=True)
 def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
@@ -374,7 +362,7 @@ def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
     found = scene.found
-    count = _without_passed(scene, bead, overlaps(scene.frames, scene.facets, bead.x, bead.r, found))
+    count = overlaps(scene.frames, scene.facets, bead.x, bead.r, found, scene.plate_rows[bead.kind])
     if count == 0 and not touches(bead):
         return
     sharing = group_surfaces(bead.r, found, count)

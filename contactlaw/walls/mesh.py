@@ -107,9 +107,7 @@ class Mesh:
             warnings.warn(
                 f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates", stacklevel=3
             )
-        rim: Any = ()
-        if self.edges is not None:
-            rim = edges_of(self.edges, *boundary(vertices, triangles[good]))
+        rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, triangles[good]))
         found = {"vertices": vertices, "triangles": triangles[good], "thickness": thickness[good]}
         for name, value in {**found, "dropped": lost, "kept": good, "rim": rim}.items():
             if isinstance(value, np.ndarray):

@@ -148,8 +148,8 @@ def near(frames: Any, x: Point, r: float) -> bool:
 
 
 @kernel
-def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
-    """List the facets that a sphere overlaps, and count them."""
+def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any, rows: Any = None) -> int:
+    """List the facets that a sphere overlaps, and count them; not those that it passes by `rows`."""
     count = 0
     for f in range(len(frames)):
         frame = frames[f]
@@ -167,6 +167,8 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
                     for e in range(starts[row + k], starts[row + k + 1]):
                         facet = facets[entries[e]]
                         if facet.kind >= TRIANGLE and not abs(height(facet, p)) < r:
+                            continue
+                        if rows is not None and rows[facet.plate_row].passes != 0:
                             continue
                         touch = on_facet(facet, p, r)
                         if touch.x > 0.0:
