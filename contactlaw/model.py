@@ -28,7 +28,7 @@ from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast, scalars, shaped
+from contactlaw.physical.arguments import BARE, broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
@@ -198,15 +198,16 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
         array([0.592, 0.714])
         """
-        if mass is not None or edge != "free" or not edge_distance is hole_radius is math.inf:
-            impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
-            if impacts.edge_distance is not None:
+        endless = edge_distance is hole_radius is math.inf
+        sheets = type(thickness) in BARE or isinstance(thickness, np.ndarray)
+        if mass is not None or edge != "free" or not (endless and sheets):
+            impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
+            if impacts.remember is not None:
                 by = with_edges(self._tabulated, Solver(self._bodies), impacts)
                 return by.rebounds(impacts).restitution
         else:
             # a short cut for engines that call this once per collision
-            floats = isinstance(speed, float) and isinstance(radius, float)
-            if floats and isinstance(thickness, float):
+            if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
                 value = self._tabulated.restitution(speed, radius, thickness)
                 if value == value:  # not NaN
                     return value
@@ -246,7 +247,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
@@ -290,7 +291,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> abs(1 - hit.restitution**2 - lost) < 1e-9
         True
         """
-        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         by = Solver.within(self._bodies, rtol)
         return with_edges(by, by, impacts).rebounds(impacts)
 

@@ -61,8 +61,8 @@ FILES = {
     "cli/cor": "bands inverse",
     "cli/fit": "measured printed figure",
     "physical": (
-        "arguments kind hardness flow materials pair rate responses law strengths scaling measured validity "
-        "history impacts bodies rebound oblique"
+        "arguments kind hardness flow materials plates pair impacts rate responses law strengths scaling measured "
+        "validity history bodies rebound oblique"
     ),
 }
 FILES = {folder: names.split() for folder, names in FILES.items()}
@@ -78,8 +78,8 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 34_036,
-    "contactlaw/answers": 2_708,
+    "contactlaw": 34_510,
+    "contactlaw/answers": 2_723,
     "contactlaw/cli": 3_649,
     "contactlaw/emit": 707,
     "contactlaw/engines": 3_703,
@@ -87,10 +87,10 @@ BUDGETS = {
     "contactlaw/export": 1_155,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_225,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/physical": 3_674,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 671,
     "contactlaw/reporting": 1_003,
-    "contactlaw/stepping": 2_610,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_613,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_442,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
@@ -98,8 +98,8 @@ BUDGETS = {
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
-    "validation": 14_124,
-    "tests": 24_449,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "validation": 14_246,
+    "tests": 24_693,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -74,7 +74,7 @@ class Histories:
             raise ArgumentError("method", method, "must be 'table' or 'solve'")
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         found = with_edges(by, Solver(bodies), impacts).histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found
