@@ -28,11 +28,12 @@ from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import BARE, broadcast, scalars, shaped
+from contactlaw.physical.arguments import broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import SHEETS, Thickness
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
@@ -150,7 +151,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
@@ -198,9 +199,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
         array([0.592, 0.714])
         """
-        endless = edge_distance is hole_radius is math.inf
-        sheets = type(thickness) in BARE or isinstance(thickness, np.ndarray)
-        if mass is not None or edge != "free" or not (endless and sheets):
+        bare = mass is None and edge == "free" and edge_distance is hole_radius is math.inf
+        if not bare or type(thickness) not in SHEETS:
             impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
             if impacts.remember is not None:
                 by = with_edges(self._tabulated, Solver(self._bodies), impacts)
@@ -211,14 +211,15 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
                 value = self._tabulated.restitution(speed, radius, thickness)
                 if value == value:  # not NaN
                     return value
-            impacts = Impacts(*broadcast(speed=speed, radius=radius, thickness=thickness))
+            sheets: Any = thickness
+            impacts = Impacts(*broadcast(speed=speed, radius=radius, thickness=sheets))
         return shaped(self._tabulated.restitutions(impacts), impacts.shape)
 
     def lookup(
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
@@ -254,7 +255,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         rtol: float = 1e-10,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,

@@ -16,6 +16,7 @@ from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import check_finite
+from contactlaw.physical.plates import Thickness
 
 
 class Histories:
@@ -27,7 +28,7 @@ class Histories:
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         samples: int = 256,
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",

@@ -25,7 +25,7 @@ from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
-from contactlaw.physical.plates import Wall, check_contact, wall_of
+from contactlaw.physical.plates import Thickness, Wall, check_contact, wall_of
 from contactlaw.table import lookup
 
 Collide = Callable[..., tuple[Vector, Vector]]
@@ -47,7 +47,7 @@ class Oblique:
         speed: ArrayLike,
         sliding_speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         friction: ArrayLike,
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",

@@ -14,7 +14,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.equation.edge import KINDS
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.plates import Wall, wall_of
+from contactlaw.physical.plates import Thickness, Wall, wall_of
 
 _ENDLESS = np.array([math.inf])  # distance from an edge, and radius of a hole, where there is none
 
@@ -51,7 +51,7 @@ class Impacts:
     def on_plates(
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike | Wall,
+        thickness: Thickness | Wall,
         edge: str = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,

@@ -23,6 +23,7 @@ from contactlaw.physical.arguments import BARE, number
 from contactlaw.physical.materials import Material, material
 
 SHELLS = "cylinder", "sphere"
+SHEETS = BARE | {np.ndarray}  # types of thicknesses that describe no other plate
 _ATTRIBUTES = "areal", "bending", "membrane", "alike", "top", "pitch"
 _DIRECTIONS = 4096  # of the mean over direction: exact to rounding up to Dx/Dy of 1e6
 
@@ -258,6 +259,10 @@ class Shell:
     kind: str = "cylinder"
 
 
+Thickness = ArrayLike | Foundation | Shell
+"""What goes for a thickness [m]; `Layers` and `Orthotropic` are numbers."""
+
+
 @dataclass(frozen=True)
 class Wall:
     """A plate as impacts have it: numbers, or arrays that can be broadcast, by name."""
@@ -303,7 +308,7 @@ def _attribute(thickness: Any, name: str) -> Any:
 
 def check_contact(thickness: Any, plate: Material) -> None:
     """Refuse another material of the contact than that of the model's plate."""
-    if type(thickness) in BARE:
+    if type(thickness) in SHEETS:
         return
     for one in _described(getattr(thickness, "thickness", thickness)):
         if one.material != plate:

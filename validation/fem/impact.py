@@ -113,6 +113,7 @@ def impact(
     core: Core = SOLID,
     wall: float = math.inf,
     layers: tuple[Layer, ...] = (),
+    shell: bool = False,
 ) -> Impact:
     """Let a sphere fall on a plate whose edge sends no wave back.
 
@@ -145,6 +146,8 @@ def impact(
         Radius to which the plate's face is bent below the sphere [m], see `mesh.bent`.
     layers : tuple of Layer, optional
         What the plate is made of, see `mesh.plate`.
+    shell : bool, optional
+        Bend the plate as a whole, see `mesh.shell`, not its face alone.
 
     Returns
     -------
@@ -180,7 +183,7 @@ def impact(
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )
     above, below = meshed(guess, radius, thickness, size, width, far, core, layers)
-    meshes = above, mesh.bent(below, wall, _BENT * radius)
+    meshes = above, mesh.shell(below, wall) if shell else mesh.bent(below, wall, _BENT * radius)
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
     system = solver.assemble(meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time)

@@ -175,6 +175,17 @@ def bent(plate: Mesh, wall: float, end: float) -> Mesh:
     return plate._replace(nodes=np.column_stack((r, risen)))
 
 
+def shell(plate: Mesh, wall: float) -> Mesh:
+    """Plate bent as a whole to a shell; the radius of its face is positive for a cup [m].
+
+    The map is conformal, as in `hollow`.
+    """
+    a = math.copysign(1.0, wall) * wall
+    turned = a * np.exp((plate.nodes @ (1j, -math.copysign(1.0, wall))) / a)  # from the centre
+    height = math.copysign(1.0, wall) * (a - turned.real)
+    return plate._replace(nodes=_points(turned.imag + 1j * height))
+
+
 def hollow(radius: float, size: float, core: float, inside: Core, far: float = 1.0) -> Mesh:
     """Half of a hollow sphere: the mesh of a plate as long as its meridian, bent.
 
