@@ -52,7 +52,7 @@ class Validity(enum.IntFlag):
     """Limits that an impact exceeds; 0 if it exceeds none.
 
     All but `DAMAGE` are limits of the answer's accuracy; `ACCURACY` combines those. What the model
-    leaves out altogether (adhesion, coatings) raises no flag, nor does a metal without a rate of
+    leaves out altogether (adhesion, heating) raises no flag, nor does a metal without a rate of
     strain, which its material may have: at 1e4 per second steels are about a third stronger than in
     the tensile test that the catalogue quotes, and so yield at twice the speed. `explain` puts
     flags into words.
@@ -111,7 +111,7 @@ class Validity(enum.IntFlag):
     than 3 of them, which was not tried."""
 
     CURVED_WALL = 65536
-    """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
+    """R* on a curved wall differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
 
     LINER = 131072

@@ -1,7 +1,7 @@
 """Response of plates on a foundation and of shells, and the fit of it that the model takes.
 
 ``python -m validation.derivations.walls`` writes those of `contactlaw.physical.responses`, in some
-minutes. See walls.md. Unit of time: 1/w0.
+minutes. Unit of time: 1/w0. docs/walls.md has the equations.
 """
 
 from __future__ import annotations
@@ -29,6 +29,26 @@ def kernel(kind: str, x: Array) -> Array:
     if kind == "sphere":
         return np.asarray(j0(x))
     return np.asarray(j0(np.multiply.outer(x, np.cos(_DIRECTIONS) ** 2)).mean(axis=-1))
+
+
+def restitution(lam: float, swing: float, kind: str, steps: int = 1500) -> float:
+    """COR of an elastic impact by a convolution in time, without any fit; `swing` is w0 T_H.
+
+    In units of T_H: x'' = -f, f = d^1.5, d = x - lam times the integral of f(t') K(w0 (t - t')).
+    """
+    step = 3.2181 / steps
+    back = kernel(kind, swing * step * np.arange(10 * steps))
+    f, u, x = np.zeros(back.size), 1.0, 0.0
+    for n in range(1, back.size):
+        x += u * step - 0.5 * step * step * f[n - 1]
+        known, now = x - lam * step * float(f[1:n] @ back[n - 1 : 0 : -1]), f[n - 1]
+        for _ in range(40):
+            now = max(known - 0.5 * lam * step * now, 0.0) ** 1.5
+        f[n] = now
+        u -= 0.5 * step * (f[n] + f[n - 1])
+        if now == 0.0 and n > 10:
+            return -u
+    raise RuntimeError(f"the sphere stays at lambda = {lam}, w0 T_H = {swing}")
 
 
 def columns(rates: list[complex], x: Array) -> Array:
