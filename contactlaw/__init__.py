@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from contactlaw.physical.materials import Material, material, materials, read_materials
     from contactlaw.physical.measured import measured_law
     from contactlaw.physical.pair import Pair
+    from contactlaw.physical.plates import Foundation, Layers, Orthotropic, Shell
     from contactlaw.physical.rebound import Rebound
     from contactlaw.physical.validity import Validity, edge_distance, explain
     from contactlaw.record.file import Bodies, Record, read_record
@@ -43,14 +44,18 @@ __all__ = [
     "Bodies",
     "Fit",
     "ForceHistory",
+    "Foundation",
     "ImpactModel",
+    "Layers",
     "LoadSignal",
     "Material",
     "Measurements",
+    "Orthotropic",
     "Pair",
     "Rebound",
     "Record",
     "Sensitivity",
+    "Shell",
     "Uncertainty",
     "UnidentifiedError",
     "Validity",
@@ -81,6 +86,7 @@ _MODULES = {
     "physical.materials": "Material material materials read_materials",
     "physical.measured": "measured_law",
     "physical.pair": "Pair",
+    "physical.plates": "Foundation Layers Orthotropic Shell",
     "physical.rebound": "Rebound",
     "physical.validity": "Validity edge_distance explain",
     "record.file": "Bodies Record read_record",

@@ -33,6 +33,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import SHEETS, Thickness
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
@@ -150,7 +151,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
@@ -198,26 +199,27 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
         array([0.592, 0.714])
         """
-        if mass is not None or edge != "free" or not edge_distance is hole_radius is math.inf:
-            impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
-            if impacts.edge_distance is not None:
+        bare = mass is None and edge == "free" and edge_distance is hole_radius is math.inf
+        if not bare or type(thickness) not in SHEETS:
+            impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
+            if impacts.remember is not None:
                 by = with_edges(self._tabulated, Solver(self._bodies), impacts)
                 return by.rebounds(impacts).restitution
         else:
             # a short cut for engines that call this once per collision
-            floats = isinstance(speed, float) and isinstance(radius, float)
-            if floats and isinstance(thickness, float):
+            if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
                 value = self._tabulated.restitution(speed, radius, thickness)
                 if value == value:  # not NaN
                     return value
-            impacts = Impacts(*broadcast(speed=speed, radius=radius, thickness=thickness))
+            sheets: Any = thickness
+            impacts = Impacts(*broadcast(speed=speed, radius=radius, thickness=sheets))
         return shaped(self._tabulated.restitutions(impacts), impacts.shape)
 
     def lookup(
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
@@ -246,14 +248,14 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         rtol: float = 1e-10,
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
@@ -290,7 +292,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> abs(1 - hit.restitution**2 - lost) < 1e-9
         True
         """
-        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         by = Solver.within(self._bodies, rtol)
         return with_edges(by, by, impacts).rebounds(impacts)
 

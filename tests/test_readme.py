@@ -35,6 +35,7 @@ STATED = {
     "laws": 12,
     "materials": 4,
     "tutorial": 3,
+    "walls": 4,
 }
 SAID = " ".join(PAGES["theory"].split())
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.py"))

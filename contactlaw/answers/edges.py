@@ -1,8 +1,11 @@
-"""Answers near the edges of plates: these impacts are integrated, all others left as they are."""
+"""Answers where something comes back from the plate: these impacts are integrated.
+
+That is near its edges, where it is curved, or lies on a foundation. All others are left as they are.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,7 +29,7 @@ from contactlaw.table import lookup
 
 @dataclass(frozen=True, eq=False)
 class WithEdges:
-    """Integrates the impacts that have an edge, and leaves all others to another backend."""
+    """Integrates impacts on plates that remember, and leaves all others to another backend."""
 
     others: Backend
     near: Solver
@@ -54,8 +57,8 @@ class WithEdges:
 
 
 def with_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
-    """Backend for impacts of which some may be near an edge."""
-    return others if impacts.edge_distance is None else WithEdges(others, near)
+    """Backend for impacts of which some may be near an edge, or on a plate that swings."""
+    return others if impacts.remember is None else WithEdges(others, near)
 
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
@@ -101,11 +104,10 @@ def _cor_near(
 def _each(
     both: WithEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Places], Any]
 ) -> list[tuple[Places, Any]]:
-    """Answers of the impacts without an edge, and of those with one."""
-    assert impacts.edge_distance is not None
-    near, found = impacts.edge_distance < math.inf, []
-    endless = replace(impacts, edge_distance=None)
-    for by, which, these in ((both.others, ~near, endless), (both.near, near, impacts)):
+    """Answers of the impacts from whose plate nothing comes back, and of the others."""
+    near, found = impacts.remember, []
+    assert near is not None
+    for by, which, these in ((both.others, ~near, impacts.forgetting), (both.near, near, impacts)):
         some = np.flatnonzero(which)
         if some.size:
             with renumbered(some):

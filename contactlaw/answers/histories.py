@@ -16,6 +16,7 @@ from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import check_finite
+from contactlaw.physical.plates import Thickness
 
 
 class Histories:
@@ -27,7 +28,7 @@ class Histories:
         self,
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         samples: int = 256,
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",
@@ -74,7 +75,7 @@ class Histories:
             raise ArgumentError("method", method, "must be 'table' or 'solve'")
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
+        impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
         found = with_edges(by, Solver(bodies), impacts).histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found

@@ -25,6 +25,7 @@ from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
+from contactlaw.physical.plates import Thickness, Wall, check_contact, wall_of
 from contactlaw.table import lookup
 
 Collide = Callable[..., tuple[Vector, Vector]]
@@ -46,7 +47,7 @@ class Oblique:
         speed: ArrayLike,
         sliding_speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness,
         friction: ArrayLike,
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",
@@ -96,18 +97,21 @@ class Oblique:
         """
         if method not in ("table", "solve"):
             raise ArgumentError("method", method, "must be 'table' or 'solve'")
-        v, s, r, h, mu, near, hole, *masses, shape = broadcast(
+        bodies, wall = self._tabulated.bodies, wall_of(thickness)
+        check_contact(thickness, bodies.pair.given[1])
+        v, s, r, mu, near, hole, *more, shape = broadcast(
             speed=speed,
             sliding_speed=sliding_speed,
             radius=radius,
-            thickness=thickness,
             friction=friction,
             edge_distance=edge_distance,
             hole_radius=hole_radius,
+            **wall.numbers,
             **({} if mass is None else {"mass": mass}),
         )
-        bodies = self._tabulated.bodies
-        impacts = replace(bodies.given(v, r, h, edge, near, hole, *masses), shape=shape)
+        plates = Wall(dict(zip(wall.numbers, more, strict=False)), wall.kind)
+        masses = more[len(wall.numbers) :]
+        impacts = replace(bodies.given(v, r, plates, edge, near, hole, *masses, memory=True), shape=shape)
         check(sliding_speed=s, friction=mu)
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
         return answer(with_edges(by, Solver(bodies), impacts), bodies, impacts, mu, s)

@@ -14,11 +14,13 @@ from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Impact, Numbers
 from contactlaw.equation.outcome import History, Outcome
+from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.rebound import Rebound, rebound
-from contactlaw.physical.scaling import edges_of, numbers_of, yield_share
+from contactlaw.physical.responses import REACH
+from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
 from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
@@ -79,11 +81,18 @@ class Solver:
         if impacts.edge_distance is not None and impacts.hole_radius is not None:
             near = impacts.edge, impacts.edge_distance, impacts.hole_radius
             edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
+        elif impacts.frequency is not None and impacts.wall is not None:
+            swing = impacts.wall.kind, impacts.frequency
+            edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)
         few = edges is not None and count <= _FEW
         with renumbered(np.arange(count), impacts.mass):
             found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
         known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
-        return rebound(bodies, impacts, units.time, known, found, flags, edges), found, units, edges
+        hit = rebound(bodies, impacts, units.time, known, found, flags, edges)
+        if impacts.frequency is not None:
+            longest = np.ravel(hit.contact_time) * impacts.frequency
+            within("thickness", longest, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
+        return hit, found, units, edges
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""

@@ -21,6 +21,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "history", about, _run)
     options.add_impact(command, quantities.value)
     options.add_mass(command)
+    options.add_wall(command)
     command.add_argument("--samples", type=int, default=256, metavar="N", help="number of rows (default: %(default)s)")
     command.add_argument("--plot", metavar="FILE", help="draw the force into FILE (PNG, SVG, PDF)")
     command.epilog = options.UNITS
@@ -35,7 +36,9 @@ def _run(arguments: argparse.Namespace) -> None:
     given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness", "mass")}
     model = chosen.model(arguments)
     contact = np.column_stack(_contact(arguments, model))
-    print(f"# {impacts.in_words(impacts.asked(model, **given))}")
+    asked = impacts.asked(model, **given)
+    asked["plate"] = chosen.plate_in_words(arguments, asked["plate"])
+    print(f"# {impacts.in_words(asked)}")
     print("time_s,force_N,compression_m,impulse_Ns,plate_displacement_m")
     np.savetxt(sys.stdout, contact, fmt="%.9g", delimiter=",")
 
@@ -45,7 +48,8 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
     with wording.naming_impact(*impact, mass=arguments.mass):
-        found = model.force_history(*impact, arguments.samples, method, mass=arguments.mass)
+        plate = chosen.wall(arguments, model.pair.given[1], arguments.thickness)
+        found = model.force_history(*impact[:2], plate, arguments.samples, method, mass=arguments.mass)
     flags = int(found.flags)
     for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):
         wording.print_warning(f"{name}: {words}")
@@ -55,7 +59,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
 def _plot_history(arguments: argparse.Namespace) -> None:
     contact = _contact(arguments, chosen.model(arguments))
     title = (
-        f"{arguments.sphere} on {arguments.plate}: radius {drawn(arguments.radius)}, "
+        f"{arguments.sphere} on {chosen.plate_in_words(arguments, arguments.plate)}: radius {drawn(arguments.radius)}, "
         f"{plate_of(arguments.thickness)}, {arguments.speed:g} m/s"
     )
     _draw(contact, title, arguments.plot)

@@ -23,7 +23,7 @@ _SI |= {"mass": "kg", "velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"
 
 _LARGE = 0.1  # [m], our choice: of larger beads and plates few are modelled, and many are mistakes
 ROUGHEST = 1e3  # largest coefficient of friction
-_BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
+BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
 _LIMITS = {
     "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
     "slowest": (lookup.V_MIN, lookup.V_MAX, "m/s"),
@@ -72,7 +72,7 @@ def refuse_units(name: str, value: object, unit: str) -> None:
 def _unit(value: object) -> object:
     """Find the unit of an object, or of a part of a list; None for bare numbers."""
     if isinstance(value, list | tuple):
-        parts = (_unit(one) for one in value if type(one) not in _BARE)
+        parts = (_unit(one) for one in value if type(one) not in BARE)
         return next((unit for unit in parts if unit is not None), None)
     unit = getattr(value, "units", getattr(value, "unit", None))
     return None if isinstance(unit, Real) else unit  # a number: a pandas Series has a row "unit"

@@ -12,7 +12,8 @@ from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, Pai
 from contactlaw.laws import Law
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.scaling import constants_of, numbers_of, without_plate
+from contactlaw.physical.plates import check_contact
+from contactlaw.physical.scaling import constants_of, numbers_of, on_wall, without_plate
 from contactlaw.physical.strengths import by_strength
 from contactlaw.physical.validity import Limits, all_mass_flags, limits, limits_by_strength
 
@@ -44,21 +45,28 @@ class SphereOnPlate:
         """Limits of the model at some strengths, as kernels read them."""
         return limits_by_strength(self.pair, self.law)
 
-    def given(self, *arguments: Any, **named: Any) -> Impacts:
-        """Impacts that a user gave, see `Impacts.on_plates`; masses are checked, too."""
-        impacts = Impacts.on_plates(*arguments, **named)
+    def given(self, speed: Any, radius: Any, thickness: Any, *more: Any, memory: bool = False, **named: Any) -> Impacts:
+        """Impacts that a user gave, see `Impacts.on_plates`; masses are checked, too.
+
+        `memory` says whether the caller integrates impacts on plates from which something comes
+        back; others refuse curved walls and foundations.
+        """
+        check_contact(thickness, self.pair.given[1])
+        impacts = Impacts.on_plates(speed, radius, thickness, *more, **named)
         if impacts.mass is not None:
             solid = self.solid_mass(impacts.radius)
             for n in np.flatnonzero(~beside(impacts.mass, solid))[:1].tolist():
                 raise _refused(impacts.mass[n], solid[n], n if solid.size > 1 else None)
-        return impacts
+        return impacts if impacts.wall is None else on_wall(self.pair.plate, impacts, memory)
 
     def impact(self, impacts: Impacts) -> Impact:
         """Impacts as kernels take them."""
-        share = np.ones_like(impacts.speed)
-        if impacts.mass is not None:
-            share = impacts.mass / self.solid_mass(impacts.radius)
-        return Impact(impacts.speed, impacts.radius, impacts.thickness, share)
+        share, radius = np.ones_like(impacts.speed), impacts.radius
+        if impacts.bending is not None:
+            radius = radius * impacts.bending
+        if impacts.mass is not None or impacts.bending is not None:
+            share = self.mass(impacts) / self.solid_mass(radius)
+        return Impact(impacts.speed, radius, impacts.thickness, share)
 
     def solid_mass(self, radius: Array) -> Array:
         """Mass of a solid sphere [kg]."""
@@ -75,7 +83,7 @@ class SphereOnPlate:
     def mass_flags(self, impacts: Impacts) -> Integers:
         """Limits that masses exceed."""
         flags = np.empty(impacts.speed.size, dtype=np.int64)
-        all_mass_flags(self.impact(impacts).mass, flags)
+        all_mass_flags(self.mass(impacts) / self.solid_mass(impacts.radius), flags)
         return flags
 
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.edge import KINDS
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import Thickness, Wall, wall_of
 
 _ENDLESS = np.array([math.inf])  # distance from an edge, and radius of a hole, where there is none
 
@@ -30,33 +31,53 @@ class Impacts:
     edge_distance: Array | None = None  # [m]; None for plates without edges
     hole_radius: Array | None = None  # [m]; inf for straight edges, None without edges
     mass: Array | None = None  # that answers at the contact [kg]; None for solid spheres
+    wall: Wall | None = None  # None for sheets of the pair's material
+    bending: Array | None = None  # R* over the radius on curved walls; None for flat ones
+    frequency: Array | None = None  # w0 of what comes back from a curved wall or a foundation [1/s]
+
+    @property
+    def remember(self) -> Mask | None:
+        """Impacts on plates from which something comes back; None if there are none."""
+        if self.frequency is not None:
+            return np.asarray(self.frequency > 0.0)
+        return None if self.edge_distance is None else np.asarray(self.edge_distance < math.inf)
+
+    @property
+    def forgetting(self) -> Impacts:
+        """The same impacts on plates from which nothing comes back."""
+        return replace(self, edge_distance=None, frequency=None)
 
     @staticmethod
     def on_plates(
         speed: ArrayLike,
         radius: ArrayLike,
-        thickness: ArrayLike,
+        thickness: Thickness | Wall,
         edge: str = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
     ) -> Impacts:
         """Broadcast and check what the user gave."""
-        given = {} if mass is None else {"mass": mass}
+        wall = wall_of(thickness)
+        given = dict(wall.numbers) if mass is None else {**wall.numbers, "mass": mass}
         if edge_distance is not math.inf or hole_radius is not math.inf:
             given |= {"edge_distance": edge_distance, "hole_radius": hole_radius}
-        v, r, h, *more, shape = broadcast(speed=speed, radius=radius, thickness=thickness, **given)
+        v, r, *more, shape = broadcast(speed=speed, radius=radius, **given)
         known = dict(zip(given, more, strict=True))
         s, a = (known.pop(name, _ENDLESS) for name in ("edge_distance", "hole_radius"))
+        plate = Wall({name: known.pop(name) for name in wall.numbers}, wall.kind)
+        h = plate.numbers.pop("thickness")
         check(speed=v, radius=r, thickness=h, **known)
-        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), **known)
+        edges = edges_as_given(edge, s, a, h)
+        return Impacts(v, r, h, shape, edge, *edges, **known, wall=plate if plate.numbers else None)
 
     def part(self, some: Places) -> Impacts:
         """Choose some of the impacts."""
         arrays: dict[str, Any] = {
             name: value[some] for name, value in vars(self).items() if isinstance(value, np.ndarray)
         }
-        return replace(self, shape=(some.size,), **arrays)
+        wall = None if self.wall is None else self.wall.part(some)
+        return replace(self, shape=(some.size,), wall=wall, **arrays)
 
 
 def edges_as_given(

@@ -14,7 +14,7 @@ from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
-from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at
+from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at, wall_flags
 
 
 @dataclass(frozen=True)
@@ -151,6 +151,12 @@ def rebound(
     )
     if impacts.mass is not None:
         flags |= bodies.mass_flags(impacts)
+    if impacts.wall is not None:
+        flags |= wall_flags(
+            impacts.wall.numbers, impacts.radius, impacts.bending, out.contact_time, out.peak_compression
+        )
+    if edges is not None and impacts.frequency is not None:
+        flags |= np.where(edges.again > 0.0, int(Validity.STRIKES_AGAIN), 0)
     shape = impacts.shape
     named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
     if wrong != 0.0:

@@ -1,6 +1,10 @@
-"""How thin plates respond near edges: the rates and weights that `contactlaw.equation.edge` takes.
+"""How thin plates remember: the rates and weights that `contactlaw.equation.edge` takes.
 
-They are fitted by `validation.derivations.edges` and kept in a file beside this module.
+Near edges they are fitted by `validation.derivations.edges`. A plate on a foundation k and a sphere
+of radius a swing: the displacement under F is alpha times the integral of F(t') J0(w0 (t - t')),
+w0 = sqrt(k/(rho2 H)) or c/a, c = sqrt(E2/rho2). A cylinder has the mean of J0(w0 cos^2(phi)
+(t - t')) over all directions. `validation.derivations.walls` fits these up to w0 t = `REACH`, to
+2e-5 and 4e-5; their unit of time tau is 1/w0. All are kept in a file beside this module.
 """
 
 import functools
@@ -12,6 +16,8 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw.equation.edge import KINDS
+
+REACH = 60.0  # w0 T up to which the response of curved walls and foundations was fitted
 
 
 @functools.cache
@@ -33,8 +39,9 @@ def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
 def response_of(
     kind: str, poissons_ratio: float, share: Any = 0.0, size: Literal["equation", "steps"] = "equation"
 ) -> Array:
-    """Responses near edges in units of tau, in parts of `SIZE`: for the equation two, else one.
+    """Responses in units of tau, in parts of `SIZE`: for the equation two, else one.
 
+    Kinds are those of edges, "sphere" and "cylinder"; of the last two there is none for steps.
     `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge. For steps
     the response is that of the nearest of the shares that were fitted, each with its own rates.
     """

@@ -6,11 +6,13 @@ work with: the inelasticity lambda, and the yield compression y on Hertz's scale
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from contactlaw._arrays import Array
+from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation import numbers
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
@@ -18,8 +20,11 @@ from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Impact, ModulusGrowth, Numbers, PairConstants, PlateConstants, RateOfStrain
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
+from contactlaw.physical.arguments import within
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import Wall
 from contactlaw.physical.rate import SHARE, flow_with_rate
 from contactlaw.physical.responses import response_of
 
@@ -227,13 +232,69 @@ def edges_of(
     least = np.sqrt(wave_path(plate) * thickness * units.time / _LONGEST)
     distance = np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
     rate = wave_rate(wave_path(plate), thickness, distance) * units.time
+    response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
+    return Edges(response, _coupling(plate, constants, units, impact), rate, np.zeros(rate.size))
+
+
+def _coupling(plate: Material, constants: PairConstants, units: Numbers, impact: Impact) -> Array:
+    """Mobility of a thin plate over that of the contact: what comes back is a bending wave."""
+    if numbers.relaxes(constants.plate):  # of bodies with losses both have those of the impact
+        return np.ones(impact.speed.size)
     mass = units.force * units.time / impact.speed
-    return Edges(
-        response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness)),
-        # of bodies with losses both mobilities have those of the impact
-        np.ones(rate.size)
-        if numbers.relaxes(constants.plate)
-        else np.minimum(plate_mobility(plate, thickness) * mass / (units.time * units.inelasticity), 1.0),
-        rate,
-        np.zeros(rate.size),
-    )
+    thin = plate_mobility(plate, impact.thickness)
+    return np.asarray(np.minimum(thin * mass / (units.time * units.inelasticity), 1.0))
+
+
+def swings_of(
+    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, kind: str, frequency: Array
+) -> Edges:
+    """Memory of plates on a foundation, or curved ones, that swing at this frequency [1/s]."""
+    none = np.zeros(frequency.size)
+    response = response_of(kind, plate.poissons_ratio, none)
+    return Edges(response, _coupling(plate, constants, units, impact), frequency * units.time, none)
+
+
+def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
+    """Complete impacts on what is no flat sheet of the plate's material."""
+    assert impacts.wall is not None
+    h, given, kind = impacts.thickness, impacts.wall.numbers, impacts.wall.kind
+    unknown = np.full(h.size, math.nan)
+    areal, bending, membrane = (given.get(name, unknown) for name in ("areal", "bending", "membrane"))
+    sheet = np.isnan(areal)
+    wave = np.where(sheet, wave_path(plate) * h, np.sqrt(bending / areal))
+    fast = np.where(sheet, plate.youngs_modulus / plate.density, membrane / areal)
+    if np.isnan(fast).any() and (impacts.edge_distance is not None or "wall_radius" in given):
+        raise ArgumentError("thickness", None, "curved walls and plates with edges cannot be Orthotropic")
+    numbers = {**given, "wave": wave}
+    if impacts.edge_distance is not None and "areal" in given:
+        # as far in wave lengths on the plate that answers alike
+        farther = np.where(sheet | (h == math.inf), 1.0, np.sqrt(wave_path(plate) * h / wave))
+        impacts = replace(
+            impacts, edge_distance=impacts.edge_distance * farther, hole_radius=impacts.hole_radius * farther
+        )
+    if not kind:
+        return replace(impacts, wall=Wall(numbers))
+    if not memory or impacts.edge_distance is not None:
+        reason = "of curved walls and foundations there are no edges, and no tables: take solve, lookup or oblique"
+        raise ArgumentError("thickness", None, reason)
+    bends = None
+    if "wall_radius" in given:
+        curvature = 1.0 / _checked_radius(given["wall_radius"], impacts.radius)
+        bends = 1.0 / (1.0 - curvature * impacts.radius)
+        bends = np.sqrt(bends) if kind == "cylinder" else bends
+        square = fast * curvature**2
+    else:
+        within("stiffness", given["stiffness"], 0.0, 1e30, "N/m3")
+        square = given["stiffness"] / np.where(sheet, plate.density * h, areal)
+    frequency = np.where(h < math.inf, np.sqrt(square), 0.0)
+    return replace(impacts, wall=Wall(numbers, kind), bending=bends, frequency=frequency)
+
+
+def _checked_radius(wall: Array, radius: Array) -> Array:
+    """Refuse walls that are not larger than the bead."""
+    small = ~(abs(wall) > radius)
+    if small.any():
+        n = int(np.argmax(small))
+        reason = f"the wall's radius must be larger than the bead's, {radius[n]:g} m; negative outside"
+        raise ArgumentError("radius", wall[n], reason, n if wall.size > 1 else None)
+    return wall

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -41,6 +42,9 @@ _HEAVY = 3.05  # the largest that was tried, of dense cores
 # (`validation.fem.curved`). Across a cylinder the geometric mean of the two radii makes Hertz's force
 # 0.2 % too low there, by the exact one of an ellipse (Johnson 1985, 4.2).
 _CURVED = 0.16
+# Least thickness of a top layer over the radius of the contact, and least modulus of one layer over
+# that of another: from there on the COR is within 0.01 of finite elements (`validation.fem.layers`).
+_LINER, _ALIKE = 3.0, 0.2
 _HARDNESS = 3.0  # largest mean pressure that a body bears over its yield strength (Tabor 1951)
 
 
@@ -48,7 +52,7 @@ class Validity(enum.IntFlag):
     """Limits that an impact exceeds; 0 if it exceeds none.
 
     All but `DAMAGE` are limits of the answer's accuracy; `ACCURACY` combines those. What the model
-    leaves out altogether (adhesion, coatings) raises no flag, nor does a metal without a rate of
+    leaves out altogether (adhesion, heating) raises no flag, nor does a metal without a rate of
     strain, which its material may have: at 1e4 per second steels are about a third stronger than in
     the tensile test that the catalogue quotes, and so yield at twice the speed. `explain` puts
     flags into words.
@@ -107,7 +111,7 @@ class Validity(enum.IntFlag):
     than 3 of them, which was not tried."""
 
     CURVED_WALL = 65536
-    """R* on a round wall of a simulation differs from the bead's radius by more than 16 %: inside a
+    """R* on a curved wall differs from the bead's radius by more than 16 %: inside a
     cylinder of less than 4 radii or a sphere of less than 7, say."""
     SHARED_PLATE = 131072
     """In a record of LAMMPS or `WallContacts`: another bead hits the plate too, or its bending
@@ -117,7 +121,15 @@ class Validity(enum.IntFlag):
     """In a simulation: friction has changed the normal motion of a rigid body by more than 2 % of the
     energy of its approach. The COR is that of the motion, and not of the contact."""
 
-    ACCURACY = 523775
+    LINER = 524288
+    """The layer that a bead touches is thinner than 3 radii of the contact, or a layer is more than
+    five times as stiff as another."""
+
+    RIBS = 1048576
+    """Ribs or waves are farther apart than a quarter of the length of the bending wave: a bead
+    meets them one by one."""
+
+    ACCURACY = 2096639
     """All limits of accuracy."""
 
 
@@ -213,6 +225,15 @@ _WORDS = {
         "the plate moves from the impact of another bead, too",
         "take the values for estimates, with w the wave's share of the energy the COR is up to w/(1 + COR) "
         "too low if the other bead is on the other side, as much too high if it is on the same one",
+    ),
+    Validity.LINER: (
+        "the layer that beads touch is thinner than 3 radii of the contact, or one is five times as stiff as another",
+        "take the values for estimates: on a soft liner the COR is 0.02 too low to 0.02 too high, and up to 0.09 too "
+        "high if it is thin; on a stiff layer over a soft one, or a soft core, up to 0.13 too high",
+    ),
+    Validity.RIBS: (
+        "ribs or waves farther apart than a quarter of the bending wave's length",
+        "take the sheet between the ribs, and the ribs, for two plates; the COR is between theirs",
     ),
 }
 
@@ -441,6 +462,20 @@ def mass_flags(mass: float) -> int:
 def curved_flags(bending: float) -> int:
     """Flag what is due to a curved wall, from R* over the radius."""
     return 0 if abs(bending - 1.0) <= _CURVED else _CURVED_WALL
+
+
+def wall_flags(
+    wall: Mapping[str, Array], radius: Array, bending: Array | None, contact_time: Array, compression: Array
+) -> Integers:
+    """Flag what is due to layers, ribs and curvature of impacts; R* over the radius is `bending`."""
+    flags = np.zeros(radius.size, dtype=np.int64)
+    if "alike" in wall:  # by Hertz's law the radius of the contact is sqrt(R d)
+        liner = (wall["top"] < _LINER * np.sqrt(radius * compression)) | (wall["alike"] < _ALIKE)
+        quarter = 0.5 * np.sqrt(math.pi * wall["wave"] * contact_time)  # the frequency is 1/(2 contact times)
+        flags |= np.where(liner, int(Validity.LINER), 0) | np.where(wall["pitch"] > quarter, int(Validity.RIBS), 0)
+    if bending is not None:
+        flags |= np.where(abs(bending - 1.0) <= _CURVED, 0, _CURVED_WALL)
+    return flags
 
 
 @kernel(cache=True)

@@ -19,6 +19,7 @@ from scipy.optimize import least_squares
 from scipy.special import ive, kve
 
 import contactlaw
+from contactlaw.equation.edge import KINDS
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -283,7 +284,8 @@ def numbers(kind: str, blocks: Any, own_rates: bool) -> dict[str, Any]:
 def main() -> None:
     """Write the numbers, beginning with the rates that the file has."""
     known = json.loads(FILE.read_text())
-    for kind, sizes in known["responses"].items():
+    for kind in KINDS:
+        sizes = known["responses"][kind]
         for size, one in sizes.items():
             own = size == "steps"
             sizes[size] = numbers(kind, one["rates"][0] if own else one["rates"], own)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw.physical.arguments import checked
 from validation.fem import elements, mesh, solver
-from validation.fem.mesh import SOLID, Core, Mesh
+from validation.fem.mesh import SOLID, Core, Layer, Mesh
 from validation.fem.solver import System
 
 Array = NDArray[np.float64]
@@ -112,6 +112,8 @@ def impact(
     times: Sequence[float] = (),
     core: Core = SOLID,
     wall: float = math.inf,
+    layers: tuple[Layer, ...] = (),
+    shell: bool = False,
 ) -> Impact:
     """Let a sphere fall on a plate whose edge sends no wave back.
 
@@ -142,6 +144,10 @@ def impact(
         What the sphere has inside; by default it is solid.
     wall : float, optional
         Radius to which the plate's face is bent below the sphere [m], see `mesh.bent`.
+    layers : tuple of Layer, optional
+        What the plate is made of, see `mesh.plate`.
+    shell : bool, optional
+        Bend the plate as a whole, see `mesh.shell`, not its face alone.
 
     Returns
     -------
@@ -164,7 +170,9 @@ def impact(
     (True, True)
     """
     guess = expect(with_mass(pair, core), speed, radius, thickness, yields, plate_yields)
-    width = free_width(pair.plate, guess.time) if width is None else width
+    if width is None:
+        faster = max((math.sqrt(layer.modulus / layer.density) for layer in layers), default=1.0)
+        width = faster * free_width(pair.plate, guess.time)
     size = min(_FINEST, guess.contact / radius / _ACROSS) if size is None else size
     stiffness = hourglass_stiffness or 0.0
     checked(
@@ -174,8 +182,8 @@ def impact(
         far=(far, 0.1, 2.0, ""),
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )
-    above, below = meshed(guess, radius, thickness, size, width, far, core)
-    meshes = above, mesh.bent(below, wall, _BENT * radius)
+    above, below = meshed(guess, radius, thickness, size, width, far, core, layers)
+    meshes = above, mesh.shell(below, wall) if shell else mesh.bent(below, wall, _BENT * radius)
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
     system = solver.assemble(meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time)
@@ -247,7 +255,14 @@ def with_mass(pair: cl.Pair, core: Core) -> cl.Pair:
 
 
 def meshed(
-    guess: Expected, radius: float, thickness: float, size: float, width: float, far: float = 1.0, core: Core = SOLID
+    guess: Expected,
+    radius: float,
+    thickness: float,
+    size: float,
+    width: float,
+    far: float = 1.0,
+    core: Core = SOLID,
+    layers: tuple[Layer, ...] = (),
 ) -> tuple[Mesh, Mesh]:
     """Sphere and plate for an expected impact; lengths [m], `size` over the radius."""
     fine = size * radius, mesh.CORE * guess.contact
@@ -255,7 +270,7 @@ def meshed(
         above = mesh.layered(radius, *fine, core)
     else:
         above = mesh.hollow(radius, *fine, core, far)
-    return above, mesh.plate(radius, *fine, thickness, width, far)
+    return above, mesh.plate(radius, *fine, thickness, width, far, layers)
 
 
 def free_width(plate: cl.Material, contact_time: float) -> float:

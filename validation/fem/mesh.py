@@ -49,6 +49,14 @@ class Core(NamedTuple):
 SOLID = Core(0.0, 1.0, 1.0)
 
 
+class Layer(NamedTuple):
+    """One layer of a plate, from the top; the last one fills what is left of the thickness."""
+
+    thickness: float  # [m]
+    density: float = 1.0  # over that of the plate's material
+    modulus: float = 1.0  # likewise
+
+
 def sphere(radius: float, size: float, core: float, hemisphere: bool = False) -> Mesh:
     """Half a disc with elements of one size at the contact, growing away from it.
 
@@ -104,7 +112,15 @@ def sphere(radius: float, size: float, core: float, hemisphere: bool = False) ->
     return Mesh(_points(nodes), np.concatenate(elements), surface)
 
 
-def plate(radius: float, size: float, core: float, thickness: float, width: float, far: float = 1.0) -> Mesh:
+def plate(
+    radius: float,
+    size: float,
+    core: float,
+    thickness: float,
+    width: float,
+    far: float = 1.0,
+    layers: tuple[Layer, ...] = (),
+) -> Mesh:
     """Rectangle of a plate's thickness, with elements of one size at the contact.
 
     Parameters
@@ -117,6 +133,8 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
         Thickness of the plate and distance of its edge from the axis [m].
     far : float, optional
         Factor on the elements away from the contact: on the largest, and on how fast they grow.
+    layers : tuple of Layer, optional
+        What the plate is made of, from the top; by default of one material.
 
     Returns
     -------
@@ -130,9 +148,18 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
     """
     coarsest = far * max(_COARSEST * radius, thickness / _LAYERS)
     r = _graded(width, size, core, coarsest, _GROWTH**far)
-    z = -_graded(thickness, size, 0.0, coarsest, _GROWTH**far)[::-1]
+    depth, step, counts = np.zeros(1), size, []
+    for one in (*(layer.thickness for layer in layers[:-1]), math.inf):
+        below = _graded(min(one, thickness - depth[-1]), step, 0.0, coarsest, _GROWTH**far)
+        depth, step = np.append(depth, depth[-1] + below[1:]), below[-1] - below[-2]
+        counts.append(below.size - 1)
+    z = -depth[::-1]
     index = np.arange(r.size * z.size).reshape(z.size, r.size)
-    return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
+    made = Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
+    if not layers:
+        return made
+    rows = np.repeat([layer[1:] for layer in layers], counts, axis=0)[::-1]
+    return made._replace(relative=np.repeat(rows, r.size - 1, axis=0))
 
 
 def bent(plate: Mesh, wall: float, end: float) -> Mesh:
@@ -146,6 +173,17 @@ def bent(plate: Mesh, wall: float, end: float) -> Mesh:
     height = abs(wall) - np.sqrt(wall * wall - np.minimum(r, min(end, 0.9 * abs(wall))) ** 2)
     risen = z + math.copysign(1.0, wall) * height * (1.0 - z / z.min())
     return plate._replace(nodes=np.column_stack((r, risen)))
+
+
+def shell(plate: Mesh, wall: float) -> Mesh:
+    """Plate bent as a whole to a shell; the radius of its face is positive for a cup [m].
+
+    The map is conformal, as in `hollow`.
+    """
+    a = math.copysign(1.0, wall) * wall
+    turned = a * np.exp((plate.nodes @ (1j, -math.copysign(1.0, wall))) / a)  # from the centre
+    height = math.copysign(1.0, wall) * (a - turned.real)
+    return plate._replace(nodes=_points(turned.imag + 1j * height))
 
 
 def hollow(radius: float, size: float, core: float, inside: Core, far: float = 1.0) -> Mesh:

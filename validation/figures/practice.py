@@ -17,7 +17,11 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw import style
 from contactlaw.engines.pymunk import attach
-from contactlaw.equation.edge import Edge
+from contactlaw.answers.solver import solved
+from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import Edge, Edges
+from contactlaw.equation.force import HERTZ
+from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, SKY, VERMILION
 from validation import figures, softened
@@ -25,6 +29,7 @@ from validation.accuracy import acceptance, measured
 from validation.accuracy.acceptance import Member, Row
 from validation.accuracy.edges import FILE
 from validation.accuracy.measured import FOLDER, Source
+from validation.derivations.walls import restitution as convolved
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
 from validation.paper import setting
@@ -581,3 +586,48 @@ def _tumbling(model: cl.ImpactModel, radius: float, thickness: float, mass: floa
         if step % 100 == 0:
             yield np.array([body.local_to_world(bead.offset) for bead in beads])
         space.step(5e-5)
+
+
+_SWINGS = Axis(r"contact time times angular frequency of the wall,  $\omega_0 T$").between(0.0, 4.0)
+_BENDS = Axis("radius of the wall  [mm]").between(8.0, 1100.0).log(10, 30, 100, 300, 1000)
+_CURVED = ("sphere", BLUE, "sphere, or on a foundation"), ("cylinder", GREEN, "cylinder")
+
+
+def fig31_walls() -> chart.Drawn:
+    """Fig. 31: a wall that swings back gives a bead some of its energy back.
+
+    Left, elastic impacts on walls that are curved or lie on a foundation; T is the contact time of
+    Hertz's law, lambda the loss to the flat plate. The circles are a convolution in time, which has
+    neither the fit nor the equation of the model. Right, one bead inside walls of one thickness: from
+    a radius of some 200 mm on they are flat.
+    """
+    figure, (left, right) = chart.sheet(
+        (14.0, 6.2),
+        "A wall that is curved, or lies on something, swings back and gives energy back",
+        "left: elastic impacts, circles: independent convolution in time; "
+        "right: bead of glass, 4 mm in diameter, inside walls of steel of 0.7 mm at 2 m/s",
+        Panel(_SWINGS, RESTITUTION.between(0.0, 1.02), "any wall"),
+        Panel(_BENDS, RESTITUTION.between(0.0, 1.02), "a steel wall"),
+    )
+    swings, off, numbers = np.linspace(0.0, 4.0, 33), [], {}
+    for lam, place in ((0.1, 0.79), (0.3, 0.54), (0.6, 0.28)):
+        for kind, colour, _ in _CURVED:
+            none, one = np.zeros(swings.size), np.ones(swings.size)
+            edges = Edges(response_of(kind, 0.3, none), one, swings / CONTACT_TIME, none)
+            found = solved(HERTZ, lam * one, math.inf * one, 1e-10, edges=edges).restitution
+            exact = np.array([convolved(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
+            left.plot(swings, found, color=colour, linewidth=2.6)
+            left.plot(
+                swings[4::8], exact, "o", color=colour, markersize=8, markerfacecolor="white", markeredgewidth=1.8
+            )
+            off.append(np.abs(found[4::8] - exact).max())
+        chart.note(left, 0.1, place, rf"$\lambda$ = {lam:g}")
+    steel, radii = cl.ImpactModel(cl.Pair("glass", "steel-s235")), np.geomspace(8.0, 1100.0, 60)
+    for kind, colour, name in _CURVED:
+        cor = steel.solve(2.0, 2e-3, cl.Shell(0.7e-3, 1e-3 * radii, kind)).restitution
+        right.plot(radii, cor, color=colour, linewidth=2.6, label=name)
+        numbers |= {f"COR in a {kind} of {a:g} mm": np.interp(a, radii, cor) for a in (20.0, 100.0)}
+    flat = float(steel.solve(2.0, 2e-3, 0.7e-3).restitution)
+    right.axhline(flat, color=INK, linestyle="--", linewidth=1.2, label="flat")
+    right.legend(loc="upper right")
+    return figure, {**numbers, "COR of the flat wall": flat, "largest difference from the convolution": max(off)}

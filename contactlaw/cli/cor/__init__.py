@@ -6,6 +6,7 @@
 """
 
 import argparse
+import functools
 import json
 import math
 import sys
@@ -28,6 +29,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "cor", about, _run)
     options.add_impact(command, quantities.values)
     options.add_mass(command)
+    options.add_wall(command)
     options.add_errors(command, _SIZES)
     command.add_argument("--no-band", action="store_true", help="leave out the 68 %% range, which takes longest")
     add = command.add_mutually_exclusive_group().add_argument
@@ -49,7 +51,8 @@ _SIZES = "speed", "radius", "thickness"
 
 def _errors(arguments: argparse.Namespace) -> dict[str, float] | None:
     """Errors of speed and sizes; None if there is to be no band."""
-    if arguments.no_band:
+    remembers = (arguments.cylinder, arguments.bowl, arguments.foundation) != (None, None, None)
+    if arguments.no_band or remembers:  # errors of plates that swing are not known
         return None
     return {f"{name}_error": getattr(arguments, f"{name}_error") for name in _SIZES}
 
@@ -62,13 +65,15 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     values = arguments.speed, arguments.radius, arguments.thickness
     model, errors = chosen.model(arguments), _errors(arguments)
-    mass = arguments.mass
-    found = impacts.tabulate(model, *values, solve=arguments.solve, mass=mass)
+    mass, plate = arguments.mass, model.pair.given[1]
+    wall = functools.partial(chosen.wall, arguments, plate)
+    found = impacts.tabulate(model, *values, solve=arguments.solve, mass=mass, wall=wall)
+    found.asked["plate"] = chosen.plate_in_words(arguments, plate.name)
     known = None
     if errors is not None:
-        sizes = [found.columns[name] for name in _SIZES]
+        speed, radius, thickness = sizes = [found.columns[name] for name in _SIZES]
         with wording.naming_impact(*sizes, mass=mass):
-            known = model.uncertainty(*sizes, **errors, mass=mass)
+            known = model.uncertainty(speed, radius, wall(thickness), **errors, mass=mass)
     found, columns = bands.with_bands(found, known)
     if arguments.csv:
         impacts.write_csv(found, sys.stdout, columns)
@@ -104,13 +109,14 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
     model, errors, mass = chosen.model(arguments), _errors(arguments), arguments.mass
+    wall = functools.partial(chosen.wall, arguments, model.pair.given[1])
     given = {name: getattr(arguments, name) for name in ("speed", "thickness", "radius")}
     if not any(map(layout.can_be_axis, given.values())):
         given["speed"] = (0.1 * arguments.speed[0], arguments.speed[0])
 
     def ask(grid: dict[str, Array]) -> layout.Answers:
-        impact = grid["speed"], grid["radius"], grid["thickness"]
-        with wording.naming_impact(*impact, mass=mass):
+        impact = grid["speed"], grid["radius"], wall(grid["thickness"])
+        with wording.naming_impact(grid["speed"], grid["radius"], grid["thickness"], mass=mass):
             hit = (model.solve if arguments.solve else model.lookup)(*impact, mass=mass)
             known = None
             if errors is not None:
@@ -121,6 +127,7 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
         low, high = (np.where(np.isfinite(end), end, cor) for end in (known.low, known.high))
         return layout.Answers(cor, flags, overload, low, high, bands.in_caption(known))
 
-    about = f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}"
+    plate = chosen.plate_in_words(arguments, model.pair.plate.name)
+    about = f"{model.pair.sphere.name} on {plate}, law {arguments.law}"
     subject = figure.Subject("COR", "coefficient of restitution [-]", about)
     figure.save(arguments.plot, subject, given, ask)

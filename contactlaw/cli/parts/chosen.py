@@ -2,16 +2,21 @@
 
 import argparse
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw._errors import ArgumentError
+from contactlaw._readable import in_unit
 from contactlaw.cli.parts import own, plots, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
+from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import Foundation, Layers, Shell
 
 
 def model(arguments: argparse.Namespace) -> ImpactModel:
@@ -42,6 +47,41 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
         else:
             bodies[name] = own.material_of(name, chosen, arguments.materials)
     return Pair(**bodies)
+
+
+def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:
+    """Plates of these thicknesses [m], with what the options of `options.add_wall` add to them."""
+    below = [layer(text, arguments.materials) for text in arguments.on]
+    if below:
+        whole = [Layers([(plate, one), *below]) for one in np.ravel(thickness).tolist()]
+        thickness = whole if np.ndim(thickness) else whole[0]
+    if arguments.foundation is not None:
+        return Foundation(thickness, arguments.foundation)
+    if arguments.cylinder is not None:
+        return Shell(thickness, arguments.cylinder)
+    return thickness if arguments.bowl is None else Shell(thickness, arguments.bowl, "sphere")
+
+
+def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float]:
+    """Material and thickness [m] of a layer, as "steel-s235:3mm"."""
+    name, colon, thick = text.rpartition(":")
+    if not colon:
+        raise ArgumentError("on", text, "expected a material and a thickness, as steel-s235:3mm")
+    try:
+        return own.material_of("on", name, materials), quantities.value(thick, quantities.LENGTH)
+    except ArgumentError:
+        raise
+    except ValueError as error:
+        raise ArgumentError("on", text, str(error)) from error
+
+
+def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
+    """Name of the plate's material, with what the options of `options.add_wall` add to it."""
+    words = plate + "".join(f" on {text}" for text in arguments.on)
+    for name, unit in (("cylinder", "m"), ("bowl", "m"), ("foundation", "N/m3")):
+        size = getattr(arguments, name)
+        words += "" if size is None else f" ({name} {in_unit(size, unit)})"
+    return words
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:

@@ -5,7 +5,7 @@ A table is printed for a terminal, as CSV or as JSON; its columns and their unit
 
 import csv
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, TextIO
 
@@ -18,6 +18,7 @@ from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
+from contactlaw.physical.plates import Foundation, Shell
 from contactlaw.physical.validity import Validity, count_flags, explain
 
 _MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
@@ -96,10 +97,11 @@ def tabulate(
     thicknesses: Sequence[float],
     solve: bool = False,
     mass: float | None = None,
+    wall: Callable[[Array], Any] = lambda thickness: thickness,
 ) -> ImpactTable:
     """Look up every combination of speeds, radii and thicknesses [m/s, m, m], or `solve` it.
 
-    Along the rows, speeds change fastest.
+    Along the rows, speeds change fastest. `wall` makes plates of thicknesses.
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:
@@ -107,9 +109,13 @@ def tabulate(
         raise ArgumentError("speed, radius, thickness", None, reason)
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.naming_impact(v, r, h, mass=mass):
-        rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
+        rebound = (model.solve if solve else model.lookup)(v, r, wall(h), mass=mass)
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
-    yields = np.repeat(yield_speeds(model, r[first], h[first], mass), len(speeds))
+    plates = wall(h[first])
+    remember = isinstance(plates, Foundation | Shell)  # for which no yield speeds are searched
+    alike = h[first] if remember else np.array(plates, dtype=float)
+    yields = np.full(alike.size, math.nan) if remember else yield_speeds(model, r[first], alike, mass)
+    yields = np.repeat(yields, len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
     return ImpactTable({column.name: found[column.name] for column in COLUMNS}, found["flags"], asked(model, mass=mass))
 

@@ -9,7 +9,7 @@ from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
-from contactlaw.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, Quantity
+from contactlaw.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, STIFFNESS, Quantity
 
 Reader = Callable[[str, Quantity], Any]
 Run = Callable[[argparse.Namespace], None]
@@ -65,6 +65,25 @@ def add_mass(command: argparse.ArgumentParser) -> None:
 def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed") -> None:
     """Add the option of the impact speed."""
     add_quantity(command, "--speed", SPEED, f"{what} [m/s], or with a unit", read, required=True, metavar="V")
+
+
+def add_wall(command: argparse.ArgumentParser) -> None:
+    """Add the options of walls that are no bare flat sheet."""
+    command.add_argument(
+        "--on",
+        metavar="NAME:H",
+        action="append",
+        default=[],
+        help="material and thickness of the layer to which the plate is bonded from below, as "
+        "steel-s235:3mm; --plate and --thickness are then of the layer that beads touch; may be "
+        "repeated, downwards (default: none)",
+    )
+    one = command.add_mutually_exclusive_group()
+    where = "[m], or with a unit; negative where beads hit from outside (default: flat)"
+    add_quantity(one, "--cylinder", LENGTH, f"radius of a wall that is a cylinder {where}", metavar="A")
+    add_quantity(one, "--bowl", LENGTH, f"radius of a wall that is a sphere {where}", metavar="A")
+    what = "stiffness of what the plate lies on, pressure per deflection [N/m3], or in N/mm3"
+    add_quantity(one, "--foundation", STIFFNESS, f"{what} (default: none)", metavar="K")
 
 
 OF_RECORD = " (default: that of the record)"
