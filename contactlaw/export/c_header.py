@@ -168,7 +168,7 @@ def _text(model: ImpactModel, table: Table | None, prefix: str) -> str:
         guard=hashlib.sha256((VERSION + written + about).encode()).hexdigest()[:16],
         V_MAX=V_MAX,
         edges=", ".join(f"CONTACTLAW_{kind.upper()}_EDGE" for kind in KINDS),
-        validity=",\n".join(f"    CONTACTLAW_{f.name} = {f.value}" for f in Validity if f < Validity.SHARED_PLATE),
+        validity=",\n".join(f"    CONTACTLAW_{f.name} = {f.value}" for f in Validity if f < Validity.CURVED_WALL),
         kernels=written,
     )
     text = _DECLARED.sub(lambda one: _MACROS[one[1]], text)

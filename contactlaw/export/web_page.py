@@ -80,7 +80,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     kernels = list(dict.fromkeys(one for one, _ in made))  # each once, for all its pairs
     text = template("contactlaw.export", "explore.html").render(
         version=VERSION,
-        words={flag.value: explain(flag)[0] for flag in Validity if flag < Validity.SHARED_PLATE},
+        words={flag.value: explain(flag)[0] for flag in Validity if flag < Validity.CURVED_WALL},
         pairs=[_shown(one) for one in models],
         kernels=kernels,
         constants=[(kernels.index(one), constants) for one, constants in made],

@@ -41,7 +41,7 @@ def response_of(
 ) -> Array:
     """Responses in units of tau, in parts of `SIZE`: for the equation two, else one.
 
-    Kinds are those of edges, "sphere" and "cylinder"; of the last two there is none for steps.
+    Kinds are those of edges, "sphere" and "cylinder".
     `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge. For steps
     the response is that of the nearest of the shares that were fitted, each with its own rates.
     """
@@ -64,11 +64,14 @@ def response_of(
 
 
 RIMS = tuple(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from
-RESPONSES = len(KINDS) + len(RIMS)
+SPHERE = len(KINDS) + len(RIMS)  # places of the curved walls
+CYLINDER = SPHERE + 1
+RESPONSES = CYLINDER + 1
 
 
 def responses_of(poissons_ratio: float) -> Array:
-    """Responses in steps: near a straight edge of each kind, and near rims of holes."""
+    """Responses in steps: near a straight edge of each kind, near rims of holes, of curved walls."""
     straight = [response_of(kind, poissons_ratio, size="steps") for kind in KINDS]
     rims = [response_of("free", poissons_ratio, share, "steps") for share in RIMS]
-    return np.array(straight + rims)
+    curved = [response_of(kind, poissons_ratio, size="steps") for kind in ("sphere", "cylinder")]
+    return np.array(straight + rims + curved)

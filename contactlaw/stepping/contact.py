@@ -19,6 +19,7 @@ from contactlaw.equation.force import room_for
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
+from contactlaw.physical.responses import CYLINDER, SPHERE
 from contactlaw.physical.scaling import wave_rate
 from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of
 from contactlaw.stepping import energy
@@ -168,7 +169,7 @@ class Bead(NamedTuple):
 
 
 class NearestEdge(NamedTuple):
-    """The edge of a wall that is nearest to a contact."""
+    """The edge of a wall that is nearest to a contact, or how the wall swings back far from edges."""
 
     place: int  # its row of the plate's responses
     rate: float  # as of `EdgeEcho` [1/s]
@@ -190,6 +191,8 @@ class Contact(NamedTuple):
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
     bending: float  # R*/R; negative: radius of a round wall that the bead is too large for [m]
+    curvature: float  # of the wall around its axis [1/m]
+    domed: bool  # whether it is curved in the other direction, too
     mass: float  # that answers at the contact [kg]
     answer: Point  # of a rigid body, as in `contactlaw.stepping.rigid`; zero of a free bead [1/kg]
 
@@ -211,7 +214,22 @@ def contact_of(
     mass = 1.0 / per if per > 0.0 else bead.mass
     one, wall = facet, row.wall
     return Contact(
-        one, row.plate_row, wall, row.triangle, touch, point, u, w, along, touching, merged_into, bent, mass, answers
+        one,
+        row.plate_row,
+        wall,
+        row.triangle,
+        touch,
+        point,
+        u,
+        w,
+        along,
+        touching,
+        merged_into,
+        bent.ratio,
+        bent.around,
+        bent.along != 0.0,
+        mass,
+        answers,
     )
 
 
@@ -507,10 +525,13 @@ def state_of(row: Any) -> State:
 
 @kernel
 def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring) -> NearestEdge:
-    """Edge that is nearest to a contact, and how it acts there."""
+    """Edge that is nearest to a contact, and how it acts there; far from edges, the wall's curvature."""
     facet = scene.facets[contact.facet]
-    if facet.edge_count == 0 or plate_row.thickness == math.inf:
+    if plate_row.thickness == math.inf:
         return NearestEdge(0, 0.0, math.inf)
+    place, swing = SPHERE if contact.domed else CYLINDER, plate_row.shell_speed * abs(contact.curvature)
+    if facet.edge_count == 0:
+        return NearestEdge(place, swing, math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
     # Slow impacts last twice as long as those at 1 m/s, and the more the plate gives way, the
     # longer: the bead is then slowed in the time m alpha.
@@ -519,7 +540,9 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, s
     p = to_frame(scene.frames[facet.frame], contact.point)
     # At an edge nearer than that, an impact is flagged.
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
-    rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
+    if not distance < reach:
+        return NearestEdge(place, swing, distance)
+    rate = wave_rate(path, thickness, distance)
     return NearestEdge(place_of(kind, distance, hole, thickness), rate, distance)
 
 

@@ -18,7 +18,7 @@ from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import check_contact
+from contactlaw.physical.plates import EquivalentThickness, check_contact
 from contactlaw.physical.responses import RESPONSES, responses_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.strengths import COARSE, by_strength
@@ -46,7 +46,7 @@ PLATE_ROW = np.dtype(
     + [("thickness", "f8")]
     + [(name, "i8" if "int" in str(kind) else "f8") for name, kind in Limits.__annotations__.items()]
     # how a plate's edges act, see `responses_of`, and by what its bending waves scale [m/s]
-    + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8")]
+    + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8"), ("shell_speed", "f8")]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # address of the law at any strength (0: there is no model for beads of this type), and its size
@@ -66,15 +66,18 @@ def plate_rows(
         values, which = np.unique(np.asarray(wall.thickness, dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
-        for model in own.values():
+        for model in filter(None, own.values()):
             check_contact(wall.thickness, model.pair.given[1])
         keys = tuple((kind, id(model)) for kind, model in own.items())
-        found = [table.setdefault((keys, float(value)), len(table)) for value in values]
+        shell = None  # square of the speed by which a curved wall swings; None for that of the plate
+        if isinstance(wall.thickness, EquivalentThickness):
+            shell = np.nan_to_num(wall.thickness.membrane) / wall.thickness.areal
+        found = [table.setdefault((keys, float(value), shell), len(table)) for value in values]
         numbers.append(np.array(found)[which.ravel()])
     rows = np.zeros((types, len(table)), PLATE_ROW)
     laws: list[list[Any]] = [[""] * len(table) for _ in range(types)]
     held: list[Any] = list(by_id.values())
-    for (kinds, thickness), number in table.items():
+    for (kinds, thickness, shell), number in table.items():
         for kind, key in kinds:
             row = rows[kind - 1, number]
             row["passes"] = by_id[key] is None
@@ -82,6 +85,8 @@ def plate_rows(
             if model is None:
                 continue
             _fill(row, model, thickness)
+            plate = model.pair.plate
+            row["shell_speed"] = math.sqrt(plate.youngs_modulus / plate.density if shell is None else shell)
             law = by_strength(model.pair, model.force_law, COARSE)
             row["law"], row["law_size"] = law.ctypes.data, law.size
             laws[kind - 1][number], held = law.tobytes(), [*held, law]

@@ -86,9 +86,17 @@ def on_profile(facet: Any, rho: float, z: float) -> OnProfile:
     return OnProfile(at, s, distance, dx / distance, dz / distance, False)
 
 
+class Bend(NamedTuple):
+    """How a wall is curved where a sphere touches it."""
+
+    ratio: float  # R*/R; negative: the radius of a wall that the sphere is too large for [m]
+    around: float  # curvature around the axis [1/m], negative where it is hollow
+    along: float  # and along the profile
+
+
 @kernel
-def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) -> float:
-    """R*/R of a sphere of radius R [m] at a facet; negative: the sphere is too large for the wall.
+def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) -> Bend:
+    """R*/R of a sphere of radius R [m] at a facet, and the curvatures of the wall there.
 
     `size` is the radius that has to fit, which of a parcel is larger than R.
 
@@ -100,7 +108,7 @@ def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) ->
     """
     shape = facet.b
     if facet.kind >= TRIANGLE or (facet.kind == SEGMENT and shape[2] == 0.0):  # flat
-        return 1.0
+        return Bend(1.0, 0.0, 0.0)
     rho, z, _ = in_half_plane(facet, p)
     q = on_profile(facet, rho, z)
     cosine = math.copysign(1.0, q.s)
@@ -113,6 +121,7 @@ def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) ->
     else:
         around, along = cosine * out / max(shape[0] + q.t * shape[1], _TIP * r), 0.0
     if q.face and 1.0 + around * size <= 0.0 and (facet.kind == ARC or shape[1] == 0.0):
-        return float(1.0 / around)
+        return Bend(1.0 / around, around, along)
     one, two = 1.0 + around * r, 1.0 + along * r
-    return 1.0 / math.sqrt(min(max(one, 1.0 / _MOST), _MOST) * min(max(two, 1.0 / _MOST), _MOST))
+    ratio = 1.0 / math.sqrt(min(max(one, 1.0 / _MOST), _MOST) * min(max(two, 1.0 / _MOST), _MOST))
+    return Bend(ratio, around, along)

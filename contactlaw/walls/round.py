@@ -136,8 +136,8 @@ class Cylinder(Round):
     inside (outside with +), and R along it, of which it is the geometric mean. By that, Hertz's
     force is 0.2 % too low for a of 4 R, 1 % for 2 R. The law takes R* for the bead's radius: by
     finite elements of cups and domes that adds an error of 0.012 to the COR where R* differs by 16
-    %. From there on an impact has the flag `Validity.CURVED_WALL`. The wall bends as a flat plate,
-    that is, as long as the contact is short beside the radius over the speed of sound in the wall.
+    %. From there on an impact has the flag `Validity.CURVED_WALL`. The wall swings back as a shell,
+    as in `contactlaw.Shell`, but for impacts from whose edge a wave comes back: then that counts.
 
     Parameters
     ----------

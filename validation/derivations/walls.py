@@ -18,13 +18,14 @@ from validation.derivations.edges import FILE, rates_of
 
 Array = NDArray[np.float64]
 
-REACH = 60.0  # of the fit; `contactlaw.physical.plates` refuses contacts that are longer
+# Of the fits; `contactlaw.physical.plates` refuses contacts that are longer, and time steps flag them.
+REACH = {"equation": 60.0, "steps": 10.0}
 _DIRECTIONS = (np.arange(600) + 0.5) * math.pi / 1200.0
 # Complex rates, and real ones: across a cylinder some waves meet next to no stiffness.
-SIZES = {"sphere": (6, 0), "cylinder": (5, 2)}
+SIZES = {"sphere": {"equation": (6, 0), "steps": (3, 0)}, "cylinder": {"equation": (5, 2), "steps": (2, 2)}}
 
 
-def kernel(kind: str, x: Array) -> Array:
+def kernel(kind: str, x: NDArray[np.floating]) -> Array:
     """Displacement at the times x after a unit impulse, over the plate's mobility."""
     if kind == "sphere":
         return np.asarray(j0(x))
@@ -47,7 +48,7 @@ def restitution(lam: float, swing: float, kind: str, steps: int = 1500) -> float
         f[n] = now
         u -= 0.5 * step * (f[n] + f[n - 1])
         if now == 0.0 and n > 10:
-            return -u
+            return float(-u)
     raise RuntimeError(f"the sphere stays at lambda = {lam}, w0 T_H = {swing}")
 
 
@@ -60,10 +61,14 @@ def columns(rates: list[complex], x: Array) -> Array:
     return np.array(found).T
 
 
-def fitted(kind: str) -> tuple[list[complex], Array, float]:
-    """Rates, weights, and the largest error of the kernel, by least squares at even times."""
-    x, (turning, real) = np.linspace(0.0, REACH, 1500), SIZES[kind]
+def fitted(kind: str, size: str) -> tuple[list[complex], Array, float]:
+    """Rates, weights, and the largest error of the kernel, by least squares at even times.
+
+    Those of time steps, in which a bead may rest, end where the kernel ends, at 0.
+    """
+    x, (turning, real) = np.linspace(0.0, REACH[size], 1500), SIZES[kind][size]
     wanted = kernel(kind, x) - 1.0
+    rests = 1.0 if size == "steps" else 0.0
 
     def unpacked(logs: Array) -> list[complex]:
         values = np.exp(logs)
@@ -72,12 +77,12 @@ def fitted(kind: str) -> tuple[list[complex], Array, float]:
 
     def solved(logs: Array) -> tuple[Array, Array]:
         matrix = columns(unpacked(logs), x)
-        ridge = 1e-9 * np.eye(matrix.shape[1])
-        right = np.append(wanted, np.zeros(matrix.shape[1]))
-        weights = np.asarray(np.linalg.lstsq(np.vstack([matrix, ridge]), right, rcond=None)[0], float)
+        ridge, ends = 1e-9 * np.eye(matrix.shape[1]), columns(unpacked(logs), np.array([1e9]))
+        right = np.concatenate([wanted, [-rests], np.zeros(matrix.shape[1])])
+        weights = np.asarray(np.linalg.lstsq(np.vstack([matrix, rests * ends, ridge]), right, rcond=None)[0], float)
         return weights, np.asarray(matrix @ weights - wanted)
 
-    angle = np.linspace(0.06, 1.45, turning)
+    angle = np.linspace(0.06, 1.2 if rests else 1.45, turning)
     start = np.concatenate([0.005 + 0.9 * np.sin(angle) ** 2, np.cos(angle), np.geomspace(0.05, 0.5, real)])
     found = least_squares(lambda logs: solved(logs)[1], np.log(start), max_nfev=300, bounds=(-7.0, 3.0))
     weights, errors = solved(found.x)
@@ -87,13 +92,14 @@ def fitted(kind: str) -> tuple[list[complex], Array, float]:
 def main() -> None:
     """Write the numbers."""
     known = json.loads(FILE.read_text())
-    for kind in SIZES:
-        rates, weights, error = fitted(kind)
+    for kind, size in ((kind, size) for kind, sizes in SIZES.items() for size in sizes):
+        rates, weights, error = fitted(kind, size)
         real = [rate.real for rate in rates if not rate.imag]
         blocks = [[one.real, one.real, one.imag] for one in rates if one.imag] + ([[*real, 0.0]] if real else [])
         assert len(rates_of(blocks)) == len(rates)
-        known["responses"][kind] = {"equation": {"rates": blocks, "weights": [[[one] for one in weights.tolist()]]}}
-        print(f"{kind}: largest error {error:.1e}", flush=True)
+        of_one = {"rates": [blocks] if size == "steps" else blocks, "weights": [[[one] for one in weights.tolist()]]}
+        known["responses"].setdefault(kind, {})[size] = of_one
+        print(f"{kind}, {size}: largest error {error:.1e}", flush=True)
     FILE.write_text(json.dumps(known, indent=None, separators=(",", ":")).replace("},", "},\n"))
 
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import style
-from contactlaw.engines.pymunk import attach
 from contactlaw.answers.solver import solved
+from contactlaw.engines.pymunk import attach
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges
 from contactlaw.equation.force import HERTZ
@@ -609,7 +609,8 @@ def fig31_walls() -> chart.Drawn:
         Panel(_SWINGS, RESTITUTION.between(0.0, 1.02), "any wall"),
         Panel(_BENDS, RESTITUTION.between(0.0, 1.02), "a steel wall"),
     )
-    swings, off, numbers = np.linspace(0.0, 4.0, 33), [], {}
+    swings, off = np.linspace(0.0, 4.0, 33), []
+    numbers: dict[str, float] = {}
     for lam, place in ((0.1, 0.79), (0.3, 0.54), (0.6, 0.28)):
         for kind, colour, _ in _CURVED:
             none, one = np.zeros(swings.size), np.ones(swings.size)

@@ -189,3 +189,15 @@ def test_an_elastic_bead_keeps_its_energy_anywhere(name):
             energies.append(0.5 * v @ v + 5e3 * x[2])
     assert len(energies) > 30 and len(attached.collisions()) > 10
     assert np.ptp(energies) < (1e-3 if name == "hopper" else 1e-8) * np.mean(np.abs(energies))
+
+
+@pytest.mark.parametrize("softening", [1.0, 5.0])
+@pytest.mark.parametrize("a", [6 * R, 20 * R])
+@pytest.mark.parametrize("thickness", [0.5e-3, cl.Layers([("glass", 0.3e-3), ("steel-s235", 0.3e-3)])])
+def test_a_curved_wall_swings_back_as_in_solve(thickness, a, softening):
+    walls = {"cylinder": Cylinder((-1, 0, a), (1, 0, a), a, thickness), "sphere": Sphere((0, 0, a), a, thickness)}
+    for kind, wall in walls.items():
+        (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), dt=4e-8, steps=4000, softening=softening)
+        expected = MYC.solve(5.0, R, cl.Shell(thickness, a, kind)).restitution
+        assert row["restitution"] == pytest.approx(expected, abs=1e-3)
+        assert expected > MYC.solve(5.0, R, thickness).restitution + (0.02 if a < 10 * R else 0.001)
