@@ -66,8 +66,8 @@ def plate_rows(
         values, which = np.unique(np.asarray(wall.thickness, dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
-        for model in filter(None, own.values()):
-            check_contact(wall.thickness, model.pair.given[1])
+        for known in filter(None, own.values()):
+            check_contact(wall.thickness, known.pair.given[1])
         keys = tuple((kind, id(model)) for kind, model in own.items())
         shell = None  # square of the speed by which a curved wall swings; None for that of the plate
         if isinstance(wall.thickness, EquivalentThickness):
