@@ -354,7 +354,7 @@ class LammpsPlates:
         self._register()
         self._shared["since"] = self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
-        self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0
+        self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0, ""
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
@@ -440,6 +440,10 @@ class LammpsPlates:
             given = commands.read(text)
             commands.check(given, {part for _, part, _ in _PARTS})
             calls = int(self._shared["calls"][0])
+            gone, new = ({one[1] for one in given if one[0] == name and len(one) > 1} for name in ("unfix", "fix"))
+            if len(given) > 1 and any(map(self._bodies.follows, gone - new)):
+                self._bodies.pause()  # LAMMPS would stop a run in which the compute has lost its fix
+                self._shared["look"] = 0
             renumbers = commands.renumbers(given)
             if renumbers:
                 self._clear_foreign_rows()
@@ -482,7 +486,8 @@ class LammpsPlates:
             return
         self._fixes = fixes
         found = commands.fixes(self._lmp)
-        self._bodies.follow(self._comm.bcast([name for name, style, _ in found if style.endswith("/small")]))
+        small = [(name, group) for name, style, group in found if style.endswith("/small")]
+        self._bodies.follow(self._comm.bcast(small))
         self._fixes = self._lmp.available_ids("fix")
         self._rigid = [group for _, style, group in found if style.startswith("rigid")]
         for name, style, _ in found:
@@ -596,13 +601,16 @@ class LammpsPlates:
         ValueError, RuntimeError
             If no step was simulated; the walls were detached.
         """
-        if not self._attached:
-            raise RuntimeError("loads: the walls were detached, and bear nothing; ask before detach()")
+        self._check_attached("loads")
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)
         self._borne = now, sums
         return found
+
+    def _check_attached(self, asked: str) -> None:
+        if not self._attached:
+            raise RuntimeError(f"{asked}: the walls were detached, and bear nothing; ask before detach()")
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.
@@ -650,15 +658,18 @@ class LammpsPlates:
 
         Every rank has to call it; rank 0 writes the path, NAME.vtk.series, and NAME-0000.vtk and so
         on beside it: for each triangle, in its place at the start, the mean pressure [Pa], one for a
-        rectangle or a round wall, and number and energy [J] of the contacts that have ended.
+        rectangle or a round wall, and number and energy [J] of the contacts that have ended. Another
+        name begins another series.
         """
-        (times, before, part), now = self._saved, self.time
+        self._check_attached("save_series")
+        (times, before, part, name), now = self._saved, self.time
+        times = times if name in ("", os.fspath(path)) else times[-1:]
         pressed = self._comm.allreduce(self._contacts.scene.pressed)
         force = mean(pressed - before, now - times[-1])
         parts = self._comm.gather(np.concatenate([np.empty(0, IMPACT), *self._parts[part:]]))
         record = None if parts is None else self._contacts.record(np.concatenate(parts))
         self._on_first_rank(record, lambda new: add_to_series(path, [*times[1:], now], new, force))
-        self._saved = [*times, now], pressed, len(self._parts)
+        self._saved = [*times, now], pressed, len(self._parts), os.fspath(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.

