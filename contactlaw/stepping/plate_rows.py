@@ -18,7 +18,7 @@ from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import check_contact
+from contactlaw.physical.plates import check_wall
 from contactlaw.physical.responses import RESPONSES, responses_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.strengths import COARSE, by_strength
@@ -67,7 +67,7 @@ def plate_rows(
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
         for model in own.values():
-            check_contact(wall.thickness, model.pair.given[1])
+            check_wall(getattr(wall, "contact", wall.thickness), model, wall.edges)
         keys = tuple((kind, id(model)) for kind, model in own.items())
         found = [table.setdefault((keys, float(value)), len(table)) for value in values]
         numbers.append(np.array(found)[which.ravel()])

@@ -89,6 +89,7 @@ class Mesh:
     dropped: int = field(default=0, init=False)
     kept: Any = field(default=None, init=False)
     rim: Any = field(default=None, init=False)
+    contact: Any = field(default=None, init=False)  # the thickness as given
 
     def __post_init__(self) -> None:
         """Check the arguments, and drop triangles without area and duplicates."""
@@ -116,6 +117,7 @@ class Mesh:
             ("dropped", lost),
             ("kept", good),
             ("rim", rim),
+            ("contact", self.thickness),
         ):
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked

@@ -26,7 +26,7 @@ from validation.accuracy import acceptance, measured
 from validation.accuracy.acceptance import Member, Row
 from validation.accuracy.edges import FILE
 from validation.accuracy.measured import FOLDER, Source
-from validation.derivations.walls import restitution as convolved
+from validation.derivations.walls import restitution
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
 from validation.paper import setting
@@ -548,13 +548,14 @@ def fig30_walls() -> chart.Drawn:
         Panel(_SWINGS, RESTITUTION.between(0.0, 1.02), "any wall"),
         Panel(_BENDS, RESTITUTION.between(0.0, 1.02), "a steel wall"),
     )
-    swings, off, numbers = np.linspace(0.0, 4.0, 33), [], {}
+    swings, off = np.linspace(0.0, 4.0, 33), []
+    numbers: dict[str, Any] = {}
     for lam, place in ((0.1, 0.79), (0.3, 0.54), (0.6, 0.28)):
         for kind, colour, _ in _CURVED:
             none, one = np.zeros(swings.size), np.ones(swings.size)
             edges = Edges(response_of(kind, 0.3, none), one, swings / CONTACT_TIME, none)
             found = solved(HERTZ, lam * one, math.inf * one, 1e-10, edges=edges).restitution
-            exact = np.array([convolved(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
+            exact = np.array([restitution(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
             left.plot(swings, found, color=colour, linewidth=2.6)
             left.plot(
                 swings[4::8], exact, "o", color=colour, markersize=8, markerfacecolor="white", markeredgewidth=1.8
