@@ -25,7 +25,7 @@ from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
-from contactlaw.physical.plates import Thickness, Wall, check_contact, wall_of
+from contactlaw.physical.plates import Thickness, check_contact, wall_of
 from contactlaw.table import lookup
 
 Collide = Callable[..., tuple[Vector, Vector]]
@@ -109,7 +109,7 @@ class Oblique:
             **wall.numbers,
             **({} if mass is None else {"mass": mass}),
         )
-        plates = Wall(dict(zip(wall.numbers, more, strict=False)), wall.kind)
+        plates = replace(wall, numbers=dict(zip(wall.numbers, more, strict=False)))
         masses = more[len(wall.numbers) :]
         impacts = replace(bodies.given(v, r, plates, edge, near, hole, *masses, memory=True), shape=shape)
         check(sliding_speed=s, friction=mu)

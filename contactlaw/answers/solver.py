@@ -18,6 +18,7 @@ from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.mobility import SHORTEST
 from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.responses import REACH
 from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
@@ -82,7 +83,7 @@ class Solver:
             near = impacts.edge, impacts.edge_distance, impacts.hole_radius
             edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
         elif impacts.frequency is not None and impacts.wall is not None:
-            swing = impacts.wall.kind, impacts.frequency
+            swing = impacts.wall, impacts.frequency
             edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)
         few = edges is not None and count <= _FEW
         with renumbered(np.arange(count), impacts.mass):
@@ -90,8 +91,11 @@ class Solver:
         known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
         hit = rebound(bodies, impacts, units.time, known, found, flags, edges)
         if impacts.frequency is not None:
-            longest = np.ravel(hit.contact_time) * impacts.frequency
-            within("thickness", longest, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
+            time = np.ravel(hit.contact_time) * impacts.frequency
+            if impacts.wall is not None and impacts.wall.kind == "measured":
+                within("longest", time, SHORTEST, 1.0, "contact times over the longest of the Mobility")
+            else:
+                within("thickness", time, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
         return hit, found, units, edges
 
     def yield_speeds(self, impacts: Impacts) -> Array:

@@ -65,7 +65,7 @@ class Impacts:
         v, r, *more, shape = broadcast(speed=speed, radius=radius, **given)
         known = dict(zip(given, more, strict=True))
         s, a = (known.pop(name, _ENDLESS) for name in ("edge_distance", "hole_radius"))
-        plate = Wall({name: known.pop(name) for name in wall.numbers}, wall.kind)
+        plate = replace(wall, numbers={name: known.pop(name) for name in wall.numbers})
         h = plate.numbers.pop("thickness")
         check(speed=v, radius=r, thickness=h, **known)
         edges = edges_as_given(edge, s, a, h)

@@ -3,24 +3,26 @@
 A thin plate answers a force F with the speed alpha F, alpha = 1/(8 sqrt(D m)), with D its bending
 stiffness and m its mass per area. So `Layers` and `Orthotropic` are numbers: the thickness of a
 plate of the contact's material that answers with the same speed. They go wherever a thickness
-goes. From a `Foundation` and from the curvature of a `Shell` something comes back later, as from an
-edge; such impacts are integrated, see `contactlaw.physical.responses`.
+goes. From a `Foundation`, from the curvature of a `Shell` and from a wall of a known `Mobility`
+something comes back later, as from an edge; such impacts are integrated, see
+`contactlaw.physical.responses`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Places
+from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import BARE, number
 from contactlaw.physical.materials import Material, material
+from contactlaw.physical.mobility import Mobility
 
 SHELLS = "cylinder", "sphere"
 SHEETS = BARE | {np.ndarray}  # types of thicknesses that describe no other plate
@@ -222,7 +224,7 @@ class Foundation:
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     >>> model.solve(5.0, 0.9e-3, cl.Foundation(0.5e-3, [0.0, 1e12])).restitution.round(3)
-    array([0.666, 0.701])
+    array([0.666, 0.855])
     """
 
     thickness: ArrayLike
@@ -251,7 +253,7 @@ class Shell:
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     >>> model.solve(5.0, 0.9e-3, cl.Shell(0.5e-3, [0.01, -0.01], "sphere")).restitution.round(3)
-    array([0.7  , 0.7  ])
+    array([0.742, 0.753])
     """
 
     thickness: ArrayLike
@@ -259,7 +261,7 @@ class Shell:
     kind: str = "cylinder"
 
 
-Thickness = ArrayLike | Foundation | Shell
+Thickness = ArrayLike | Foundation | Shell | Mobility
 """What goes for a thickness [m]; `Layers` and `Orthotropic` are numbers."""
 
 
@@ -269,10 +271,11 @@ class Wall:
 
     numbers: dict[str, Any]
     kind: str = ""  # of the response that comes back; none of a flat plate that lies on nothing
+    response: Array | None = None  # of a wall that was measured
 
     def part(self, some: Places) -> Wall:
         """Plates of some of the impacts."""
-        return Wall({name: values[some] for name, values in self.numbers.items()}, self.kind)
+        return replace(self, numbers={name: values[some] for name, values in self.numbers.items()})
 
 
 def wall_of(thickness: Any) -> Wall:
@@ -280,6 +283,9 @@ def wall_of(thickness: Any) -> Wall:
     if isinstance(thickness, Wall):
         return thickness
     kind, more = "", {}
+    if isinstance(thickness, Mobility):
+        numbers = {"thickness": thickness.thickness, "longest": thickness.longest}
+        return Wall(numbers, "measured", thickness.response)
     if isinstance(thickness, Foundation):
         kind, more, thickness = "sphere", {"stiffness": thickness.stiffness}, thickness.thickness
     elif isinstance(thickness, Shell):
@@ -306,11 +312,23 @@ def _attribute(thickness: Any, name: str) -> Any:
     return getattr(thickness, name) if isinstance(thickness, EquivalentThickness) else math.nan
 
 
+def check_wall(thickness: Any, model: Any, edges: Any) -> None:
+    """Refuse, of walls in engines, another material of the contact, and edges of what is no bare sheet."""
+    if next(_described(thickness), None) is None:
+        return
+    if edges is not None:
+        raise ArgumentError("edges", edges, "only bare sheets have edges in engines: leave them out")
+    if hasattr(model, "pair"):
+        check_contact(thickness, model.pair.given[1])
+
+
 def check_contact(thickness: Any, plate: Material) -> None:
     """Refuse another material of the contact than that of the model's plate."""
     if type(thickness) in SHEETS:
         return
-    for one in _described(getattr(thickness, "thickness", thickness)):
-        if one.material != plate:
-            reason = f"beads touch {one.material.name!r}, and the plate of the model's pair is {plate.name!r}"
-            raise ArgumentError("thickness", one, f"{reason}: make the pair with {one.material.name!r}")
+    flat = getattr(thickness, "thickness", thickness)
+    touched = [thickness.contact] if isinstance(thickness, Mobility) else [one.material for one in _described(flat)]
+    for body in touched:
+        if body != plate:
+            reason = f"beads touch {body.name!r}, and the plate of the model's pair is {plate.name!r}"
+            raise ArgumentError("thickness", thickness, f"{reason}: make the pair with {body.name!r}")

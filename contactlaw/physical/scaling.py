@@ -246,18 +246,22 @@ def _coupling(plate: Material, constants: PairConstants, units: Numbers, impact:
 
 
 def swings_of(
-    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, kind: str, frequency: Array
+    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, wall: Wall, frequency: Array
 ) -> Edges:
-    """Memory of plates on a foundation, or curved ones, that swing at this frequency [1/s]."""
+    """Memory of walls that swing at this frequency [1/s], or, if measured, one over their longest contact."""
     none = np.zeros(frequency.size)
-    response = response_of(kind, plate.poissons_ratio, none)
+    if wall.response is not None:
+        response = np.tile(wall.response, (frequency.size, 1))
+    else:
+        response = response_of(wall.kind, plate.poissons_ratio, none)
     return Edges(response, _coupling(plate, constants, units, impact), frequency * units.time, none)
 
 
 def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
     """Complete impacts on what is no flat sheet of the plate's material."""
-    assert impacts.wall is not None
-    h, given, kind = impacts.thickness, impacts.wall.numbers, impacts.wall.kind
+    wall = impacts.wall
+    assert wall is not None
+    h, given, kind = impacts.thickness, wall.numbers, wall.kind
     unknown = np.full(h.size, math.nan)
     areal, bending, membrane = (given.get(name, unknown) for name in ("areal", "bending", "membrane"))
     sheet = np.isnan(areal)
@@ -274,11 +278,14 @@ def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
         )
     if not kind:
         return replace(impacts, wall=Wall(numbers))
+    wall = replace(wall, numbers=numbers)
     if not memory or impacts.edge_distance is not None:
-        reason = "of curved walls and foundations there are no edges, and no tables: take solve, lookup or oblique"
+        reason = "walls that swing back have neither edges nor tables: take solve, lookup or oblique"
         raise ArgumentError("thickness", None, reason)
     bends = None
-    if "wall_radius" in given:
+    if "longest" in given:
+        square = given["longest"] ** -2.0
+    elif "wall_radius" in given:
         curvature = 1.0 / _checked_radius(given["wall_radius"], impacts.radius)
         bends = 1.0 / (1.0 - curvature * impacts.radius)
         bends = np.sqrt(bends) if kind == "cylinder" else bends
@@ -287,7 +294,7 @@ def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
         within("stiffness", given["stiffness"], 0.0, 1e30, "N/m3")
         square = given["stiffness"] / np.where(sheet, plate.density * h, areal)
     frequency = np.where(h < math.inf, np.sqrt(square), 0.0)
-    return replace(impacts, wall=Wall(numbers, kind), bending=bends, frequency=frequency)
+    return replace(impacts, wall=wall, bending=bends, frequency=frequency)
 
 
 def _checked_radius(wall: Array, radius: Array) -> Array:

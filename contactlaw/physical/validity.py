@@ -228,8 +228,9 @@ _WORDS = {
     ),
     Validity.LINER: (
         "the layer that beads touch is thinner than 3 radii of the contact, or one is five times as stiff as another",
-        "take the values for estimates: on a soft liner the COR is 0.02 too low to 0.02 too high, and up to 0.09 too "
-        "high if it is thin; on a stiff layer over a soft one, or a soft core, up to 0.13 too high",
+        "take the values for estimates: on a soft liner the COR is 0.02 too low to 0.02 too high, of rubber up to 0.1 "
+        "too low (with law hertz 0.02 too high), and up to 0.09 too high if it is thin; on a stiff layer over a soft "
+        "one, or a soft core, up to 0.13 too high",
     ),
     Validity.RIBS: (
         "ribs or waves farther apart than a quarter of the bending wave's length",

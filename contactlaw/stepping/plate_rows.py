@@ -18,7 +18,7 @@ from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import EquivalentThickness, check_contact
+from contactlaw.physical.plates import EquivalentThickness, check_wall
 from contactlaw.physical.responses import RESPONSES, responses_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.strengths import COARSE, by_strength
@@ -67,7 +67,7 @@ def plate_rows(
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
         for known in filter(None, own.values()):
-            check_contact(wall.thickness, known.pair.given[1])
+            check_wall(getattr(wall, "contact", wall.thickness), known, wall.edges)
         keys = tuple((kind, id(model)) for kind, model in own.items())
         shell = None  # square of the speed by which a curved wall swings; None for that of the plate
         if isinstance(wall.thickness, EquivalentThickness):

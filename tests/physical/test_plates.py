@@ -6,17 +6,20 @@ import pickle
 import re
 
 import numpy as np
+import pymunk
 import pytest
 from scipy.integrate import quad
 from scipy.special import ellipk
 
 import contactlaw as cl
 from contactlaw.answers.solver import solved
+from contactlaw.engines.pymunk import attach
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.responses import REACH, response_of
 from contactlaw.physical.scaling import plate_mobility
-from contactlaw.walls import Plate
+from contactlaw.stepping.plate_rows import plate_rows
+from contactlaw.walls import Mesh, Plate
 from validation.derivations.walls import kernel, restitution
 
 STEEL, ALUMINIUM = cl.material("stainless-steel-304"), cl.material("aluminium-6061-t6")
@@ -216,7 +219,24 @@ def test_bad_plates_are_refused_in_words():
     refused(lambda: MODEL.solve(*IMPACT, cl.Foundation(H, -1.0)), "stiffness", "between 0")
     refused(lambda: MODEL.solve(*IMPACT, cl.Foundation(H, 1e17)), "60", "swings")
     wall = cl.Foundation(H, 1e11)
-    refused(lambda: MODEL.solve(*IMPACT, wall, edge_distance=1e-3), "no edges")
+    refused(lambda: MODEL.solve(*IMPACT, wall, edge_distance=1e-3), "neither edges")
     refused(lambda: MODEL.yield_speed(0.9e-3, wall), "take solve")
     refused(lambda: MODEL.curve(0.9e-3, wall), "thickness", "expected one number")
     refused(lambda: Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), thickness=wall), "thickness", "expected one number")
+
+
+def test_engines_refuse_another_material_and_edges_of_layers():
+    clad = cl.Layers([("glass", 0.3e-3), ("aluminium-6061-t6", 0.4e-3)])
+    other = cl.Layers([("aluminium-6061-t6", 0.4e-3), ("glass", 0.3e-3)])
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    here = {"corner": (0, 0, 0), "edge_a": (1, 0, 0), "edge_b": (0, 1, 0)}
+    assert plate_rows([Plate(**here, thickness=clad), Mesh(corners, [[0, 1, 2]], clad)], {1: MODEL}, 1)[0].size == 1
+    for wall in (Plate(**here, thickness=other), Mesh(corners, [[0, 1, 2]], other)):
+        refused(lambda wall=wall: plate_rows([wall], {1: MODEL}, 1), "beads touch 'aluminium-6061-t6'")
+    refused(lambda: plate_rows([Plate(**here, thickness=clad, edges="free")], {1: MODEL}, 1), "only bare sheets")
+    space = pymunk.Space()
+    impacts, segment = attach(space, MODEL), pymunk.Segment(space.static_body, (0, 0), (1, 0), 0.0)
+    refused(lambda: impacts.add_plate(segment, thickness=other), "beads touch")
+    refused(lambda: impacts.add_plate(segment, thickness=clad, edge="free"), "only bare sheets")
+    impacts.add_plate(segment, thickness=clad)
+    assert impacts.plates()["thickness"].tolist() == [float(clad)]

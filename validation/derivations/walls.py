@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ _DIRECTIONS = (np.arange(600) + 0.5) * math.pi / 1200.0
 SIZES = {"sphere": {"equation": (6, 0), "steps": (3, 0)}, "cylinder": {"equation": (5, 2), "steps": (2, 2)}}
 
 
-def kernel(kind: str, x: NDArray[np.floating]) -> Array:
+def kernel(kind: str, x: Any) -> Array:
     """Displacement at the times x after a unit impulse, over the plate's mobility."""
     if kind == "sphere":
         return np.asarray(j0(x))
@@ -33,12 +34,16 @@ def kernel(kind: str, x: NDArray[np.floating]) -> Array:
 
 
 def restitution(lam: float, swing: float, kind: str, steps: int = 1500) -> float:
-    """COR of an elastic impact by a convolution in time, without any fit; `swing` is w0 T_H.
-
-    In units of T_H: x'' = -f, f = d^1.5, d = x - lam times the integral of f(t') K(w0 (t - t')).
-    """
+    """COR of an elastic impact by `convolved`; `swing` is w0 T_H."""
     step = 3.2181 / steps
-    back = kernel(kind, swing * step * np.arange(10 * steps))
+    return convolved(lam, kernel(kind, swing * step * np.arange(10 * steps)), step)
+
+
+def convolved(lam: float, back: Array, step: float) -> float:
+    """COR of an elastic impact by a convolution in time with samples of a kernel, without any fit.
+
+    In units of T_H: x'' = -f, f = d^1.5, d = x - lam times the integral of f(t') K(t - t').
+    """
     f, u, x = np.zeros(back.size), 1.0, 0.0
     for n in range(1, back.size):
         x += u * step - 0.5 * step * step * f[n - 1]
@@ -49,7 +54,7 @@ def restitution(lam: float, swing: float, kind: str, steps: int = 1500) -> float
         u -= 0.5 * step * (f[n] + f[n - 1])
         if now == 0.0 and n > 10:
             return float(-u)
-    raise RuntimeError(f"the sphere stays at lambda = {lam}, w0 T_H = {swing}")
+    raise RuntimeError(f"the sphere stays at lambda = {lam}")
 
 
 def columns(rates: list[complex], x: Array) -> Array:

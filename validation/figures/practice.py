@@ -29,7 +29,7 @@ from validation.accuracy import acceptance, measured
 from validation.accuracy.acceptance import Member, Row
 from validation.accuracy.edges import FILE
 from validation.accuracy.measured import FOLDER, Source
-from validation.derivations.walls import restitution as convolved
+from validation.derivations.walls import restitution
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
 from validation.paper import setting
@@ -616,7 +616,7 @@ def fig31_walls() -> chart.Drawn:
             none, one = np.zeros(swings.size), np.ones(swings.size)
             edges = Edges(response_of(kind, 0.3, none), one, swings / CONTACT_TIME, none)
             found = solved(HERTZ, lam * one, math.inf * one, 1e-10, edges=edges).restitution
-            exact = np.array([convolved(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
+            exact = np.array([restitution(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
             left.plot(swings, found, color=colour, linewidth=2.6)
             left.plot(
                 swings[4::8], exact, "o", color=colour, markersize=8, markerfacecolor="white", markeredgewidth=1.8

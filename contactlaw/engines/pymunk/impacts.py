@@ -41,6 +41,7 @@ from contactlaw.engines.pymunk.registry import (
 )
 from contactlaw.engines.pymunk.seams import Seams
 from contactlaw.physical.arguments import scalars, warn_of_metres
+from contactlaw.physical.plates import check_wall
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
 from contactlaw.stepping.loads import NUMBERS, Loads, means
@@ -242,7 +243,7 @@ class PymunkImpacts:
         import pymunk
 
         body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
-        thickness = float(scalars(thickness=thickness)[0][0])
+        whole, thickness = thickness, float(scalars(thickness=thickness)[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
             reason = f"has no length, all of it is at {tuple(ends(shape)[0])}"
@@ -251,6 +252,8 @@ class PymunkImpacts:
             reason = "a plate with a model of its own has that one's material"
             raise ArgumentError("material", None, reason)
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
+        for one in chosen.values():
+            check_wall(whole, one, edge)
         if friction is not None:
             friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
         edges = edges_of(edge, chosen, len(ends(shape)), thickness)
