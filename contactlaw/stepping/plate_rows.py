@@ -66,12 +66,13 @@ def plate_rows(
         values, which = np.unique(np.asarray(wall.thickness, dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
+        given = getattr(wall, "contact", wall.thickness)  # as the user gave it, of a mesh
         for known in filter(None, own.values()):
-            check_wall(getattr(wall, "contact", wall.thickness), known, wall.edges)
+            check_wall(given, known, wall.edges)
         keys = tuple((kind, id(model)) for kind, model in own.items())
         shell = None  # square of the speed by which a curved wall swings; None for that of the plate
-        if isinstance(wall.thickness, EquivalentThickness):
-            shell = np.nan_to_num(wall.thickness.membrane) / wall.thickness.areal
+        if isinstance(given, EquivalentThickness):
+            shell = np.nan_to_num(given.membrane) / given.areal
         found = [table.setdefault((keys, float(value), shell), len(table)) for value in values]
         numbers.append(np.array(found)[which.ravel()])
     rows = np.zeros((types, len(table)), PLATE_ROW)

@@ -464,8 +464,8 @@ class LammpsPlates:
         """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
         self._look_at_fixes()
         self._shared["look"] = self._bodies.look
-        self._bodies.check()
         if self._shared["calls"][0] != calls:
+            self._bodies.check()
             self._after_steps(lammps_error)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
         if gone:
