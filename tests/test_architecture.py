@@ -78,7 +78,7 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 35_488,
+    "contactlaw": 35_489,
     "contactlaw/answers": 2_728,
     "contactlaw/cli": 3_725,
     "contactlaw/emit": 707,
@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_938,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 702,
     "contactlaw/reporting": 1_027,
-    "contactlaw/stepping": 2_817,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_818,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_481,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
@@ -248,7 +248,7 @@ def test_walls_and_contacts_need_no_engine():
     subprocess.run([sys.executable, "-c", code], check=True)
     adapter = [path.read_text() for path in (ROOT / "engines/lammps").glob("*.py")]
     assert (
-        sum(text.count("\n") for text in adapter) <= 1562
+        sum(text.count("\n") for text in adapter) <= 1592
     )  # an adapter has no mechanics; rigid bodies and loads take 250
 
 
