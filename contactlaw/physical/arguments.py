@@ -126,6 +126,14 @@ def number(name: str, value: float) -> float:
     return float(array)
 
 
+def positive(name: str, given: float, unit: str) -> float:
+    """Return one number, or raise an error if it is not positive and finite."""
+    found = number(name, given)
+    if not 0.0 < found < math.inf:
+        raise ArgumentError(name, given, f"must be positive and finite [{unit}]")
+    return found
+
+
 def scalars(**arguments: float) -> tuple[Array, ...]:
     """Check single numbers and return them as arrays of one element."""
     arrays = {name: np.array([number(name, value)]) for name, value in arguments.items()}

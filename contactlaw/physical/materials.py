@@ -393,6 +393,15 @@ def material(name: str) -> Material:
     return find(name, {})
 
 
+def resolve(argument: str, value: Material | str) -> Material:
+    """Material of an argument that takes one, or its name in the catalogue."""
+    if isinstance(value, Material):
+        return value
+    if isinstance(value, str):
+        return material(value)
+    raise TypeError(f"{argument}: expected a Material or a name from contactlaw.materials(), got {value!r}")
+
+
 def find(name: str, own: Mapping[str, Material]) -> Material:
     """Return a material by name or alias: one of the user's own, otherwise of the catalogue."""
     if not isinstance(name, str):

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.edge import SIZE
-from contactlaw.physical.arguments import number
-from contactlaw.physical.materials import Material, material
+from contactlaw.physical.arguments import positive
+from contactlaw.physical.materials import Material, resolve
 
 SHORTEST = 0.5  # [longest]; in shorter contacts the smoothing of the response would show
 _SMOOTH = 40.0  # [1/longest] angular frequency at which the response is damped by 1/e
@@ -75,7 +75,7 @@ class Mobility:
         longest: float,
         endless: float | None = None,
     ) -> None:
-        span = _positive("longest", longest)
+        span = positive("longest", longest, "s")
         f, whole = np.asarray(frequency, float), np.asarray(value)
         y = whole.real
         if f.ndim != 1 or f.shape != y.shape or f.size < 2 or not (np.diff(f) > 0.0).all() or not f[0] >= 0.0:
@@ -95,7 +95,7 @@ class Mobility:
         width[[0, -1]] *= 0.5
         # response to an impulse from the real part alone, which holds for what answers after its cause
         both = 4.0 * width * y, None if late is None else 4.0 * width * late
-        self._fit(contact, _positive("endless", endless), 2.0 * math.pi * f, *both, span)
+        self._fit(contact, positive("endless", endless, "m/(s N)"), 2.0 * math.pi * f, *both, span)
 
     @classmethod
     def of_plate(
@@ -119,9 +119,9 @@ class Mobility:
         longest : float
             As in `Mobility`.
         """
-        body = contact if isinstance(contact, Material) else material(contact)
-        h, span = _positive("thickness", thickness), _positive("longest", longest)
-        (a, b), (x, y) = ((_positive(n, v) for v in pair) for n, pair in (("size", size), ("place", place)))
+        body = resolve("contact", contact)
+        h, span = positive("thickness", thickness, "m"), positive("longest", longest, "s")
+        (a, b), (x, y) = ((positive(n, v, "m") for v in pair) for n, pair in (("size", size), ("place", place)))
         if not (x < a and y < b):
             raise ArgumentError("place", place, f"must lie within the plate of {a:g} m by {b:g} m")
         bending, areal = body.plane_modulus * h**3 / 12.0, body.density * h
@@ -144,7 +144,7 @@ class Mobility:
         comes after its cause. What differs is an error: of the data, or because their steps are
         wider than a resonance.
         """
-        body = contact if isinstance(contact, Material) else material(contact)
+        body = resolve("contact", contact)
         self.endless, self.longest, self.contact = endless, longest, body
         self.thickness = math.sqrt(math.sqrt(3.0) / (4.0 * endless * math.sqrt(body.density * body.plane_modulus)))
         t, cut = np.linspace(0.0, 1.0, _SAMPLES), _SMOOTH
@@ -204,10 +204,3 @@ def _rates(back: Array, step: float) -> list[tuple[Any, Any]]:
     real = [float(one.real) for one in found if abs(one.imag) <= 1e-6]
     real += [_EARLY] * (len(real) % 2)
     return [(one, None) for one in turning] + list(zip(real[::2], real[1::2], strict=True))
-
-
-def _positive(name: str, given: float) -> float:
-    found = number(name, given)
-    if not 0.0 < found < math.inf:
-        raise ArgumentError(name, given, "must be positive and finite")
-    return found

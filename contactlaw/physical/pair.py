@@ -4,7 +4,7 @@ import cmath
 import math
 
 from contactlaw.laws.myc import C_YIELD
-from contactlaw.physical.materials import Material, material
+from contactlaw.physical.materials import Material, resolve
 
 
 class Pair:
@@ -39,8 +39,8 @@ class Pair:
     given: tuple[Material, Material]  # before the plate's modulus was carried
 
     def __init__(self, sphere: Material | str, plate: Material | str) -> None:
-        self.sphere = _resolve("sphere", sphere)
-        self.plate = _resolve("plate", plate)
+        self.sphere = resolve("sphere", sphere)
+        self.plate = resolve("plate", plate)
         self.given = self.sphere, self.plate
         if self.sphere.loss_factor and self.plate.loss_factor:
             self.plate = self.plate.at_frequency(self.sphere.loss_factor[1])
@@ -138,11 +138,3 @@ class Pair:
         """
         strength = min(body.strength or math.inf for body in (self.sphere, self.plate))
         return coefficient * (math.pi * strength / self.effective_modulus) ** 2
-
-
-def _resolve(argument: str, value: Material | str) -> Material:
-    if isinstance(value, Material):
-        return value
-    if isinstance(value, str):
-        return material(value)
-    raise TypeError(f"{argument}: expected a Material or a name from contactlaw.materials(), got {value!r}")

@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
-from contactlaw.physical.arguments import BARE, number
-from contactlaw.physical.materials import Material, material
+from contactlaw.physical.arguments import BARE, number, positive
+from contactlaw.physical.materials import Material, resolve
 from contactlaw.physical.mobility import Mobility
 
 SHELLS = "cylinder", "sphere"
@@ -144,10 +144,7 @@ def _layer(given: Any) -> tuple[Material, float]:
         body, thick = given
     except (TypeError, ValueError):
         raise ArgumentError("layers", given, "expected a material and a thickness [m]") from None
-    thick = number("layers", thick)
-    if not 0.0 < thick < math.inf:
-        raise ArgumentError("layers", thick, "a thickness must be positive and finite [m]")
-    return body if isinstance(body, Material) else material(body), thick
+    return resolve("layers", body), positive("layers", thick, "m")
 
 
 class Orthotropic(EquivalentThickness):
@@ -189,18 +186,16 @@ class Orthotropic(EquivalentThickness):
     ) -> Orthotropic:
         """Take the mean over all directions."""
         x, y, k = (number(*one) for one in (("along", along), ("across", across), ("twist", twist)))
-        m, p = number("mass", mass), number("pitch", pitch)
+        m, p = positive("mass", mass, "kg/m2"), number("pitch", pitch)
         if not (0.0 < x < math.inf and 0.0 < y < math.inf and -math.sqrt(x * y) < k < math.inf):
             reason = "must be positive, and twist above -sqrt(along across) [N m]: it bends under no load else"
             raise ArgumentError("along, across, twist", (x, y, k), reason)
-        if not 0.0 < m < math.inf:
-            raise ArgumentError("mass", m, "must be positive and finite [kg/m2]")
         if not 0.0 <= p < math.inf:
             raise ArgumentError("pitch", p, "must be 0 or more [m]")
         angle = np.arange(_DIRECTIONS) * (math.pi / _DIRECTIONS)
         c, s = np.cos(angle) ** 2, np.sin(angle) ** 2
         bending = float(np.mean((x * c * c + 2.0 * k * c * s + y * s * s) ** -0.5)) ** -2
-        body = contact if isinstance(contact, Material) else material(contact)
+        body = resolve("contact", contact)
         self = super().__new__(cls, _equivalent(body, m, bending))
         # of the isotropic plate that answers alike
         self._described((body, x, y, k, m, p), body, m, bending, math.nan)

@@ -255,7 +255,7 @@ def flagged(record: Record) -> Record:
     from scipy.spatial import cKDTree
 
     path = np.array([wave_path(one.pair.plate) for one in record.bodies])[record.which] * record.rows["thickness"]
-    some = np.flatnonzero((record.rows["kind"] == Kind.IMPACT) & (path < np.inf))
+    some = np.flatnonzero(only_impacts(record.rows["kind"])[0] & (path < np.inf))
     rows, path, point = record.rows[some], path[some], record.points[some]
     time, long, force, plate = (rows[name] for name in ("time", "contact_time", "peak_force", "plate"))
     share = rows["wave_energy"] / (0.5 * rows["mass"] * rows["approach_speed"] ** 2)

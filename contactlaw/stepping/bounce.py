@@ -80,8 +80,7 @@ def bounce(
             break
         drag = 0.0, 0.0, 0.0
         if len(rows) > 0:
-            up = -u
-            slip = v[0] - up * n[0], v[1] - up * n[1], v[2] - up * n[2]
+            slip = v[0] + u * n[0], v[1] + u * n[1], v[2] + u * n[2]
             drag = tangential_force(
                 rows[0],
                 friction,

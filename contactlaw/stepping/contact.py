@@ -212,11 +212,10 @@ def contact_of(
     answers = answer(body, n, n, bead.r)
     per = dot(answers, n)
     mass = 1.0 / per if per > 0.0 else bead.mass
-    one, wall = facet, row.wall
     return Contact(
-        one,
+        facet,
         row.plate_row,
-        wall,
+        row.wall,
         row.triangle,
         touch,
         point,

@@ -66,7 +66,7 @@ def plate_rows(
         values, which = np.unique(np.asarray(wall.thickness, dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
-        given = getattr(wall, "contact", wall.thickness)  # as the user gave it, of a mesh
+        given = getattr(wall, "given", wall.thickness)
         for known in filter(None, own.values()):
             check_wall(given, known, wall.edges)
         keys = tuple((kind, id(model)) for kind, model in own.items())

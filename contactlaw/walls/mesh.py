@@ -90,7 +90,7 @@ class Mesh:
     dropped: int = field(default=0, init=False)
     kept: Any = field(default=None, init=False)
     rim: Any = field(default=None, init=False)
-    contact: Any = field(default=None, init=False)  # the thickness as given
+    given: Any = field(default=None, init=False)  # for a thickness, where `thickness` has one for each triangle
 
     def __post_init__(self) -> None:
         """Check the arguments, and drop triangles without area and duplicates."""
@@ -110,7 +110,7 @@ class Mesh:
             )
         rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, triangles[good]))
         found = {"vertices": vertices, "triangles": triangles[good], "thickness": thickness[good]}
-        for name, value in {**found, "dropped": lost, "kept": good, "rim": rim, "contact": self.thickness}.items():
+        for name, value in {**found, "dropped": lost, "kept": good, "rim": rim, "given": self.thickness}.items():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked
             object.__setattr__(self, name, value)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
-from contactlaw.engines.lammps.bodies import COLUMN, Bodies
+from contactlaw.engines.lammps.bodies import COLUMN, Bodies, bit_of
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, SOFTENING, WIDTH
@@ -155,11 +155,11 @@ def attach(
     _check_simulation(lmp)
     commands.check_integrator(lmp)
     walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
-    groups = lmp.available_ids("group")  # by the numbers of their bits, None where one was deleted
+    groups = lmp.available_ids("group")  # None where one was deleted
     if group is None or group not in groups:
         raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(filter(None, groups))}")
     if auto:
-        softening = _most_softening(lmp, models, speeds, parcel, 1 << groups.index(group))
+        softening = _most_softening(lmp, models, speeds, parcel, bit_of(lmp, group))
     contact = {"friction": friction, "softening": float(softening), "parcel": parcel}
     return LammpsPlates(lmp, models, walls, memory, group, **contact)
 
@@ -306,7 +306,7 @@ class LammpsPlates:
         self._comm = lmp.get_mpi_comm()
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
-        self._group, self._bit = group, 1 << lmp.available_ids("group").index(group)
+        self._group, self._bit = group, bit_of(lmp, group)
         types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp, self._bit)
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
@@ -317,11 +317,12 @@ class LammpsPlates:
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
         units = _UNITS[lmp.extract_global("units")]
         self._bodies = Bodies(lmp, (units[0], units[2]))
-        self._look_at_fixes()
-        self._check_masses()
         try:
+            self._look_at_fixes()
+            self._check_masses()
             self._install()
         except BaseException:
+            self._bodies.forget()
             _remove(lmp)
             raise
         self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}

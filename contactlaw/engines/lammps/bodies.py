@@ -24,6 +24,11 @@ _LOCAL, _ARRAY, _ROWS = 2, 2, 4  # how LAMMPS's library calls what a compute has
 _NUMBERS = "mol mass x y z quatw quati quatj quatk inertiax inertiay inertiaz"
 
 
+def bit_of(lmp: lammps, group: str) -> int:
+    """Bit by which LAMMPS marks the beads of a group."""
+    return 1 << int(lmp.available_ids("group").index(group))  # in the order of the bits, None where one was deleted
+
+
 class Bodies:
     """The bodies of a simulation, of all its fixes of the style ``rigid/small``.
 
@@ -45,8 +50,7 @@ class Bodies:
         if computes == self._computes:
             return
         self.pause()
-        self._computes, groups = computes, lmp.available_ids("group")
-        self._bits = sum({1 << groups.index(group) for _, group in known})
+        self._computes, self._bits = computes, sum({bit_of(lmp, group) for _, group in known})
         if computes and not lmp.has_id("fix", COLUMN):
             run(lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
         for name, (fix, _) in zip(computes, known, strict=True):

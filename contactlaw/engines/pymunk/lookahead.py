@@ -107,12 +107,13 @@ class LookAhead:
         for n in np.flatnonzero(~finite.all(axis=1)):
             self._refuse(ids[n], motion[n])
         fast = [n for n in np.flatnonzero(travel >= self.reach) if ids[n] in self._beads]
-        beads, found = [bead for n in fast for bead in self._beads[ids[n]]], []
-        for bead in beads:
-            circle = bead.shape()
-            found.append(np.ravel(bead.at(circle)) if circle is not None else np.zeros(4))
-        if beads:
-            self._cross(beads, np.array(found), dt, time)
+        some = [(n, bead) for n in fast for bead in self._beads[ids[n]]]
+        found = motion[[n for n, _ in some]]
+        for row, (_, bead) in zip(found, some, strict=True):
+            if bead.of_body and (circle := bead.shape()) is not None:
+                row[:] = np.ravel(bead.at(circle))
+        if some:
+            self._cross([bead for _, bead in some], found, dt, time)
 
     def _read(self, fields: pymunk.batch.BodyFields) -> None:
         from pymunk.batch import get_space_bodies

@@ -97,6 +97,20 @@ def test_a_run_may_be_cut_into_pieces():
     assert cut["restitution"] == pytest.approx(whole["restitution"], abs=1e-9)
 
 
+def test_a_refused_attachment_leaves_nothing_behind():
+    lmp, walls, _ = thrown(orientations()[:1])
+    walls.detach()
+    lmp.commands_string("""
+        unfix body
+        create_atoms 1 single 0 0 0.02
+        set atom 3 diameter 1e-3 density 100
+        group clump id 1 2
+        fix body clump rigid/small molecule""")
+    with pytest.raises(ValueError, match="density"):
+        attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)])
+    assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
+
+
 def test_two_spheres_of_a_body_that_touch_at_once_are_counted():
     _, walls, rows = thrown(np.array([[1.0, 0.0, 0.0]]))
     assert rows["bead"].tolist() == [1, 2] and (rows["kind"] == Kind.STRUCK).all()
