@@ -157,6 +157,12 @@ def kernels(bodies: Bodies) -> str:
     return program.text()
 
 
+def preamble() -> str:
+    """Return what the kernels in C have of C itself: structures of their members, least and largest."""
+    template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
+    return "/* A structure" + template.partition("/* A structure")[2].partition("/* The kernels")[0]
+
+
 def _text(model: ImpactModel, table: Table | None, prefix: str) -> str:
     """Fill the template."""
     template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
