@@ -51,7 +51,7 @@ FILES = {
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
     "fitting": "measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
-    "export": "functions page_functions c_header liggghts_wall web_page",
+    "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",

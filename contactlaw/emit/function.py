@@ -275,7 +275,7 @@ class Function:
         return Value(DOUBLE, f"{base.within(11)}[{index.text}]", 11)
 
     def _of_rows(self, base: Value, kind: Rows, at: Any) -> Value:
-        """A row, by its address; rows from one on; a row of a matrix, which is rows itself."""
+        """Take a row, by its address; rows from one on; a row of a matrix, which is rows itself."""
         first, row = (self._member(base, kind, name) for name in ("at", "n"))
         whole: Any = first.type
         if isinstance(at, ast.Slice):

@@ -142,7 +142,8 @@ class C:
             text = self.define.format(name, value if value[0] != "-" else f"({value})")
             return wrapped(text, " \\" if text.startswith("#") else "")
         numbers = (re.sub(r"\b0(?=\.)", "", self.number(one).removesuffix(".0")) for one in value)
-        text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH)).replace(", ", ",")
+        # a line has at least four commas, whose spaces go
+        text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH + 4)).replace(", ", ",")
         return f"{self.data[0].format(name)}\n{text}\n{self.data[1]}"
 
 

@@ -36,6 +36,7 @@ class Program:
         self.parts: list[str] = []
         self._constants: dict[str, str] = {}
         self._structs: dict[Any, Struct] = {}
+        self._rows: dict[tuple[Struct, bool], Rows] = {}
         self._arrays: dict[int, Value] = {}
         self.functions: dict[Any, tuple[str, Type] | None] = {}
 
@@ -60,13 +61,12 @@ class Program:
 
     def rows(self, row: Struct, matrix: bool = False) -> Rows:
         """Rows of a dtype, or a matrix of them."""
-        members = (("at", row), ("n", INT), ("m", INT))[: 3 if matrix else 2]
-        key = Rows, row, matrix
-        if key not in self._structs:
-            made = Rows(self.free_name(key, f"{row.name}_{'matrix' if matrix else 'rows'}"), members)
-            self._structs[key] = made
+        if (row, matrix) not in self._rows:
+            members = (("at", row), ("n", INT), ("m", INT))[: 3 if matrix else 2]
+            made = Rows(self.free_name(None, f"{row.name}_{'matrix' if matrix else 'rows'}"), members)
+            self._rows[row, matrix] = made
             self.parts.append(self.language.structure(made))
-        return self._structs[key]
+        return self._rows[row, matrix]
 
     def make(self, source: Any, parts: Mapping[str, Value]) -> Value:
         """Write a NamedTuple or a tuple of these members; those without a trace are left out."""

@@ -6,9 +6,7 @@ is `contactlaw.stepping`, written in C by `contactlaw.emit`.
 
 import io
 import os
-import string
 from collections.abc import Sequence
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -21,12 +19,12 @@ from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, INT, NONE, Array, C, Program, Struct, Type, add
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import room_for
-from contactlaw.export import functions
-from contactlaw.export.c_header import preamble
+from contactlaw.export import c_header, functions
 from contactlaw.model import ImpactModel
+from contactlaw.physical.kind import Kind
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.record.columns import IMPACT
-from contactlaw.physical.kind import Kind
+from contactlaw.softsphere import time_step
 from contactlaw.stepping import Bead, Clock, Trouble, interact
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
@@ -85,7 +83,7 @@ def bending_or_region(facet: Any, p: Point, size: float, r: float) -> Bend:
     return bent(at.around, at.along, r)
 
 
-def lammps(folder: str | os.PathLike[str], models: ImpactModel | Sequence[ImpactModel]) -> None:
+def lammps(folder: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel]) -> None:
     """Write a fix of LAMMPS, for input scripts that run without Python.
 
     ``README.txt`` in the folder says how it is built, loaded and used.
@@ -95,7 +93,7 @@ def lammps(folder: str | os.PathLike[str], models: ImpactModel | Sequence[Impact
     folder : path-like
         Folder to write into; it is made if its parent exists. Files of the same names are
         replaced.
-    models : ImpactModel or sequence of ImpactModel
+    model : ImpactModel or sequence of ImpactModel
         Pairs of beads and walls, each bead with each wall.
 
     Raises
@@ -114,31 +112,27 @@ def lammps(folder: str | os.PathLike[str], models: ImpactModel | Sequence[Impact
     ['README.txt', 'build.sh', 'contactlaw_kernels.h', 'fix_wall_contactlaw.cpp',
      'fix_wall_contactlaw.h', 'in.example', 'plugin.cpp']
     """
-    given = [models] if isinstance(models, ImpactModel) else list(models)
-    for one in given:
-        if not isinstance(one, ImpactModel):
-            raise TypeError(f"models: expected contactlaw.ImpactModel, got {one!r}")
-    spheres, plates = ([*dict.fromkeys(getattr(one.pair, body) for one in given)] for body in ("sphere", "plate"))
-    by_pair = {(one.pair.sphere, one.pair.plate): one for one in given}
+    given = c_header.models_of(model)
+    by_pair = {one.pair.given: one for one in given}
+    spheres, plates = ([*dict.fromkeys(pair[n] for pair in by_pair)] for n in range(2))
     if not len(given) == len(by_pair) == len(spheres) * len(plates) > 0:
-        raise ArgumentError("models", None, "must have each bead's material with each wall's, once")
+        raise ArgumentError("model", None, "must have each bead's material with each wall's, once")
     names = [[line(one.name) for one in bodies] for bodies in (spheres, plates)]
     ordered = [by_pair[sphere, plate] for sphere in spheres for plate in plates]
+    step = 0.5 * time_step(ordered[0], 1.0, 1e-3, 1e-3)  # of the example
     values = {
         "version": VERSION,
         "bead": names[0][0],
         "materials": "\n".join(f"    {one.name:<24} density {one.density:.6g} kg/m3" for one in spheres),
         "walls": ", ".join(names[1]),
         "density": repr(spheres[0].density),
-        "radius": "1e-3",
+        "timestep": f"{step:.1e}",
+        "steps": str(int(400e-6 / step)),
     }
     with _atomic.folder(folder) as made:
         (made / "contactlaw_kernels.h").write_text(_kernels(ordered, *names), "utf-8")
-        for name in _FILES:
-            text = (resources.files("contactlaw.export") / "lammps" / name).read_text("utf-8")
-            if name.endswith(".in"):
-                name, text = name.removesuffix(".in"), string.Template(text).substitute(values)
-            (made / name).write_text(text, "utf-8")
+        for name, content in c_header.filled("lammps", _FILES, values):
+            (made / name).write_bytes(content)
 
 
 def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequence[str]) -> str:
@@ -153,11 +147,10 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
         words = ", ".join(map(hex, rows.view(np.uint64).ravel().tolist()))
         units.append(f"static const unsigned long long contactlaw_unit_{n}[] = {{\n{words}\n}};")
         data.append(language.constant(f"law_{n}", law.tolist()))
-    each = ("UNITS", "const unsigned long long", "unit"), ("LAWS", "const double", "law")
-    lists = [
-        f"static {kind} *const CONTACTLAW_{name}[] = {{ {', '.join(f'contactlaw_{one}_{n}' for n in range(len(laws)))} }};"
-        for name, kind, one in each
-    ]
+    lists = []
+    for name, kind, one in ("UNITS", "unsigned long long", "unit"), ("LAWS", "double", "law"):
+        each = ", ".join(f"contactlaw_{one}_{n}" for n in range(len(laws)))
+        lists.append(f"static const {kind} *const CONTACTLAW_{name}[] = {{ {each} }};")
     for name, texts in ("SPHERES", spheres), ("PLATES", plates), ("EDGES", KINDS):
         said = ", ".join(f'"{text}"' for text in texts)
         lists.append(f"static const char *const CONTACTLAW_{name}[] = {{ {said} }};")
@@ -166,7 +159,7 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
     constants = "\n".join(f"#define CONTACTLAW_{name} {value}" for name, value in numbers.items())
     head = "typedef const double contactlaw_data;"
     written = _program(max(1, *map(room_for, laws)))
-    return "\n\n".join([head, preamble(), constants, _npy(), written, *units, *data, *lists]) + "\n"
+    return "\n\n".join([head, c_header.preamble(), constants, _npy(), written, *units, *data, *lists]) + "\n"
 
 
 def _npy() -> str:
@@ -178,7 +171,7 @@ def _npy() -> str:
     bytes_of = ", ".join(map(str, content.replace(digits, b" " * len(digits))))
     return (
         f"static const unsigned char contactlaw_npy[] = {{\n{bytes_of}\n}};\n"
-        f"#define CONTACTLAW_NPY_ROWS {content.index(digits)}\n#define CONTACTLAW_NPY_DIGITS \"%{len(digits)}lld\""
+        f'#define CONTACTLAW_NPY_ROWS {content.index(digits)}\n#define CONTACTLAW_NPY_DIGITS "%{len(digits)}lld"'
     )
 
 

@@ -182,7 +182,7 @@ def _before(one: Any, other: Any, r: float) -> bool:
     """Order of facets: the deepest first, and at equal overlap a face before an edge."""
     here, there = math.floor(-one.x / (_TIE * r)), math.floor(-other.x / (_TIE * r))
     if here != there:
-        return here < there
+        return bool(here < there)
     return one.face > other.face if one.face != other.face else bool(one.facet < other.facet)
 
 

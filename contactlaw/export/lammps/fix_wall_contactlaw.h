@@ -49,6 +49,7 @@ class FixWallContactlaw : public Fix
 
     void step(bool);
     void look();
+    void count_rows();
     void refuse(int, tagint, int, double, double);
 };
 
