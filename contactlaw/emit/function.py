@@ -136,6 +136,8 @@ class Function:
         args = [ast.Constant(0), *node.iter.args, ast.Constant(1)][len(node.iter.args) > 1 :]
         start, stop, step = map(self.value, args[:3])
         if any(self._picks(one, node.target.id) for line in node.body for one in ast.walk(line)):
+            if UNKNOWN in (start.known, stop.known):
+                self.refuse(node.iter, "a loop over the members of a tuple has known ends")
             return self._unrolled(node, start.known, stop.known)
         self.types[node.target.id] = INT
         body, name = self._block(node.body), self._language.variable(node.target.id)
@@ -276,10 +278,10 @@ class Function:
 
     def _of_rows(self, base: Value, kind: Rows, at: Any) -> Value:
         """Take a row, by its address; rows from one on; a row of a matrix, which is rows itself."""
-        first, row = (self._member(base, kind, name) for name in ("at", "n"))
+        first, count = (self._member(base, kind, name) for name in ("at", "n"))
         whole: Any = first.type
         if isinstance(at, ast.Slice):
-            low, high = self.value(at.lower), self.value(at.upper)
+            low, high = self.value(at.lower or ast.Constant(0)), self.value(at.upper) if at.upper else count
             return self._program.span(whole, f"{first.text} + {low.within(9)}", f"{high.within(8)} - {low.within(9)}")
         if len(kind.members) == 2:
             return Value(whole, f"{first.text} + {self.value(at).within(9)}", 8)
