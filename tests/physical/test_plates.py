@@ -78,6 +78,49 @@ def test_orthotropic_plates_have_the_mean_over_all_directions(x, y, k):
     assert plate_mobility(STEEL, np.array(float(made))) == pytest.approx(mean / (8.0 * math.sqrt(8.0)), rel=1e-9)
 
 
+def struck(stiffness, areal, speed, steps=500, count=150, size=24.0):
+    """COR of a sphere and a spring of Hertz on a supported plate, by the modes of it step by step.
+
+    The plate is so large that little comes back. The force is a line within each step.
+    """
+    x, y, k = stiffness
+    star, density = PAIR.effective_modulus, PAIR.sphere.density
+    mass, spring = 4.0 / 3.0 * math.pi * density * IMPACT[1] ** 3, 4.0 / 3.0 * star * math.sqrt(IMPACT[1])
+    time = (math.pi * density / star) ** 0.4 * IMPACT[1] / speed**0.2
+    a, b = (size * (one / areal * time**2) ** 0.25 for one in (x, y))
+    p, q = ((math.pi * (2.0 * np.arange(count) + 1.0) / side) ** 2 for side in (a, b))
+    p, q = (one.ravel() for one in np.meshgrid(p, q))  # of the modes that move the middle
+    w, step = np.sqrt((x * p * p + 2.0 * k * p * q + y * q * q) / areal), 3.22 * time / steps
+    c, s, share = np.cos(w * step), np.sin(w * step), 4.0 / (areal * a * b)
+    ends = share * (step - s / w) / (w * w * step), share * (1.0 - c) / (w * w * step)
+    starts = share * (1.0 - c) / (w * w) - ends[0], share * s / w - ends[1]
+    z, turn, place, u, f = np.zeros_like(w), np.zeros_like(w), 0.0, speed, 0.0
+    for n in range(4 * steps):
+        z, turn = c * z + s / w * turn + starts[0] * f, c * turn - w * s * z + starts[1] * f
+        place += u * step - f / mass * step**2 / 3.0
+        before, known = f, place - z.sum()
+        for _ in range(50):
+            f = spring * max(known - (step**2 / (6.0 * mass) + ends[0].sum()) * f, 0.0) ** 1.5
+        z, turn, place = z + ends[0] * f, turn + ends[1] * f, place - f / mass * step**2 / 6.0
+        u -= 0.5 * (before + f) / mass * step
+        if f == 0.0 and n > 10:
+            return -u / speed
+    raise RuntimeError("the sphere stays")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "twist", "thickness"), [(1.0, 1.0, 0.9), (12.0, 3.0, 0.5), (40.0, -0.5, 0.36), (100.0, 0.3, 0.24)]
+)
+def test_orthotropic_plates_answer_as_the_sum_of_their_modes(ratio, twist, thickness):
+    """Modes know of no mean over directions; stiffnesses are about those of glass, in mm."""
+    glass = PAIR.plate
+    d, areal = glass.plane_modulus * (1e-3 * thickness) ** 3 / 12.0, 1e-3 * thickness * glass.density
+    stiffness = d * math.sqrt(ratio), d / math.sqrt(ratio), d * twist
+    hit = cl.ImpactModel(PAIR, law="hertz").solve(*IMPACT, cl.Orthotropic(glass, *stiffness, areal))
+    assert 0.06 < hit.inelasticity < 1.1
+    assert hit.restitution == pytest.approx(struck(stiffness, areal, IMPACT[0]), abs=2e-4)
+
+
 def test_descriptions_are_copied_pickled_and_shown():
     clad = cl.Layers([(STEEL, 1e-3), (ALUMINIUM, 4e-3)])
     wood = cl.Orthotropic(STEEL, 3.0, 1.0, 1.0, mass=8.0, pitch=0.02)
