@@ -98,6 +98,9 @@ class Mobility:
         both = 4.0 * width * y, None if late is None else 4.0 * width * late
         self._fit(contact, positive("endless", endless, "m/(s N)"), 2.0 * math.pi * f, *both, span)
 
+    def __repr__(self) -> str:
+        return f"Mobility({self.contact.name!r}, ..., longest={self.longest:g})"
+
     @classmethod
     def of_plate(
         cls,

@@ -197,6 +197,9 @@ def test_a_foundation_swings_as_its_spring_and_the_plates_mass():
         lam = hertz.solve(*IMPACT, H).inelasticity
         assert found == pytest.approx(restitution(lam, swing, "sphere"), abs=5e-4)
     assert MODEL.solve(*IMPACT, cl.Foundation(H, 0.0)) == free
+    several = MODEL.constant([1.0, 5.0], 0.9e-3, cl.Foundation(H, 1e12), weights=[[1.0], [2.0]])
+    each = MODEL.solve([1.0, 5.0], 0.9e-3, cl.Foundation(H, 1e12)).restitution
+    assert several.impacts == 4 and several.mean == pytest.approx(each.mean(), rel=1e-9)
     stiff = MODEL.solve(*IMPACT, cl.Foundation(H, [1e11, 1e12, 1e13]))
     assert (np.diff(stiff.restitution) > 0.0).all()
     balance = stiff.restitution**2 + stiff.plastic_fraction + stiff.wave_fraction + stiff.other_fraction
@@ -256,7 +259,15 @@ def test_bad_plates_are_refused_in_words():
     other = cl.Layers([("aluminium-6061-t6", H)])
     refused(lambda: MODEL.solve(*IMPACT, other), "beads touch 'aluminium-6061-t6'", "'glass'")
     refused(lambda: MODEL.restitution(*IMPACT, [H, other]), "beads touch 'aluminium-6061-t6'")
-    refused(lambda: MODEL.oblique(5.0, 1.0, 0.9e-3, other, 0.2), "beads touch")
+    for answer in (
+        lambda: MODEL.oblique(5.0, 1.0, 0.9e-3, other, 0.2),
+        lambda: MODEL.speed(0.5, 0.9e-3, other),
+        lambda: MODEL.constant(*IMPACT, other),
+        lambda: MODEL.speed_table(0.9e-3, other),
+        lambda: MODEL.collide([0.0, 0.0, -1.0], 0.0, [0.0, 0.0, 1.0], 0.9e-3, other, 0.2),
+        lambda: cl.load_signal([0.0], *IMPACT, other, model=MODEL, rate=1e4),
+    ):
+        refused(answer, "beads touch")
     refused(lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.8e-3)), "radius", "0.0008", "larger than the bead's")
     refused(lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.1, "cone")), "kind", "cylinder, sphere")
     refused(lambda: MODEL.solve(*IMPACT, cl.Foundation(H, -1.0)), "stiffness", "between 0")
