@@ -9,6 +9,8 @@ import numpy as np
 import pymunk
 import pytest
 from scipy.integrate import quad
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import spsolve
 from scipy.special import ellipk
 
 import contactlaw as cl
@@ -119,6 +121,53 @@ def test_orthotropic_plates_answer_as_the_sum_of_their_modes(ratio, twist, thick
     hit = cl.ImpactModel(PAIR, law="hertz").solve(*IMPACT, cl.Orthotropic(glass, *stiffness, areal))
     assert 0.06 < hit.inelasticity < 1.1
     assert hit.restitution == pytest.approx(struck(stiffness, areal, IMPACT[0]), abs=2e-4)
+
+
+def cell(share, nu, count=20):
+    """Bending stiffnesses of a square cell with a hole, over D of the sheet, by Morley's triangles.
+
+    A quarter of the cell: where curvatures are even no side turns, where they are odd no side moves.
+    """
+    angle = np.linspace(0.0, 0.5 * math.pi, 2 * count + 1)
+    hole, side = math.sqrt(share / math.pi), 0.5 / np.maximum(np.cos(angle), np.sin(angle))
+    r = hole + (side - hole) * np.linspace(0.0, 1.0, count + 1)[:, None]
+    node, at = np.stack([r * np.cos(angle), r * np.sin(angle)], -1).reshape(-1, 2), np.arange(r.size).reshape(r.shape)
+    a, b, c, d = (one.ravel() for one in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    corners = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    lines, line = np.unique(np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]]).reshape(-1, 2), axis=0, return_inverse=True)
+    line, run, middle = line.reshape(-1, 3), node[lines[:, 1]] - node[lines[:, 0]], node[lines].mean(axis=1)
+    normal = np.stack([run[:, 1], -run[:, 0]], 1) / np.linalg.norm(run, axis=1)[:, None]
+    freedoms, centre = np.hstack([corners, len(node) + line]), node[corners].mean(axis=1)[:, None]
+    (x, y), (u, v), (n, m) = (
+        np.moveaxis(one, -1, 0) for one in (node[corners] - centre, middle[line] - centre, normal[line])
+    )
+    heights = np.stack([x**0, x, y, x * x, x * y, y * y], -1)
+    slopes = np.stack([0 * n, n, m, 2 * u * n, v * n + u * m, 2 * v * m], -1)
+    bend = 2.0 * np.linalg.inv(np.concatenate([heights, slopes], 1))[:, [3, 5, 4]]
+    area = 0.5 * ((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0]))
+    law = np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
+    moments = area[:, None, None] * np.swapaxes(bend, 1, 2) @ law
+    places = np.repeat(freedoms, 6, 1).ravel(), np.tile(freedoms, (1, 6)).ravel()
+    stiff, load = csc_array(((moments @ bend).ravel(), places)), np.zeros((len(node) + len(lines), 3))
+    np.add.at(load, freedoms, moments)
+    beside, straight = ((np.isclose(z, 0.0) | np.isclose(z, 0.5)).any(axis=1) for z in (node, middle))
+    even, odd, whole = np.append(0 * beside, straight) > 0, np.append(beside, 0 * straight) > 0, area.sum() * law
+    even[at[0, 0]] = True
+    for held, cases in ((even, [0, 1]), (odd, [2])):
+        free = np.flatnonzero(~held)
+        moved = spsolve(stiff[free][:, free], load[np.ix_(free, cases)]).reshape(free.size, -1)
+        whole[np.ix_(cases, cases)] -= load[np.ix_(free, cases)].T @ moved
+    return 4.0 * whole
+
+
+@pytest.mark.parametrize(("share", "off"), [(0.05, 1e-3), (0.2, 2e-3), (0.4, 0.01), (0.5, 0.03)])
+def test_perforated_sheets_bend_as_finite_elements_of_a_cell(share, off):
+    glass = PAIR.plate
+    sheet, made = glass.plane_modulus * H**3 / 12.0, cl.Orthotropic.perforated(glass, H, share)
+    (x, across, _), (_, y, _), (_, _, turn) = sheet * cell(share, glass.poissons_ratio)
+    exact = cl.Orthotropic(glass, x, y, across + 2.0 * turn, (1.0 - share) * glass.density * H)
+    assert made.bending == pytest.approx(exact.bending, rel=off) and made.areal == pytest.approx(exact.areal)
+    assert float(cl.Orthotropic.perforated(glass, H, 0.0)) == pytest.approx(H, rel=1e-12)
 
 
 def test_descriptions_are_copied_pickled_and_shown():
@@ -256,6 +305,7 @@ def test_bad_plates_are_refused_in_words():
     refused(lambda: cl.Layers([("glas", 1e-3)]), "unknown material 'glas'")
     refused(lambda: cl.Orthotropic("glass", 1.0, 4.0, -2.0, 8.0), "twist", "above -sqrt(along across)")
     refused(lambda: cl.Orthotropic("glass", 1.0, 4.0, 2.0, 0.0), "mass", "positive")
+    refused(lambda: cl.Orthotropic.perforated("glass", H, 30.0), "open_area", "30.0", "between 0 and 0.5")
     other = cl.Layers([("aluminium-6061-t6", H)])
     refused(lambda: MODEL.solve(*IMPACT, other), "beads touch 'aluminium-6061-t6'", "'glass'")
     refused(lambda: MODEL.restitution(*IMPACT, [H, other]), "beads touch 'aluminium-6061-t6'")
