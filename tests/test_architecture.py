@@ -78,8 +78,8 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 35_625,
-    "contactlaw/answers": 2_755,
+    "contactlaw": 35_630,
+    "contactlaw/answers": 2_760,
     "contactlaw/cli": 3_739,
     "contactlaw/emit": 707,
     "contactlaw/engines": 4_038,
@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_498,
-    "tests": 25_526,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 25_530,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

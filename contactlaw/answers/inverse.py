@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +22,7 @@ from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.materials import Material
-from contactlaw.physical.plates import Layers, check_contact
+from contactlaw.physical.plates import SHEETS, Layers, check_contact
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
 
@@ -31,6 +31,7 @@ _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the s
 _SLOWEST = 1e-4  # [m/s]: slower beads of millimetres stick by adhesion
 _ROUNDING = 1e-5  # how far `ImpactModel.restitution` may be from the integrated COR
 Stack = Sequence[tuple[Material | str, float | None]]  # layers, one of an unknown thickness
+PlateOf = Callable[[float], Any]  # describes a plate of a thickness that is no bare sheet
 _SHARES = 1e-6, 1.0 - 1e-6  # of a COR; nearer to the ends beads stick, or are elastic at any speed
 
 
@@ -85,8 +86,8 @@ class Solutions:
 class _Curve:
     """COR over the reciprocal of the unknown, where the table reaches, but integrated."""
 
-    def __init__(self, by: Solver, border: TableLookup, layers: Stack, sizes: tuple[float | None, ...]) -> None:
-        self.by, self.layers, self.sizes = by, layers, sizes
+    def __init__(self, by: Solver, border: TableLookup, plate: PlateOf | None, sizes: tuple[float | None, ...]) -> None:
+        self.by, self.plate, self.sizes = by, plate, sizes
         slowest, radius = _SLOWEST, sizes[1] or 0.0
         x = 1.0 / np.geomspace(slowest, lookup.V_MAX, _SAMPLES)
         if sizes[0] is not None:
@@ -114,8 +115,8 @@ class _Curve:
         with np.errstate(divide="ignore"):
             value = 1.0 / x
         v, r, h = (value if size is None else np.full_like(x, size) for size in self.sizes)
-        if self.layers:
-            plates = [one if one == math.inf else _filled(self.layers, one) for one in h.tolist()]
+        if self.plate:
+            plates = [one if one == math.inf else self.plate(one) for one in h.tolist()]
             return self.by.bodies.given(v, r, plates)
         return Impacts(v, r, h, (x.size,))
 
@@ -146,7 +147,8 @@ class _Curve:
 
 
 def _filled(layers: Stack, thickness: float) -> Layers:
-    return Layers([(body, thickness if given is None else given) for body, given in layers])
+    pairs: Any = [[thickness if part is None else part for part in np.ravel(np.array(one, object))] for one in layers]
+    return Layers(pairs)
 
 
 class Inverse(Uncertain):
@@ -203,12 +205,13 @@ class Inverse(Uncertain):
         """
         e, v, r, shape = broadcast(restitution=restitution, speed=speed, radius=radius)
         check(speed=v, radius=r)
-        if layers:
-            if sum(given is None for _, given in layers) != 1:
+        plate = functools.partial(_filled, layers) if layers else None
+        if plate:
+            check_contact(plate(1e-3), self._bodies.pair.given[1])
+            if sum(None in one for one in layers) != 1:
                 raise ArgumentError("layers", layers, "expected None for one thickness, the one that is sought")
-            check_contact(_filled(layers, 1e-3), self._bodies.pair.given[1])
         errors = {"speed_error": speed_error, "radius_error": radius_error}
-        return self._inverse("thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors, layers)
+        return self._inverse("thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors, plate)
 
     def speed(
         self,
@@ -231,8 +234,10 @@ class Inverse(Uncertain):
         e, r, h, shape = broadcast(restitution=restitution, radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
         check_contact(thickness, self._bodies.pair.given[1])
+        named = {float(one): one for one in np.ravel(np.array(thickness, object)).tolist()}
+        plate = None if type(thickness) in SHEETS else named.__getitem__
         errors = {"radius_error": radius_error, "thickness_error": thickness_error}
-        return self._inverse("speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors)
+        return self._inverse("speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors, plate)
 
     def _inverse(
         self,
@@ -241,12 +246,12 @@ class Inverse(Uncertain):
         sizes: list[tuple[float | None, ...]],
         shape: tuple[int, ...] | None,
         errors: dict[str, float],
-        layers: Stack = (),
+        plate: PlateOf | None = None,
     ) -> Solutions | NDArray[np.object_]:
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
         border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
-        curve = functools.cache(functools.partial(_Curve, by, border, layers))
+        curve = functools.cache(functools.partial(_Curve, by, border, plate))
         found = np.empty(wanted.size, dtype=object)
         for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):
             found[n] = self._solutions(unknown, e, curve(size), errors)

@@ -76,7 +76,11 @@ def test_a_layer_is_found_from_above_and_from_below():
             assert found.low[0] < h < found.high[0]
     alone = model.thickness(0.5, 2.0, 1.5e-3, layers=[("aluminium-6061-t6", None)])
     assert alone.value == pytest.approx(model.thickness(0.5, 2.0, 1.5e-3).value, rel=1e-9)
+    thin = cl.Layers([("aluminium-6061-t6", 1e-4), ("steel-s235", 1e-3)])
+    lined, flat = model.speed(0.4, 1.5e-3, [thin, 1e-3])
+    assert lined.flags & cl.Validity.LINER and not flat.flags & cl.Validity.LINER
     for layers, said in (
+        ([("aluminium-6061-t6", None, 3.0)], "expected a material and a thickness"),
         ([("aluminium-6061-t6", 1e-3)], "layers: .*None for one thickness"),
         ([("steel-s235", None)], "beads touch 'steel-s235'"),
         ([("aluminium-6061-t6", None), ("steel-s235", -1.0)], "layers: got -1.0; must be positive"),
