@@ -372,7 +372,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
 
     def constant(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, keep: Keep = "energy", weights: ArrayLike = 1.0
+        self, speed: ArrayLike, radius: ArrayLike, thickness: Thickness, keep: Keep = "energy", weights: ArrayLike = 1.0
     ) -> Constant:
         """One COR in place of those of many impacts, for engines that take nothing else.
 
@@ -406,13 +406,13 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(best.restitution, 4), round(best.mean, 4)
         (0.6225, 0.7343)
         """
-        v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
-        found = self.lookup(v, r, h)
-        e, flags = (np.atleast_1d(one) for one in (found.restitution, found.flags))
-        return constant(v, r, w, e, flags, keep)
+        found = self.lookup(speed, radius, thickness)
+        given = {"restitution": found.restitution, "flags": found.flags}
+        v, r, w, e, flags, _ = broadcast(speed=speed, radius=radius, weights=weights, **given)
+        return constant(v, r, w, e, flags.astype(np.int64), keep)
 
     def speed_table(
-        self, radius: float, thickness: float, error: float = 1e-3, slowest: float = 0.1, fastest: float = 10.0
+        self, radius: float, thickness: Thickness, error: float = 1e-3, slowest: float = 0.1, fastest: float = 10.0
     ) -> SpeedTable:
         """COR over speed in the fewest rows, for engines that interpolate in a table.
 
@@ -443,5 +443,6 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> rows.speed.round(2), rows.restitution.round(3)
         (array([ 0.1 ,  0.15,  1.24, 10.  ]), array([0.952, 0.948, 0.922, 0.871]))
         """
-        r, h = scalars(radius=radius, thickness=thickness)
-        return speed_table(lambda v: self.lookup(v, r, h), error, (slowest, fastest))
+        flat: Any = getattr(thickness, "thickness", thickness)
+        scalars(radius=radius, thickness=flat)
+        return speed_table(lambda v: self.lookup(v, radius, thickness), error, (slowest, fastest))

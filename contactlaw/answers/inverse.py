@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import scale_of
-from contactlaw.answers.backend import Backend, OutsideTableError
+from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.uncertainty import Band, Uncertain
 from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.materials import Material
+from contactlaw.physical.plates import SHEETS, Layers, check_contact
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
 
@@ -27,6 +30,8 @@ _SAMPLES = 1500  # values between which a COR is searched, 2 % apart or less
 _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the same to six digits
 _SLOWEST = 1e-4  # [m/s]: slower beads of millimetres stick by adhesion
 _ROUNDING = 1e-5  # how far `ImpactModel.restitution` may be from the integrated COR
+Stack = Sequence[tuple[Material | str, float | None]]  # layers, one of an unknown thickness
+PlateOf = Callable[[float], Any]  # describes a plate of a thickness that is no bare sheet
 _SHARES = 1e-6, 1.0 - 1e-6  # of a COR; nearer to the ends beads stick, or are elastic at any speed
 
 
@@ -81,12 +86,12 @@ class Solutions:
 class _Curve:
     """COR over the reciprocal of the unknown, where the table reaches, but integrated."""
 
-    def __init__(self, by: Backend, border: TableLookup, sizes: tuple[float | None, ...]) -> None:
-        self.by, self.sizes = by, sizes
+    def __init__(self, by: Solver, border: TableLookup, plate: PlateOf | None, sizes: tuple[float | None, ...]) -> None:
+        self.by, self.plate, self.sizes = by, plate, sizes
         slowest, radius = _SLOWEST, sizes[1] or 0.0
         x = 1.0 / np.geomspace(slowest, lookup.V_MAX, _SAMPLES)
         if sizes[0] is not None:
-            thinnest = max(lookup.THINNEST * radius, lookup.R_MIN)
+            thinnest = (1.0 + 1e-9) * max(lookup.THINNEST * radius, lookup.R_MIN)
             x = np.append(1.0 / np.geomspace(thinnest, _THICKEST * radius, _SAMPLES), 0.0)
         flags = np.asarray(border.rebounds(self.impacts(x)).flags)
         self.x = x[flags & Validity.CLAMPED == 0]
@@ -110,6 +115,9 @@ class _Curve:
         with np.errstate(divide="ignore"):
             value = 1.0 / x
         v, r, h = (value if size is None else np.full_like(x, size) for size in self.sizes)
+        if self.plate:
+            plates = [one if one == math.inf else self.plate(one) for one in h.tolist()]
+            return self.by.bodies.given(v, r, plates)
         return Impacts(v, r, h, (x.size,))
 
     def restitution(self, x: Array) -> Array:
@@ -138,6 +146,11 @@ class _Curve:
         return float(x[n - 1] + share * (x[n] - x[n - 1]))
 
 
+def _filled(layers: Stack, thickness: float) -> Layers:
+    pairs: Any = [[thickness if part is None else part for part in np.ravel(np.array(one, object))] for one in layers]
+    return Layers(pairs)
+
+
 class Inverse(Uncertain):
     """Thicknesses and speeds that give a COR, by one model."""
 
@@ -149,6 +162,7 @@ class Inverse(Uncertain):
         speed: ArrayLike,
         radius: ArrayLike,
         *,
+        layers: Stack = (),
         speed_error: float = 0.0,
         radius_error: float = 0.0,
     ) -> Solutions | NDArray[np.object_]:
@@ -160,6 +174,9 @@ class Inverse(Uncertain):
             Coefficients of restitution [-], between 0 and 1.
         speed, radius : array_like
             As in `restitution`; all three are broadcast.
+        layers : sequence of (Material or str, float or None), optional
+            Of a plate that is lined or clad, as in `Layers`, with None for the thickness that is
+            sought: that of a liner, or of what lies under it.
         speed_error, radius_error : float, optional
             Relative standard errors, as in `uncertainty`.
 
@@ -182,11 +199,19 @@ class Inverse(Uncertain):
         (array([2.84]), array([2.78]), array([2.9]))
         >>> model.thickness(0.8, speed=2.0, radius=1.5e-3).remark
         'no thickness: a half-space gives 0.6106, the largest COR; the range is 1.6e-06 to 0.6106'
+        >>> clad = [("aluminium-6061-t6", None), ("steel-s235", 1e-3)]
+        >>> (1e3 * model.thickness(0.5, speed=2.0, radius=1.5e-3, layers=clad).value).round(2)
+        array([1.15])
         """
         e, v, r, shape = broadcast(restitution=restitution, speed=speed, radius=radius)
         check(speed=v, radius=r)
+        plate = functools.partial(_filled, layers) if layers else None
+        if plate:
+            check_contact(plate(1e-3), self._bodies.pair.given[1])
+            if sum(None in one for one in layers) != 1:
+                raise ArgumentError("layers", layers, "expected None for one thickness, the one that is sought")
         errors = {"speed_error": speed_error, "radius_error": radius_error}
-        return self._inverse("thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors)
+        return self._inverse("thickness", e, [(*size, None) for size in zip(v, r, strict=True)], shape, errors, plate)
 
     def speed(
         self,
@@ -208,8 +233,11 @@ class Inverse(Uncertain):
         """
         e, r, h, shape = broadcast(restitution=restitution, radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
+        check_contact(thickness, self._bodies.pair.given[1])
+        named = {float(one): one for one in np.ravel(np.array(thickness, object)).tolist()}
+        plate = None if type(thickness) in SHEETS else named.__getitem__
         errors = {"radius_error": radius_error, "thickness_error": thickness_error}
-        return self._inverse("speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors)
+        return self._inverse("speed", e, [(None, *size) for size in zip(r, h, strict=True)], shape, errors, plate)
 
     def _inverse(
         self,
@@ -218,11 +246,12 @@ class Inverse(Uncertain):
         sizes: list[tuple[float | None, ...]],
         shape: tuple[int, ...] | None,
         errors: dict[str, float],
+        plate: PlateOf | None = None,
     ) -> Solutions | NDArray[np.object_]:
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
         border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
-        curve = functools.cache(functools.partial(_Curve, by, border))
+        curve = functools.cache(functools.partial(_Curve, by, border, plate))
         found = np.empty(wanted.size, dtype=object)
         for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):
             found[n] = self._solutions(unknown, e, curve(size), errors)

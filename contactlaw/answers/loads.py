@@ -12,6 +12,7 @@ from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.physical.arguments import broadcast, check, number
+from contactlaw.physical.plates import check_contact
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
@@ -88,6 +89,7 @@ def load_signal(
     """
     start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
     check(speed=v, radius=r, thickness=h)
+    check_contact(thickness, model.pair.given[1])
     if not np.isfinite(start).all():
         reason = f"must be finite [s], got {start[~np.isfinite(start)][0]}"
         raise ArgumentError("times", None, reason)

@@ -177,6 +177,7 @@ class Oblique:
             shape = (*within, 3)
         check(friction=mu)
         tabulated = self._tabulated
+        check_contact(thickness, tabulated.bodies.pair.given[1])
         given = tabulated.bodies.given(1.0, r, h, mass=masses[0] if masses else None)
         speed, size, e, changed = np.empty((4, r.size))
         oblique.approach_all(v, omega, n, w, r, speed, size)

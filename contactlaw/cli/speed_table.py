@@ -20,6 +20,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "speed-table", about, _run)
     options.add_pair(command)
     options.add_sizes(command, quantities.value)
+    options.add_wall(command)
     for option, which, speed in (("--slowest", "first", 0.1), ("--fastest", "last", 10.0)):
         what = f"{which} speed [m/s], or with a unit (default: %(default)s)"
         options.add_quantity(command, option, SPEED, what, default=speed, metavar="V")
@@ -41,8 +42,10 @@ def _run(arguments: argparse.Namespace) -> None:
     ends = (arguments.slowest, arguments.fastest)
     with wording.naming_impact(ends, arguments.radius, arguments.thickness):
         model = chosen.model(arguments)
-        found = model.speed_table(arguments.radius, arguments.thickness, arguments.error, *ends)
+        plate = chosen.wall(arguments, model.pair.given[1], arguments.thickness)
+        found = model.speed_table(arguments.radius, plate, arguments.error, *ends)
     given = asked(model, radius=arguments.radius, thickness=arguments.thickness)
+    given["plate"] = chosen.plate_in_words(arguments, given["plate"])
     if arguments.csv:
         print(f"# {in_words(given)}")
         print("speed_m/s,restitution")

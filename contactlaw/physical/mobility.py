@@ -20,6 +20,7 @@ _BAND = 13.0  # [1/longest] frequency up to which data have to reach; there it i
 _SAMPLES = 241  # of the response, from 0 to the longest contact
 _EARLY = 4.0  # [1/longest] rate by which late parts of the response count less in the choice of rates
 _UNSURE = 0.02  # largest difference of what the two parts of the data say comes back
+_SPECTRUM = 200  # frequencies that stand for all modes of a clamped plate
 _WORST = 0.06  # of the error; up to there the COR of elastic impacts is within 0.002 at lambda 0.5
 
 
@@ -97,6 +98,9 @@ class Mobility:
         both = 4.0 * width * y, None if late is None else 4.0 * width * late
         self._fit(contact, positive("endless", endless, "m/(s N)"), 2.0 * math.pi * f, *both, span)
 
+    def __repr__(self) -> str:
+        return f"Mobility({self.contact.name!r}, ..., longest={self.longest:g})"
+
     @classmethod
     def of_plate(
         cls,
@@ -105,8 +109,9 @@ class Mobility:
         size: tuple[float, float],
         place: tuple[float, float],
         longest: float,
+        edges: str = "supported",
     ) -> Mobility:
-        """Mobility of a rectangular plate on supported edges, from its modes.
+        """Mobility of a rectangular plate, from its modes.
 
         Parameters
         ----------
@@ -118,7 +123,11 @@ class Mobility:
             Lengths of its sides, and distances of the impact from two of them [m].
         longest : float
             As in `Mobility`.
+        edges : {"supported", "clamped"}, optional
+            How all four are held.
         """
+        if edges not in ("supported", "clamped"):
+            raise ArgumentError("edges", edges, "must be supported or clamped")
         body = resolve("contact", contact)
         h, span = positive("thickness", thickness, "m"), positive("longest", longest, "s")
         (a, b), (x, y) = ((positive(n, v, "m") for v in pair) for n, pair in (("size", size), ("place", place)))
@@ -127,12 +136,15 @@ class Mobility:
         bending, areal = body.plane_modulus * h**3 / 12.0, body.density * h
         path, highest = math.sqrt(bending / areal), 2.0 * _SMOOTH / span
         waves = math.sqrt(highest / path) / math.pi
-        m, n = (np.arange(1, int(waves * side) + 2) for side in (a, b))
-        omega = path * math.pi**2 * ((m / a) ** 2 + ((n / b) ** 2)[:, None]).ravel()
-        shape = (np.sin(m * math.pi * x / a) * np.sin(n * math.pi * y / b)[:, None]).ravel()
+        if edges == "clamped":
+            omega, strength = _clamped(_beams(a, x, waves), _beams(b, y, waves))
+        else:
+            m, n = (np.arange(1, int(waves * side) + 2) for side in (a, b))
+            omega = math.pi**2 * ((m / a) ** 2 + ((n / b) ** 2)[:, None]).ravel()
+            strength = 4.0 * (np.sin(m * math.pi * x / a) * np.sin(n * math.pi * y / b)[:, None]).ravel() ** 2
         made = cls.__new__(cls)
         endless = 1.0 / (8.0 * math.sqrt(bending * areal))
-        made._fit(body, endless, omega, 4.0 / (areal * a * b) * shape**2, None, span)
+        made._fit(body, endless, path * omega, strength / (areal * a * b), None, span)
         return made
 
     def _fit(
@@ -185,6 +197,51 @@ class Mobility:
             at = SIZE * (n // 3)
             self.response[at + 4 * (n % 3) : at + 4 * (n % 3) + 4] = block
             self.response[at + 12 + 2 * (n % 3) : at + 14 + 2 * (n % 3)] = weights[2 * n : 2 * n + 2]
+
+
+def _beams(side: float, place: float, waves: float) -> tuple[Array, Array, Array]:
+    """Wave numbers of a beam that is clamped at both ends, its modes at a place, products of slopes.
+
+    Products of two such modes are what a clamped plate moves in; they are no modes of it, for the
+    slopes of different ones are not orthogonal.
+    """
+    n, at = np.arange(int(waves * side) + 2), place / side
+    k = np.asarray((n + 1.5) * math.pi, np.float64)
+    for _ in range(8):  # cos(k) cosh(k) = 1
+        k += (np.cos(k) - 1.0 / np.cosh(np.minimum(k, 700.0))) / np.sin(k)
+    e = np.exp(-k)
+    below = 1.0 - e * e - 2.0 * e * np.sin(k)
+    s = (1.0 + e * e - 2.0 * e * np.cos(k)) / below
+    grows = (np.cos(k) - e - np.sin(k)) / below * np.exp(k * (at - 1.0))
+    shape = grows + 0.5 * (1.0 + s) * np.exp(-k * at) - np.cos(k * at) + s * np.sin(k * at)
+    other, gap = k[:, None], k**4 - k[:, None] ** 4
+    np.fill_diagonal(gap, 1.0)
+    slopes = 8.0 * (k * other) ** 2 * (s[:, None] * other - s * k) / gap * ((n + n[:, None]) % 2 == 0)
+    np.fill_diagonal(slopes, s * k * (s * k - 2.0))
+    return k / side, shape, slopes / side**2
+
+
+def _clamped(along: tuple[Array, Array, Array], across: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+    """Angular frequencies over sqrt(D/m) and strengths of a plate, by Ritz's method and Lanczos'.
+
+    Some frequencies stand for all modes: they are those of Gauss's quadrature, which is exact for
+    polynomials, as the response is in a time that is short.
+    """
+    stiff, pulled = along[0][:, None] ** 4 + across[0] ** 4, np.outer(along[1], across[1])
+    basis, middle, beside = np.zeros((min(_SPECTRUM, stiff.size), *stiff.shape)), [], []
+    whole = left = float(np.linalg.norm(pulled))
+    for n in range(len(basis)):
+        basis[n] = q = pulled / left
+        pulled = stiff * q + 2.0 * along[2] @ q @ across[2]
+        middle.append(float((q * pulled).sum()))
+        for _ in range(2):
+            pulled -= np.tensordot(np.tensordot(basis[: n + 1], pulled, 2), basis[: n + 1], 1)
+        left = float(np.linalg.norm(pulled))
+        if left < 1e-9 * stiff.max():
+            break  # all modes that move the place are found
+        beside.append(left)
+    square, vectors = np.linalg.eigh(np.diag(middle) + np.diag(beside[:n], -1))  # it reads what is below
+    return np.sqrt(square), (whole * vectors[0]) ** 2
 
 
 def _rates(back: Array, step: float) -> list[tuple[Any, Any]]:

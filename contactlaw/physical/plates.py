@@ -202,6 +202,42 @@ class Orthotropic(EquivalentThickness):
         self.pitch = p
         return self
 
+    @classmethod
+    def perforated(cls, contact: Material | str, thickness: float, open_area: float, pitch: float = 0.0) -> Orthotropic:
+        """Describe a sheet with round holes in a triangular or square pattern.
+
+        A hole bends 2/(1 - nu) times as much as the thin sheet around it, or 4/(3 + nu) times into a
+        saddle (Goodier, Phil. Mag. 22 (1936) 69). Each of many holes sees the mean of the sheet
+        between them (Mori & Tanaka, Acta Metall. 21 (1973) 571).
+
+        Parameters
+        ----------
+        contact : Material or str
+            Material of the sheet.
+        thickness : float
+            Its thickness [m].
+        open_area : float
+            Share of the holes in its area [-], at most 0.5.
+        pitch : float, optional
+            Distance of the holes [m], as in `Orthotropic`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> sheet = cl.Orthotropic.perforated("stainless-steel-304", 1e-3, open_area=0.3)
+        >>> model = cl.ImpactModel(cl.Pair("glass", "stainless-steel-304"))
+        >>> model.solve(2.0, 1e-3, [sheet, 1e-3]).restitution.round(2)
+        array([0.52, 0.56])
+        """
+        body, h = resolve("contact", contact), positive("thickness", thickness, "m")
+        share, nu = number("open_area", open_area), body.poissons_ratio
+        if not 0.0 <= share <= 0.5:
+            raise ArgumentError("open_area", share, "must lie between 0 and 0.5: a share of the area")
+        left = 1.0 - share
+        dish, saddle = (left / (left + share * more) for more in (2.0 / (1.0 - nu), 4.0 / (3.0 + nu)))
+        bending = body.plane_modulus * h**3 / 24.0 * ((1.0 + nu) * dish + (1.0 - nu) * saddle)
+        return cls(body, bending, bending, bending, left * body.density * h, pitch)
+
 
 @dataclass(frozen=True)
 class Foundation:

@@ -61,6 +61,34 @@ def test_the_error_is_that_of_the_cor_over_its_slope():
     assert model.thickness(0.4, 2.0, 1e-3).high - found.low < wide
 
 
+def test_a_layer_is_found_from_above_and_from_below():
+    """A liner on 1 mm of steel, and the steel under 0.4 mm of it; flags are those of layers."""
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
+    for layers in (
+        [("aluminium-6061-t6", None), ("steel-s235", 1e-3)],
+        [("aluminium-6061-t6", 4e-4), ("steel-s235", None)],
+    ):
+        for wanted in (0.4, 0.5):
+            found = model.thickness(wanted, 2.0, 1.5e-3, layers=layers)
+            (h,) = found.value
+            hit = model.solve(2.0, 1.5e-3, cl.Layers([(name, h if size is None else size) for name, size in layers]))
+            assert hit.restitution == pytest.approx(wanted, abs=1e-9) and found.flags.tolist() == [hit.flags]
+            assert found.low[0] < h < found.high[0]
+    alone = model.thickness(0.5, 2.0, 1.5e-3, layers=[("aluminium-6061-t6", None)])
+    assert alone.value == pytest.approx(model.thickness(0.5, 2.0, 1.5e-3).value, rel=1e-9)
+    thin = cl.Layers([("aluminium-6061-t6", 1e-4), ("steel-s235", 1e-3)])
+    lined, flat = model.speed(0.4, 1.5e-3, [thin, 1e-3])
+    assert lined.flags & cl.Validity.LINER and not flat.flags & cl.Validity.LINER
+    for layers, said in (
+        ([("aluminium-6061-t6", None, 3.0)], "expected a material and a thickness"),
+        ([("aluminium-6061-t6", 1e-3)], "layers: .*None for one thickness"),
+        ([("steel-s235", None)], "beads touch 'steel-s235'"),
+        ([("aluminium-6061-t6", None), ("steel-s235", -1.0)], "layers: got -1.0; must be positive"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            model.thickness(0.5, 2.0, 1.5e-3, layers=layers)
+
+
 @pytest.mark.parametrize("wanted", [0.0, 1.0, -0.5, math.nan])
 def test_a_cor_out_of_range_is_refused(wanted, steel):
     with pytest.raises(ValueError, match="restitution: got"):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
+from contactlaw.physical.mobility import _beams, _clamped
 from validation.derivations.walls import convolved
 
 MODEL = cl.ImpactModel(cl.Pair("glass", "steel-s235"), law="hertz")
@@ -51,12 +52,25 @@ def test_a_small_plate_answers_as_its_modes_do(size, place):
     assert hit.restitution**2 + hit.wave_fraction == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("distance", [4e-3, 5e-3, 1e-2])
-def test_a_large_plate_answers_as_its_nearest_edge(distance):
+@pytest.mark.parametrize(
+    ("edge", "distance"),
+    [*(("supported", far) for far in (4e-3, 5e-3, 1e-2)), *(("clamped", far) for far in (5e-3, 7e-3, 1e-2))],
+)
+def test_a_large_plate_answers_as_its_nearest_edge(edge, distance):
     """The response near an edge is derived from waves along it, that of a plate from modes."""
-    sheet = cl.Mobility.of_plate(STEEL, H, (0.3, 0.3), (distance, 0.15), LONGEST)
-    edge = MODEL.solve(SPEED, RADIUS, H, edge="supported", edge_distance=distance)
-    assert MODEL.solve(SPEED, RADIUS, sheet).restitution == pytest.approx(edge.restitution, abs=0.002)
+    sheet = cl.Mobility.of_plate(STEEL, H, (0.15, 0.1), (distance, 0.05), LONGEST, edge)
+    near = MODEL.solve(SPEED, RADIUS, H, edge=edge, edge_distance=distance)
+    assert MODEL.solve(SPEED, RADIUS, sheet).restitution == pytest.approx(near.restitution, abs=0.002)
+
+
+def test_a_clamped_plate_has_the_frequencies_of_the_literature():
+    """Leissa, Vibration of Plates (NASA SP-160, 1969), over sqrt(D/m)/a^2 of squares."""
+    side = 2.0
+    omega, strength = _clamped(_beams(side, 0.74, 5.0), _beams(side, 0.82, 5.0))
+    assert omega[[0, 1, 3, 4, 5]] * side**2 == pytest.approx([35.992, 73.413, 108.27, 131.64, 132.24], rel=6e-4)
+    # those that are odd, or that change sign with the axes, do not move the middle
+    omega, strength = _clamped(_beams(side, 1.0, 5.0), _beams(side, 1.0, 5.0))
+    assert omega[strength > 1e-9][:2] * side**2 == pytest.approx([35.992, 132.24], rel=6e-4)
 
 
 @functools.cache
@@ -95,6 +109,7 @@ def test_what_is_no_mobility_of_the_contact_is_refused_in_words():
         (lambda: cl.Mobility(STEEL, f[::400], value[::400], LONGEST), "in steps of at most that"),
         (lambda: cl.Mobility(STEEL, f, value[1:], LONGEST), "a value for each"),
         (lambda: cl.Mobility.of_plate(STEEL, H, (0.02, 0.02), (0.03, 0.01), LONGEST), "place: .*within the plate"),
+        (lambda: cl.Mobility.of_plate(STEEL, H, (0.1, 0.1), (0.05, 0.05), LONGEST, "free"), "edges: .*supported or cl"),
         (lambda: cl.Mobility.of_plate(STEEL, H, (0.1, 0.1), (0.05, 0.05), 5e-4), "longest: .*shorter contacts"),
         (lambda: cl.Mobility(STEEL, f[::4], value[::4], LONGEST), "value: .*finer than the resonances"),
         (lambda: MODEL.solve(3e-3, RADIUS, cl.Mobility(STEEL, f, value, LONGEST)), "over the longest"),

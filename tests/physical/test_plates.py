@@ -9,6 +9,8 @@ import numpy as np
 import pymunk
 import pytest
 from scipy.integrate import quad
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import spsolve
 from scipy.special import ellipk
 
 import contactlaw as cl
@@ -76,6 +78,96 @@ def test_orthotropic_plates_have_the_mean_over_all_directions(x, y, k):
     closed = 2.0 / math.pi * (x * y) ** -0.25 * ellipk(0.5 * (1.0 - k / math.sqrt(x * y)))
     assert mean == pytest.approx(closed, rel=1e-9)
     assert plate_mobility(STEEL, np.array(float(made))) == pytest.approx(mean / (8.0 * math.sqrt(8.0)), rel=1e-9)
+
+
+def struck(stiffness, areal, speed, steps=500, count=150, size=24.0):
+    """COR of a sphere and a spring of Hertz on a supported plate, by the modes of it step by step.
+
+    The plate is so large that little comes back. The force is a line within each step.
+    """
+    x, y, k = stiffness
+    star, density = PAIR.effective_modulus, PAIR.sphere.density
+    mass, spring = 4.0 / 3.0 * math.pi * density * IMPACT[1] ** 3, 4.0 / 3.0 * star * math.sqrt(IMPACT[1])
+    time = (math.pi * density / star) ** 0.4 * IMPACT[1] / speed**0.2
+    a, b = (size * (one / areal * time**2) ** 0.25 for one in (x, y))
+    p, q = ((math.pi * (2.0 * np.arange(count) + 1.0) / side) ** 2 for side in (a, b))
+    p, q = (one.ravel() for one in np.meshgrid(p, q))  # of the modes that move the middle
+    w, step = np.sqrt((x * p * p + 2.0 * k * p * q + y * q * q) / areal), 3.22 * time / steps
+    c, s, share = np.cos(w * step), np.sin(w * step), 4.0 / (areal * a * b)
+    ends = share * (step - s / w) / (w * w * step), share * (1.0 - c) / (w * w * step)
+    starts = share * (1.0 - c) / (w * w) - ends[0], share * s / w - ends[1]
+    z, turn, place, u, f = np.zeros_like(w), np.zeros_like(w), 0.0, speed, 0.0
+    for n in range(4 * steps):
+        z, turn = c * z + s / w * turn + starts[0] * f, c * turn - w * s * z + starts[1] * f
+        place += u * step - f / mass * step**2 / 3.0
+        before, known = f, place - z.sum()
+        for _ in range(50):
+            f = spring * max(known - (step**2 / (6.0 * mass) + ends[0].sum()) * f, 0.0) ** 1.5
+        z, turn, place = z + ends[0] * f, turn + ends[1] * f, place - f / mass * step**2 / 6.0
+        u -= 0.5 * (before + f) / mass * step
+        if f == 0.0 and n > 10:
+            return -u / speed
+    raise RuntimeError("the sphere stays")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "twist", "thickness"), [(1.0, 1.0, 0.9), (12.0, 3.0, 0.5), (40.0, -0.5, 0.36), (100.0, 0.3, 0.24)]
+)
+def test_orthotropic_plates_answer_as_the_sum_of_their_modes(ratio, twist, thickness):
+    """Modes know of no mean over directions; stiffnesses are about those of glass, in mm."""
+    glass = PAIR.plate
+    d, areal = glass.plane_modulus * (1e-3 * thickness) ** 3 / 12.0, 1e-3 * thickness * glass.density
+    stiffness = d * math.sqrt(ratio), d / math.sqrt(ratio), d * twist
+    hit = cl.ImpactModel(PAIR, law="hertz").solve(*IMPACT, cl.Orthotropic(glass, *stiffness, areal))
+    assert 0.06 < hit.inelasticity < 1.1
+    assert hit.restitution == pytest.approx(struck(stiffness, areal, IMPACT[0]), abs=2e-4)
+
+
+def cell(share, nu, count=20):
+    """Bending stiffnesses of a square cell with a hole, over D of the sheet, by Morley's triangles.
+
+    A quarter of the cell: where curvatures are even no side turns, where they are odd no side moves.
+    """
+    angle = np.linspace(0.0, 0.5 * math.pi, 2 * count + 1)
+    hole, side = math.sqrt(share / math.pi), 0.5 / np.maximum(np.cos(angle), np.sin(angle))
+    r = hole + (side - hole) * np.linspace(0.0, 1.0, count + 1)[:, None]
+    node, at = np.stack([r * np.cos(angle), r * np.sin(angle)], -1).reshape(-1, 2), np.arange(r.size).reshape(r.shape)
+    a, b, c, d = (one.ravel() for one in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    corners = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    lines, line = np.unique(np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]]).reshape(-1, 2), axis=0, return_inverse=True)
+    line, run, middle = line.reshape(-1, 3), node[lines[:, 1]] - node[lines[:, 0]], node[lines].mean(axis=1)
+    normal = np.stack([run[:, 1], -run[:, 0]], 1) / np.linalg.norm(run, axis=1)[:, None]
+    freedoms, centre = np.hstack([corners, len(node) + line]), node[corners].mean(axis=1)[:, None]
+    (x, y), (u, v), (n, m) = (
+        np.moveaxis(one, -1, 0) for one in (node[corners] - centre, middle[line] - centre, normal[line])
+    )
+    heights = np.stack([x**0, x, y, x * x, x * y, y * y], -1)
+    slopes = np.stack([0 * n, n, m, 2 * u * n, v * n + u * m, 2 * v * m], -1)
+    bend = 2.0 * np.linalg.inv(np.concatenate([heights, slopes], 1))[:, [3, 5, 4]]
+    area = 0.5 * ((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0]))
+    law = np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
+    moments = area[:, None, None] * np.swapaxes(bend, 1, 2) @ law
+    places = np.repeat(freedoms, 6, 1).ravel(), np.tile(freedoms, (1, 6)).ravel()
+    stiff, load = csc_array(((moments @ bend).ravel(), places)), np.zeros((len(node) + len(lines), 3))
+    np.add.at(load, freedoms, moments)
+    beside, straight = ((np.isclose(z, 0.0) | np.isclose(z, 0.5)).any(axis=1) for z in (node, middle))
+    even, odd, whole = np.append(0 * beside, straight) > 0, np.append(beside, 0 * straight) > 0, area.sum() * law
+    even[at[0, 0]] = True
+    for held, cases in ((even, [0, 1]), (odd, [2])):
+        free = np.flatnonzero(~held)
+        moved = spsolve(stiff[free][:, free], load[np.ix_(free, cases)]).reshape(free.size, -1)
+        whole[np.ix_(cases, cases)] -= load[np.ix_(free, cases)].T @ moved
+    return 4.0 * whole
+
+
+@pytest.mark.parametrize(("share", "off"), [(0.05, 1e-3), (0.2, 2e-3), (0.4, 0.01), (0.5, 0.03)])
+def test_perforated_sheets_bend_as_finite_elements_of_a_cell(share, off):
+    glass = PAIR.plate
+    sheet, made = glass.plane_modulus * H**3 / 12.0, cl.Orthotropic.perforated(glass, H, share)
+    (x, across, _), (_, y, _), (_, _, turn) = sheet * cell(share, glass.poissons_ratio)
+    exact = cl.Orthotropic(glass, x, y, across + 2.0 * turn, (1.0 - share) * glass.density * H)
+    assert made.bending == pytest.approx(exact.bending, rel=off) and made.areal == pytest.approx(exact.areal)
+    assert float(cl.Orthotropic.perforated(glass, H, 0.0)) == pytest.approx(H, rel=1e-12)
 
 
 def test_descriptions_are_copied_pickled_and_shown():
@@ -154,6 +246,9 @@ def test_a_foundation_swings_as_its_spring_and_the_plates_mass():
         lam = hertz.solve(*IMPACT, H).inelasticity
         assert found == pytest.approx(restitution(lam, swing, "sphere"), abs=5e-4)
     assert MODEL.solve(*IMPACT, cl.Foundation(H, 0.0)) == free
+    several = MODEL.constant([1.0, 5.0], 0.9e-3, cl.Foundation(H, 1e12), weights=[[1.0], [2.0]])
+    each = MODEL.solve([1.0, 5.0], 0.9e-3, cl.Foundation(H, 1e12)).restitution
+    assert several.impacts == 4 and several.mean == pytest.approx(each.mean(), rel=1e-9)
     stiff = MODEL.solve(*IMPACT, cl.Foundation(H, [1e11, 1e12, 1e13]))
     assert (np.diff(stiff.restitution) > 0.0).all()
     balance = stiff.restitution**2 + stiff.plastic_fraction + stiff.wave_fraction + stiff.other_fraction
@@ -210,10 +305,19 @@ def test_bad_plates_are_refused_in_words():
     refused(lambda: cl.Layers([("glas", 1e-3)]), "unknown material 'glas'")
     refused(lambda: cl.Orthotropic("glass", 1.0, 4.0, -2.0, 8.0), "twist", "above -sqrt(along across)")
     refused(lambda: cl.Orthotropic("glass", 1.0, 4.0, 2.0, 0.0), "mass", "positive")
+    refused(lambda: cl.Orthotropic.perforated("glass", H, 30.0), "open_area", "30.0", "between 0 and 0.5")
     other = cl.Layers([("aluminium-6061-t6", H)])
     refused(lambda: MODEL.solve(*IMPACT, other), "beads touch 'aluminium-6061-t6'", "'glass'")
     refused(lambda: MODEL.restitution(*IMPACT, [H, other]), "beads touch 'aluminium-6061-t6'")
-    refused(lambda: MODEL.oblique(5.0, 1.0, 0.9e-3, other, 0.2), "beads touch")
+    for answer in (
+        lambda: MODEL.oblique(5.0, 1.0, 0.9e-3, other, 0.2),
+        lambda: MODEL.speed(0.5, 0.9e-3, other),
+        lambda: MODEL.constant(*IMPACT, other),
+        lambda: MODEL.speed_table(0.9e-3, other),
+        lambda: MODEL.collide([0.0, 0.0, -1.0], 0.0, [0.0, 0.0, 1.0], 0.9e-3, other, 0.2),
+        lambda: cl.load_signal([0.0], *IMPACT, other, model=MODEL, rate=1e4),
+    ):
+        refused(answer, "beads touch")
     refused(lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.8e-3)), "radius", "0.0008", "larger than the bead's")
     refused(lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.1, "cone")), "kind", "cylinder, sphere")
     refused(lambda: MODEL.solve(*IMPACT, cl.Foundation(H, -1.0)), "stiffness", "between 0")

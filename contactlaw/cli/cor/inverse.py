@@ -29,6 +29,7 @@ def add(commands: Any) -> None:
         options.add_sizes(command, quantities.values, unknown=unknown)
         if unknown == "thickness":
             options.add_speed(command, quantities.values)
+            options.add_layers(command)
         what = "coefficients of restitution, between 0 and 1"
         options.add_quantity(command, "--cor", SHARE, what, quantities.values, required=True, metavar="E")
         options.add_name_of_law(command)
@@ -46,10 +47,15 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     values = arguments.cor, *(getattr(arguments, name) for name in known)
     asked = np.array([*itertools.product(*values)]).T
     errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
-    found: Any = getattr(model, unknown)(*asked, **errors)
+    plate, more = model.pair.given[1], {}
+    if unknown == "thickness" and arguments.on:
+        below = [chosen.layer(text, arguments.materials) for text in arguments.on]
+        more = {"layers": [(plate, None), *below]}
+    found: Any = getattr(model, unknown)(*asked, **errors, **more)
+    named = {"plate": chosen.plate_in_words(arguments, plate.name)}
     questions = [dict(zip(known, one, strict=True)) for one in asked[1:].T.tolist()]
     remarks = [
-        f"{impacts.in_words(impacts.asked(model, **sizes))}, COR {one.restitution:g}: {one.remark}"
+        f"{impacts.in_words(impacts.asked(model, **sizes) | named)}, COR {one.restitution:g}: {one.remark}"
         for sizes, one in zip(questions, found, strict=True)
         if one.remark
     ]
@@ -65,7 +71,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     for end in ("low", "high"):
         rows[f"{unknown}_{end}"][unsure] = np.nan
     flags = np.concatenate([one.flags for one in found])
-    table, columns = ImpactTable(rows, flags, impacts.asked(model)), _columns(unknown)
+    table, columns = ImpactTable(rows, flags, impacts.asked(model) | named), _columns(unknown)
     if arguments.csv:
         impacts.write_csv(table, sys.stdout, columns)
     elif arguments.json:

@@ -87,9 +87,9 @@ def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float
 
 def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
     """Name of the plate's material, with what the options of `options.add_wall` add to it."""
-    words = plate + "".join(f" on {text}" for text in arguments.on)
+    words = plate + "".join(f" on {text}" for text in getattr(arguments, "on", ()))
     for name, unit in (("cylinder", "m"), ("bowl", "m"), ("foundation", "N/m3")):
-        size = getattr(arguments, name)
+        size = getattr(arguments, name, None)
         words += "" if size is None else f" ({name} {in_unit(size, unit)})"
     return words
 

@@ -69,21 +69,26 @@ def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "norma
 
 def add_wall(command: argparse.ArgumentParser) -> None:
     """Add the options of walls that are no bare flat sheet."""
-    command.add_argument(
-        "--on",
-        metavar="NAME:H",
-        action="append",
-        default=[],
-        help="material and thickness of the layer to which the plate is bonded from below, as "
-        "steel-s235:3mm; --plate and --thickness are then of the layer that beads touch; may be "
-        "repeated, downwards (default: none)",
-    )
+    add_layers(command)
     one = command.add_mutually_exclusive_group()
     where = "[m], or with a unit; negative where beads hit from outside (default: flat)"
     add_quantity(one, "--cylinder", LENGTH, f"radius of a wall that is a cylinder {where}", metavar="A")
     add_quantity(one, "--bowl", LENGTH, f"radius of a wall that is a sphere {where}", metavar="A")
     what = "stiffness of what the plate lies on, pressure per deflection [N/m3], or in N/mm3"
     add_quantity(one, "--foundation", STIFFNESS, f"{what} (default: none)", metavar="K")
+
+
+def add_layers(command: argparse.ArgumentParser) -> None:
+    """Add the option of layers below the plate."""
+    command.add_argument(
+        "--on",
+        metavar="NAME:H",
+        action="append",
+        default=[],
+        help="material and thickness of the layer to which the plate is bonded from below, as "
+        "steel-s235:3mm; material and thickness of the plate are then those of the layer that beads touch; may be "
+        "repeated, downwards (default: none)",
+    )
 
 
 OF_RECORD = " (default: that of the record)"
