@@ -78,28 +78,28 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 36_007,
+    "contactlaw": 36_136,
     "contactlaw/answers": 2_760,
     "contactlaw/cli": 3_755,
     "contactlaw/emit": 835,
-    "contactlaw/engines": 4_038,
+    "contactlaw/engines": 4_076,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_378,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 4_028,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/physical": 4_052,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 702,
     "contactlaw/reporting": 1_027,
-    "contactlaw/stepping": 2_816,  # 550 of them are softened contacts and parcels
+    "contactlaw/stepping": 2_860,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_491,
+    "contactlaw/walls": 2_514,
     "contactlaw templates": 2_272,  # sources of other languages, and pages
     "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_522,
-    "tests": 25_865,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 26_028,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

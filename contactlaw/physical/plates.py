@@ -26,7 +26,7 @@ from contactlaw.physical.mobility import Mobility
 
 SHELLS = "cylinder", "sphere"
 SHEETS = BARE | {np.ndarray}  # types of thicknesses that describe no other plate
-_ATTRIBUTES = "areal", "bending", "membrane", "alike", "top", "pitch"
+ATTRIBUTES = "areal", "bending", "membrane", "alike", "top", "pitch"
 _DIRECTIONS = 4096  # of the mean over direction: exact to rounding up to Dx/Dy of 1e6
 
 
@@ -323,18 +323,23 @@ def wall_of(thickness: Any) -> Wall:
         if thickness.kind not in SHELLS:
             raise ArgumentError("kind", thickness.kind, f"must be one of {', '.join(SHELLS)}")
         kind, more, thickness = thickness.kind, {"wall_radius": thickness.radius}, thickness.thickness
-    if any(True for _ in _described(thickness)):
-        more |= {name: _attribute(thickness, name) for name in _ATTRIBUTES}
+    if any(True for _ in described(thickness)):
+        more |= {name: _attribute(thickness, name) for name in ATTRIBUTES}
     return Wall({"thickness": thickness, **more}, kind)
 
 
-def _described(thickness: Any) -> Iterator[EquivalentThickness]:
+def sheet_of(thickness: Any) -> Any:
+    """Thickness of the sheet alone, of one that swings back."""
+    return thickness.thickness if isinstance(thickness, Foundation | Shell | Mobility) else thickness
+
+
+def described(thickness: Any) -> Iterator[EquivalentThickness]:
     """Plates among a thickness or a list of them that are no bare numbers."""
     if isinstance(thickness, EquivalentThickness):
         yield thickness
     elif isinstance(thickness, list | tuple):
         for one in thickness:
-            yield from _described(one)
+            yield from described(one)
 
 
 def _attribute(thickness: Any, name: str) -> Any:
@@ -345,7 +350,7 @@ def _attribute(thickness: Any, name: str) -> Any:
 
 def check_wall(thickness: Any, model: Any, edges: Any) -> None:
     """Refuse, of walls in engines, another material of the contact, and edges of what is no bare sheet."""
-    if next(_described(thickness), None) is None:
+    if sheet_of(thickness) is thickness and next(described(thickness), None) is None:
         return
     if edges is not None:
         raise ArgumentError("edges", edges, "only bare sheets have edges in engines: leave them out")
@@ -357,8 +362,8 @@ def check_contact(thickness: Any, plate: Material) -> None:
     """Refuse another material of the contact than that of the model's plate."""
     if type(thickness) in SHEETS:
         return
-    flat = getattr(thickness, "thickness", thickness)
-    touched = [thickness.contact] if isinstance(thickness, Mobility) else [one.material for one in _described(flat)]
+    sheet = sheet_of(thickness)
+    touched = [thickness.contact] if isinstance(thickness, Mobility) else [one.material for one in described(sheet)]
     for body in touched:
         if body != plate:
             reason = f"beads touch {body.name!r}, and the plate of the model's pair is {plate.name!r}"

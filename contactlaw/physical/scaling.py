@@ -27,6 +27,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Wall
 from contactlaw.physical.rate import SHARE, flow_with_rate
 from contactlaw.physical.responses import response_of
+from contactlaw.table.lookup import R_MIN
 
 
 def _transit(plate: Material, thickness: Array) -> Array:
@@ -295,6 +296,15 @@ def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
         square = given["stiffness"] / np.where(sheet, plate.density * h, areal)
     frequency = np.where(h < math.inf, np.sqrt(square), 0.0)
     return replace(impacts, wall=wall, bending=bends, frequency=frequency)
+
+
+def swing_of(plate: Material, thickness: Any) -> tuple[str, float]:
+    """Kind of the response of one wall, and its frequency w0, 0 of a flat sheet [1/s]."""
+    given = Impacts.on_plates(1.0, R_MIN, thickness)
+    if given.wall is None or not given.wall.kind:
+        return "", 0.0
+    (frequency,) = np.asarray(on_wall(plate, given, True).frequency)
+    return given.wall.kind, float(frequency)
 
 
 def _checked_radius(wall: Array, radius: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -138,6 +138,7 @@ _THIN_PLATE, _FAST_IMPACT = int(Validity.THIN_PLATE), int(Validity.FAST_IMPACT)
 _THICK_PLATE, _DEEP_CONTACT = int(Validity.THICK_PLATE), int(Validity.DEEP_CONTACT)
 _BENT_PLATE, _DAMAGE = int(Validity.BENT_PLATE), int(Validity.DAMAGE)
 _NEAR_EDGE, _STRIKES_AGAIN = int(Validity.NEAR_EDGE), int(Validity.STRIKES_AGAIN)
+_LINER_FLAG, _RIBS = int(Validity.LINER), int(Validity.RIBS)
 _NOT_SOLID, _CURVED_WALL = int(Validity.NOT_SOLID), int(Validity.CURVED_WALL)
 
 # For each flag: which limit is exceeded; what to do about it, and by how much the COR is wrong in
@@ -465,15 +466,23 @@ def curved_flags(bending: float) -> int:
     return 0 if abs(bending - 1.0) <= _CURVED else _CURVED_WALL
 
 
+@kernel
+def layer_flags(top: Any, alike: Any, pitch: Any, wave: Any, radius: Any, compression: Any, contact_time: Any) -> Any:
+    """Flag what is due to layers and ribs, from the attributes of a plate and its sqrt(D/m) [m2/s]."""
+    # by Hertz's law the radius of the contact is sqrt(R d)
+    liner = (top < _LINER * np.sqrt(radius * compression)) | (alike < _ALIKE)
+    ribs = pitch > 0.5 * np.sqrt(math.pi * wave * contact_time)  # the frequency is 1/(2 contact times)
+    return liner * _LINER_FLAG + ribs * _RIBS
+
+
 def wall_flags(
     wall: Mapping[str, Array], radius: Array, bending: Array | None, contact_time: Array, compression: Array
 ) -> Integers:
     """Flag what is due to layers, ribs and curvature of impacts; R* over the radius is `bending`."""
     flags = np.zeros(radius.size, dtype=np.int64)
-    if "alike" in wall:  # by Hertz's law the radius of the contact is sqrt(R d)
-        liner = (wall["top"] < _LINER * np.sqrt(radius * compression)) | (wall["alike"] < _ALIKE)
-        quarter = 0.5 * np.sqrt(math.pi * wall["wave"] * contact_time)  # the frequency is 1/(2 contact times)
-        flags |= np.where(liner, int(Validity.LINER), 0) | np.where(wall["pitch"] > quarter, int(Validity.RIBS), 0)
+    if "alike" in wall:
+        top, alike, pitch, wave = (wall[name] for name in ("top", "alike", "pitch", "wave"))
+        flags |= layer_flags(top, alike, pitch, wave, radius, compression, contact_time)
     if bending is not None:
         flags |= np.where(abs(bending - 1.0) <= _CURVED, 0, _CURVED_WALL)
     return flags

@@ -21,7 +21,7 @@ from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.responses import CYLINDER, SPHERE
 from contactlaw.physical.scaling import wave_rate
-from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of
+from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of, layer_flags
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
@@ -91,6 +91,9 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _COUPLED = int(Validity.COUPLED)
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
+# Most swings [rad] in a contact: beyond it six exponentials would add energy, up to 8e-4 of the COR, and
+# a wall that swings faster hardly moves. The time is that of beads of at least this speed [m/s].
+_SWINGS, _SLOWEST = 16.0, 1e-3
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
 
@@ -491,7 +494,7 @@ def _end(
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
     record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
-    record.flags |= bent
+    record.flags |= bent | _layer_flags(plate_row, r, deepest, time)
     return extra
 
 
@@ -523,12 +526,23 @@ def state_of(row: Any) -> State:
 
 
 @kernel
-def _near_edge(scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring) -> NearestEdge:
-    """Edge that is nearest to a contact, and how it acts there; far from edges, the wall's curvature."""
+def _layer_flags(row: Any, r: float, compression: float, time: float) -> Any:
+    return layer_flags(row.top, row.softest, row.pitch, row.wave_of_all, r, compression, time)
+
+
+@kernel
+def _near_edge(
+    scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring, speed: float
+) -> NearestEdge:
+    """Edge that is nearest to a contact, and how it acts there; far from edges, how the wall swings back."""
     facet = scene.facets[contact.facet]
     if plate_row.thickness == math.inf:
         return NearestEdge(0, 0.0, math.inf)
-    place, swing = SPHERE if contact.domed else CYLINDER, plate_row.shell_speed * abs(contact.curvature)
+    place, swing = plate_row.swing_place, plate_row.swing
+    if contact.curvature != 0.0:
+        place, swing = SPHERE if contact.domed else CYLINDER, plate_row.shell_speed * abs(contact.curvature)
+    if swing > 0.0:
+        swing = min(swing, _SWINGS * RELAXATION / spring.relaxation * math.pow(max(speed, _SLOWEST), 0.2))
     if facet.edge_count == 0:
         return NearestEdge(place, swing, math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
@@ -587,7 +601,7 @@ def _ask(
         return
     touch, rough = contact.touch, len(bead.friction) > 0
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    edge = _near_edge(scene, bead, contact, plate_row, spring)
+    edge = _near_edge(scene, bead, contact, plate_row, spring, u)
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     n = touch.nx, touch.ny, touch.nz
     came = surface_velocity(contact.v, bead.omega, bead.r, n)
@@ -603,6 +617,7 @@ def _ask(
     scale = impact(law, spring, u).compression
     flags = flags_of(limits_of(plate_row), r, thickness, scale, true.contact_time, true.compression, force)
     flags |= edge_flags(r, thickness, true.compression, edge.distance, true.recedes)
+    flags |= _layer_flags(plate_row, r, true.compression, true.contact_time)
     # In a dent that an earlier impact has left, no energy may come back that has been lost.
     e = true.restitution if soft.stored == 0.0 else min(true.restitution, soft.restitution)
     row.reported_loss = (1.0 - e * e) * soft.stored if begins else row.reported_loss
@@ -660,7 +675,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     last, softened = state_of(row), scene.softening > 1.0
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
-        edge = _near_edge(scene, bead, contact, plate_row, spring)
+        edge = _near_edge(scene, bead, contact, plate_row, spring, max(row.approach_speed, u))
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     if softened:
         state, extra = _softened_step(scene, clock, spring, bead, k, touch.x, u), 0.0

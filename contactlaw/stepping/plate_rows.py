@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,18 @@ from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import EquivalentThickness, check_wall
-from contactlaw.physical.responses import RESPONSES, responses_of
-from contactlaw.physical.scaling import wave_path
+from contactlaw.physical.materials import Material
+from contactlaw.physical.plates import (
+    ATTRIBUTES,
+    EquivalentThickness,
+    Foundation,
+    Shell,
+    check_wall,
+    described,
+    sheet_of,
+)
+from contactlaw.physical.responses import CYLINDER, RESPONSES, SPHERE, responses_of
+from contactlaw.physical.scaling import swing_of, wave_path
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, curved, resized, unit_spring
@@ -47,6 +57,8 @@ PLATE_ROW = np.dtype(
     + [(name, "i8" if "int" in str(kind) else "f8") for name, kind in Limits.__annotations__.items()]
     # how a plate's edges act, see `responses_of`, and by what its bending waves scale [m/s]
     + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8"), ("shell_speed", "f8")]
+    # frequency [1/s] and response of what swings on flat facets; what flags of layers need
+    + [("swing", "f8"), ("swing_place", "i8"), *((name, "f8") for name in ("top", "softest", "pitch", "wave_of_all"))]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # address of the law at any strength (0: there is no model for beads of this type), and its size
@@ -60,34 +72,38 @@ def plate_rows(
 ) -> tuple[Rows, list[NDArray[np.intp]], list[Any]]:
     """Plate rows by bead type and number, their numbers for each wall's facets, what they need."""
     table: dict[Any, int] = {}
+    plates: dict[int, Any] = {}
     numbers = []
     by_id = {id(model): model for model in models.values()}
     for wall in walls:
-        values, which = np.unique(np.asarray(wall.thickness, dtype=float), return_inverse=True)
+        values, which = np.unique(np.asarray(sheet_of(wall.thickness), dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
         by_id |= {id(model): model for model in own.values()}
         given = getattr(wall, "given", wall.thickness)
-        for known in filter(None, own.values()):
-            check_wall(given, known, wall.edges)
+        sheet = sheet_of(given)
+        for known in filter(None, own.values()):  # where a shell has edges, the nearest one counts
+            check_wall(sheet if isinstance(given, Shell) else given, known, wall.edges)
         keys = tuple((kind, id(model)) for kind, model in own.items())
-        shell = None  # square of the speed by which a curved wall swings; None for that of the plate
-        if isinstance(given, EquivalentThickness):
-            shell = np.nan_to_num(given.membrane) / given.areal
-        found = [table.setdefault((keys, float(value), shell), len(table)) for value in values]
+        swings = tuple(getattr(given, name, None) for name in ("stiffness", "radius", "kind"))
+        named, found = {float(one): one for one in described(sheet)}, []
+        for value in values.tolist():
+            one = named.get(value, value)
+            key = keys, value, swings, *(getattr(one, name, None) for name in ATTRIBUTES)
+            found.append(table.setdefault(key, len(table)))
+            plates[found[-1]] = replace(given, thickness=one) if isinstance(given, Foundation | Shell) else one
         numbers.append(np.array(found)[which.ravel()])
     rows = np.zeros((types, len(table)), PLATE_ROW)
     laws: list[list[Any]] = [[""] * len(table) for _ in range(types)]
     held: list[Any] = list(by_id.values())
-    for (kinds, thickness, shell), number in table.items():
+    for (kinds, *_), number in table.items():
         for kind, key in kinds:
             row = rows[kind - 1, number]
             row["passes"] = by_id[key] is None
             model = by_id[key] or models.get(kind)  # which has the mass of the beads
             if model is None:
                 continue
-            _fill(row, model, thickness)
-            plate = model.pair.plate
-            row["shell_speed"] = math.sqrt(plate.youngs_modulus / plate.density if shell is None else shell)
+            _fill(row, model, float(sheet_of(plates[number])))
+            _fill_wall(row, model.pair.plate, plates[number])
             law = by_strength(model.pair, model.force_law, COARSE)
             row["law"], row["law_size"] = law.ctypes.data, law.size
             laws[kind - 1][number], held = law.tobytes(), [*held, law]
@@ -120,6 +136,19 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     row["largest"] = math.inf
     if model.outside == "raise":  # other models answer beyond their table too
         row["largest"] = model.largest_inelasticity
+
+
+def _fill_wall(row: Any, plate: Material, given: Any) -> None:
+    """Write what comes back from a wall, and the attributes of its layers."""
+    kind, row["swing"] = swing_of(plate, given)
+    row["swing_place"] = CYLINDER if kind == "cylinder" else SPHERE
+    sheet, row["top"], row["softest"] = sheet_of(given), math.inf, 1.0
+    square = plate.youngs_modulus / plate.density  # of the speed by which a curved wall swings
+    if isinstance(sheet, EquivalentThickness):
+        square = np.nan_to_num(sheet.membrane) / sheet.areal
+        row["top"], row["softest"], row["pitch"] = sheet.top, sheet.alike, sheet.pitch
+        row["wave_of_all"] = math.sqrt(sheet.bending / sheet.areal)
+    row["shell_speed"] = math.sqrt(square)
 
 
 @kernel

@@ -16,9 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
+from contactlaw.physical.plates import Foundation, Orthotropic, Shell, sheet_of
 from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
-from contactlaw.walls.plate import Models, check_models
+from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.round import between, positive
 
 Floats = NDArray[np.float64]
@@ -42,9 +43,9 @@ class Mesh:
         Corners of the triangles [m].
     triangles : array_like of int, shape (m, 3)
         For each triangle the numbers of its three corners, from 0.
-    thickness : float or array_like, shape (m,)
+    thickness : float or array_like, shape (m,), or Foundation or Shell of such
         Plate thickness in the model, of all triangles or of each [m]; ``inf`` is the half-space.
-        The geometry has no thickness.
+        The geometry has no thickness. A `contactlaw.Shell` swings back as in `Plate`.
     model : ImpactModel or dict of int to ImpactModel, optional
         For a wall of another material than the attached model's; a dict has one by atom type.
     motion : Translation, Rotation, Vibration or Tabulated, optional
@@ -94,10 +95,10 @@ class Mesh:
 
     def __post_init__(self) -> None:
         """Check the arguments, and drop triangles without area and duplicates."""
-        warn_of_metres("thickness", self.thickness, stacklevel=3)
+        warn_of_metres("thickness", sheet_of(self.thickness), stacklevel=3)
         vertices = _vertices(self.vertices)
         triangles = _triangles(self.triangles, len(vertices))
-        thickness = _thickness(self.thickness, len(triangles))
+        thickness = _thickness(checked_sheet(self.thickness), len(triangles))
         check_models(self.model)
         check_motion(self.motion)
         good = _valid_triangles(vertices, triangles)
@@ -206,7 +207,7 @@ class Mesh:
         end: Vector,
         start_radius: float,
         end_radius: float,
-        thickness: float,
+        thickness: Any,
         *,
         facets: int = 72,
         model: Models | None = None,
@@ -254,7 +255,7 @@ class Mesh:
         start: Vector,
         end: Vector,
         radius: float,
-        thickness: float,
+        thickness: Any,
         *,
         facets: int = 72,
         model: Models | None = None,
@@ -263,7 +264,8 @@ class Mesh:
     ) -> Self:
         """Wall of a cylinder, open at both ends: a `cone` with the same radius [m] at both.
 
-        Where beads roll or slide take a `contactlaw.walls.Cylinder`, which has no facets.
+        Where beads roll or slide take a `contactlaw.walls.Cylinder`, which has no facets. The
+        mesh swings back as that one does, but for an `Orthotropic` thickness; R* is flat.
 
         Examples
         --------
@@ -271,6 +273,8 @@ class Mesh:
         >>> len(drum.triangles)
         144
         """
+        if not isinstance(thickness, Foundation | Shell | Orthotropic):
+            thickness = Shell(thickness, radius)
         return cls.cone(start, end, radius, radius, thickness, facets=facets, model=model, motion=motion, edges=edges)
 
     @classmethod

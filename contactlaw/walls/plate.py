@@ -10,7 +10,9 @@ import numpy as np
 
 from contactlaw._errors import ArgumentError
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import scalars, warn_of_metres
+from contactlaw.physical.arguments import number, scalars, warn_of_metres
+from contactlaw.physical.mobility import Mobility
+from contactlaw.physical.plates import Foundation, Shell, sheet_of, wall_of
 from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import Motion, check_motion, keep, vector
 
@@ -31,9 +33,10 @@ class Plate:
         One of the plate's corners [m].
     edge_a, edge_b : sequence of 3 floats
         From that corner to its two neighbours [m]; perpendicular to each other.
-    thickness : float
+    thickness : float, Foundation or Shell
         Thickness in the model [m]; ``inf`` is the half-space. The geometry has none: beads touch
-        the rectangle itself, from either side.
+        the rectangle itself, from either side. A `contactlaw.Shell` swings back as the curved wall
+        of which this is a part, but with the R* of a flat contact.
     model : ImpactModel or dict of int to ImpactModel, optional
         For a plate of another material than the attached model's; a dict has one by atom type,
         with None for beads that fly through the plate, as fines through the deck of a sieve.
@@ -59,7 +62,7 @@ class Plate:
     corner: Vector
     edge_a: Vector
     edge_b: Vector
-    thickness: float
+    thickness: float | Foundation | Shell
     model: Models | None = None
     motion: Motion | None = None
     edges: Sides | None = None
@@ -72,8 +75,8 @@ class Plate:
             reason = "must be perpendicular and of some length [m]"
             raise ArgumentError("edge_a, edge_b", (self.edge_a, self.edge_b), reason)
         keep(self, corner=vector("corner", self.corner), edge_a=a, edge_b=b)
-        scalars(thickness=self.thickness)
-        warn_of_metres("thickness", self.thickness, stacklevel=3)
+        scalars(thickness=checked_sheet(self.thickness))
+        warn_of_metres("thickness", sheet_of(self.thickness), stacklevel=3)
         check_models(self.model)
         check_motion(self.motion)
         rim(self)
@@ -84,6 +87,17 @@ def rim(plate: Plate) -> Rows:
     here, a, b = (np.asarray(v, dtype=float) for v in (plate.corner, plate.edge_a, plate.edge_b))
     corners = np.array([here, here + a, here + a + b, here + b])
     return edges_of(plate.edges, corners, np.roll(corners, -1, axis=0), np.zeros(4, int))
+
+
+def checked_sheet(thickness: Any) -> Any:
+    """Thickness of the sheet of a wall, if time steps can hold what it sends back."""
+    if isinstance(thickness, Mobility):
+        reason = "in time steps, slow beads touch longer than its longest, where no Mobility is known: take Foundation"
+        raise ArgumentError("thickness", None, f"{reason}, Shell or edges, or ask `solve`")
+    wall = wall_of(thickness).numbers
+    for name in wall.keys() & {"stiffness", "wall_radius"}:
+        number(name.removeprefix("wall_"), wall[name])
+    return sheet_of(thickness)
 
 
 def by_type(models: Models | None, types: int) -> dict[int, ImpactModel | None]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import number, scalars, warn_of_metres
+from contactlaw.physical.plates import Foundation, Shell
 from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, keep, vector
-from contactlaw.walls.plate import Models, check_models
+from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.profile import ARC, SEGMENT
 
 Floats = NDArray[np.float64]
@@ -36,7 +37,7 @@ class Profile(NamedTuple):
 class Round:
     """A wall that is a surface of revolution: what those below share."""
 
-    thickness: float
+    thickness: Any
     model: Models | None
     motion: Motion | None
     edges: Sides | None
@@ -46,8 +47,12 @@ class Round:
         self.rim()
         names = {"start", "end", "centre", "normal", "axis", "polar"} & vars(self).keys()
         keep(self, **{name: floats(getattr(self, name)) for name in names})
-        scalars(thickness=self.thickness)
-        warn_of_metres("thickness", self.thickness, stacklevel=3)
+        sheet, profile = checked_sheet(self.thickness), self.profile()
+        if sheet is not self.thickness and not (profile.kind == SEGMENT and profile.shape[2] == 0.0):
+            reason = "a round wall is a shell by itself, and none on a foundation is known: give the number alone"
+            raise ArgumentError("thickness", self.thickness, reason)
+        scalars(thickness=sheet)
+        warn_of_metres("thickness", sheet, stacklevel=3)
         check_models(self.model)
         check_motion(self.motion)
 
@@ -247,7 +252,7 @@ class Ring(Round):
     normal: Vector
     inner_radius: float
     outer_radius: float
-    thickness: float
+    thickness: float | Foundation | Shell
     model: Models | None = None
     motion: Motion | None = None
     edges: Sides | None = None
@@ -280,7 +285,7 @@ class Disc(Round):
     centre: Vector
     normal: Vector
     radius: float
-    thickness: float
+    thickness: float | Foundation | Shell
     model: Models | None = None
     motion: Motion | None = None
     edges: Sides | None = None

@@ -326,7 +326,6 @@ def test_bad_plates_are_refused_in_words():
     refused(lambda: MODEL.solve(*IMPACT, wall, edge_distance=1e-3), "neither edges")
     refused(lambda: MODEL.yield_speed(0.9e-3, wall), "take solve")
     refused(lambda: MODEL.curve(0.9e-3, wall), "thickness", "expected one number")
-    refused(lambda: Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), thickness=wall), "thickness", "expected one number")
 
 
 def test_engines_refuse_another_material_and_edges_of_layers():

@@ -115,7 +115,7 @@ class Contacts:
                     curve = near and plate.models.near(bead.kind, plate.thickness, near)
                 if bead.of_body:
                     mass = self.record.mass[len(self.record)] = bead.answering(body, x, y, nx, ny)
-                    curve = plate.models.of_body(bead.kind, plate.thickness, near, mass)
+                    curve = plate.models.of_body(bead.kind, plate.wall, near, mass)
                 cor = self._answer(arbiter, bead, plate, circle, shape, speed, curve)
                 kind = (OF_BODY if bead.of_body else IMPACT) if arbiter.is_first_contact else STRUCK
                 spin = body.angular_velocity

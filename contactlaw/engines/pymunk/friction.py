@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.tangential import POINT
+from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
@@ -22,14 +23,14 @@ SAME_MOMENT = 1e-3
 LOOSE = 2.0
 
 
-def slide_of(model: Any, radius: float, thickness: float, friction: float) -> Slide:
+def slide_of(model: Any, radius: float, thickness: Any, friction: float) -> Slide:
     """Sliding speed after impacts of beads of a radius [m] on a plate of a thickness [m].
 
     One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
     impacts that it does not know, ``oblique`` answers, or says what is wrong.
     """
     try:
-        collide: Any = getattr(model, "collide_kernel", None)
+        collide: Any = getattr(model, "collide_kernel", None) if sheet_of(thickness) is thickness else None
     except RuntimeError:  # numba is switched off
         collide = None
     rest, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)

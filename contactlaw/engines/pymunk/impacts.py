@@ -25,7 +25,7 @@ from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.edges import edges_of
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models
+from contactlaw.engines.pymunk.models import Models, plate_of
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
     BeadKind,
@@ -41,7 +41,9 @@ from contactlaw.engines.pymunk.registry import (
 )
 from contactlaw.engines.pymunk.seams import Seams
 from contactlaw.physical.arguments import scalars, warn_of_metres
-from contactlaw.physical.plates import check_wall
+from contactlaw.physical.mobility import Mobility
+from contactlaw.physical.plates import Foundation, Shell, check_wall, sheet_of
+from contactlaw.physical.scaling import swing_of
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
 from contactlaw.stepping.loads import NUMBERS, Loads, means
@@ -198,7 +200,7 @@ class PymunkImpacts:
     def add_plate(
         self,
         shape: pymunk.Segment | pymunk.Poly,
-        thickness: float,
+        thickness: float | Foundation | Shell | Mobility,
         *,
         material: Material | str | None = None,
         model: RestitutionModel | Sequence[RestitutionModel] | None = None,
@@ -214,7 +216,7 @@ class PymunkImpacts:
             plate. Its size and radius are geometry only. Move it by its body's velocity: the engine
             sees no motion in a position that is set. Where plates on the same body, or on bodies
             that never move, share an end or a corner, a bead hits one of them.
-        thickness : float
+        thickness : float, Foundation, Shell or Mobility
             Thickness in the model [m]; ``inf`` is the half-space.
         material : Material or str, optional
             Material of plates in one of the attached models; by default that of the first model.
@@ -243,7 +245,7 @@ class PymunkImpacts:
         import pymunk
 
         body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
-        whole, thickness = thickness, float(scalars(thickness=thickness)[0][0])
+        wall, thickness = thickness, float(scalars(thickness=sheet_of(thickness))[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
             reason = f"has no length, all of it is at {tuple(ends(shape)[0])}"
@@ -253,17 +255,22 @@ class PymunkImpacts:
             raise ArgumentError("material", None, reason)
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
         for one in chosen.values():
-            check_wall(whole, one, edge)
+            check_wall(wall, one, edge)
+            if sheet_of(wall) is not wall:
+                if not knows(one, "pair", "oblique"):
+                    raise TypeError(f"thickness: {one!r} knows no plate that swings back; give an ImpactModel")
+                wall = wall if swing_of(plate_of(one), wall)[1] else sheet_of(wall)
         if friction is not None:
             friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
         edges = edges_of(edge, chosen, len(ends(shape)), thickness)
         key = id(shape)
-        index = self._register.plate(chosen, thickness)
+        index = self._register.plate(chosen, wall)
         mount = self._mounts.get(id(body))
         if mount is None or mount.body() is not body:
             mount = self._mounts[id(body)] = Mount(id(body), ref(body))
         noted = KeyedRef(shape, self._gone.append, key)
-        plate = PlateShape(index, noted, mount, thickness, chosen, friction, edges)
+        swings = thickness if sheet_of(wall) is wall else wall
+        plate = PlateShape(index, noted, mount, thickness, swings, chosen, friction, edges)
         mount.plates[index] = plate
         self._contacts.borne.extend([0.0] * NUMBERS)
         self._contacts.plates[key] = plate

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
+
+import numpy as np
 
 from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
@@ -64,7 +67,25 @@ class ModelsByBead(dict[int, RestitutionModel]):
 
         return curve
 
-    def of_body(self, bead: tuple[float, int], thickness: float, near: KnownEdge | None, mass: float) -> CorBySpeed:
+    def swinging(self, bead: tuple[float, int], wall: Any) -> CorBySpeed:
+        """COR by speed on a plate that swings back, from 33 impacts in each doubling of the speed."""
+        radius, number = bead
+        model: Any = self[number]
+
+        @functools.cache
+        def octave(n: int) -> Any:
+            speeds = np.ldexp(np.linspace(0.5, 1.0, 33), n)
+            return speeds, model.restitution(speeds, radius, wall)
+
+        def curve(speed: float) -> float:
+            try:
+                return float(np.interp(speed, *octave(math.frexp(speed)[1])))
+            except ValueError:  # some of the speeds are refused, perhaps this one
+                return float(model.restitution(speed, radius, wall))
+
+        return curve
+
+    def of_body(self, bead: tuple[float, int], thickness: Any, near: KnownEdge | None, mass: float) -> CorBySpeed:
         """COR by speed of a point of a rigid body that answers as this mass [kg], perhaps near an edge."""
         (radius, number), edge = bead, near or ()
         model: Any = self[number]

@@ -17,6 +17,7 @@ from contactlaw.engines.pymunk.models import KnownEdge, Models, ModelsByBead
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.plates import SHEETS, sheet_of
 from contactlaw.record.file import Bodies, bodies_of
 
 # What a run gives of each impact; of friction_energy that over the mass [m2/s2]
@@ -31,7 +32,7 @@ class Register:
         self.models = models
         self._radii = array("d")
         self._materials = array("l")
-        self._thicknesses = array("d")
+        self.walls: list[Any] = []  # what was given for the thicknesses
         self._plates: list[ModelsByBead] = []
 
     def bead(self, material: int, radius: float) -> int:
@@ -40,9 +41,9 @@ class Register:
         self._materials.append(material)
         return len(self._radii) - 1
 
-    def plate(self, models: ModelsByBead, thickness: float) -> int:
+    def plate(self, models: ModelsByBead, wall: Any) -> int:
         """Add a plate and return its index."""
-        self._thicknesses.append(thickness)
+        self.walls.append(wall)
         self._plates.append(models)
         return len(self._plates) - 1
 
@@ -54,7 +55,7 @@ class Register:
     def plates(self) -> NDArray[np.void]:
         """Thickness [m] and material by index."""
         names = np.array([models.plate for models in self._plates], dtype="U")
-        return _table(("thickness", np.array(self._thicknesses)), ("material", names))
+        return _table(("thickness", np.array([float(sheet_of(wall)) for wall in self.walls])), ("material", names))
 
     @property
     def materials(self) -> NDArray[np.int64]:
@@ -167,20 +168,24 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownE
     edge, distance = np.full(len(rows), "", dtype="U9"), np.full(len(rows), math.inf)
     for n, one in near.items():
         edge[n], distance[n] = one
-    questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = []
+    bare = np.array([type(wall) in SHEETS for wall in register.walls] + [True])
+    wall = np.where(bare[rows["plate"]], -1, rows["plate"])  # sheets are looked up together
+    questions: list[tuple[Any, NDArray[np.bool_], Any, tuple[Any, ...]]] = []
     for model, own in register.by_model(rows):
-        for kind, part in product(np.unique(edge[own]).tolist(), (of_body, ~of_body)):
-            some = own & (edge == kind) & part
+        kinds = product(np.unique(edge[own]).tolist(), (of_body, ~of_body), np.unique(wall[own]).tolist())
+        for kind, part, plate in kinds:
+            some = own & (edge == kind) & part & (wall == plate)
+            on = target[some] if plate < 0 else register.walls[plate]
             ask = partial(model.lookup, mass=rows["mass"][some]) if part is of_body else model.lookup
-            questions += [(ask, some, (kind, distance[some]) if kind else ())] if some.any() else []
+            questions += [(ask, some, on, (kind, distance[some]) if kind else ())] if some.any() else []
     met = np.stack((material[bead], material[other]), axis=1)
     for pair in np.unique(met[on_bead], axis=0).tolist():
         own = on_bead & (met == pair).all(axis=1)
         by: Any = register.models.of_bead(pair[0])
-        questions.append((by.lookup_sphere_sphere, own, register.models.extra_arguments(*pair)))
-    for lookup, own, more in questions:
+        questions.append((by.lookup_sphere_sphere, own, target[own], register.models.extra_arguments(*pair)))
+    for lookup, own, on, more in questions:
         part = rows[own]
-        found = lookup(part["approach_speed"], radius[bead[own]], target[own], *more)
+        found = lookup(part["approach_speed"], radius[bead[own]], on, *more)
         fill(part, found, energy[own])
         rows[own] = part
 

@@ -15,6 +15,7 @@ from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
@@ -96,6 +97,7 @@ class PlateShape:
     shape: weakref.ref[Face]
     mount: Mount
     thickness: float
+    wall: Any  # the thickness, or what swings back
     models: ModelsByBead
     friction: float | None = None  # None: the engine's own
     edge: Edges | None = None  # None: endless
@@ -115,6 +117,8 @@ class PlateShape:
         if curve is None:
             radius, material = bead.kind
             curve = self.models[material].curve(radius, self.thickness)
+            if sheet_of(self.wall) is not self.wall:
+                curve = self.models.swinging(bead.kind, self.wall)
             self.curves[bead.kind] = curve
         return curve
 
@@ -124,7 +128,7 @@ class PlateShape:
         if slide is None:
             radius, material = bead.kind
             model: Any = self.models[material]
-            slide = slide_of(model, radius, self.thickness, self.friction or 0.0)
+            slide = slide_of(model, radius, self.wall, self.friction or 0.0)
             self.slides[bead.kind] = slide
         return slide
 

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import MASS, PAIR, PLATE, R, attach, dropped, make, scene, state
+from lammps_box import MASS, PAIR, PLATE, R, attach, dropped, flat, make, scene, state
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Cone, Cylinder, Disc, Ring, Sphere, memory
+from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Ring, Sphere, memory
 from contactlaw.softsphere import time_step
 
 HERTZ, MYC = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc"))
@@ -201,3 +201,86 @@ def test_a_curved_wall_swings_back_as_in_solve(thickness, a, softening):
         expected = MYC.solve(5.0, R, cl.Shell(thickness, a, kind)).restitution
         assert row["restitution"] == pytest.approx(expected, abs=1e-3)
         assert expected > MYC.solve(5.0, R, thickness).restitution + (0.02 if a < 10 * R else 0.001)
+
+
+LINED = cl.Layers([("glass", 0.2e-3), ("steel-s235", 0.4e-3)])
+CORNERS = [(-0.05, -0.05, 0), (0.06, -0.05, 0), (0, 0.05, 0)]
+FLAT = {
+    "plate": flat,
+    "mesh": lambda thickness: Mesh(CORNERS, [[0, 1, 2]], thickness),
+    "disc": lambda thickness: Disc((0, 0, 0), (0, 0, 1), 0.05, thickness),
+    "ring": lambda thickness: Ring((2e-3, 0, 0), (0, 0, 1), 1e-3, 0.05, thickness),
+}
+
+
+def bounce(wall, softening=1.0):
+    (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), dt=4e-8, steps=4000, softening=softening)
+    return row
+
+
+@pytest.mark.parametrize("softening", [1.0, 5.0])
+@pytest.mark.parametrize("name", FLAT)
+def test_a_wall_on_a_foundation_swings_back_as_in_solve(name, softening):
+    for thickness, stiffness in ((0.5e-3, 1e12), (LINED, 1e12), (0.5e-3, 3e13)):
+        bed = cl.Foundation(thickness, stiffness)
+        assert bounce(FLAT[name](bed), softening)["restitution"] == pytest.approx(
+            MYC.solve(5.0, R, bed).restitution, abs=1e-3
+        )
+    for nothing in (cl.Foundation(0.5e-3, 0.0), cl.Shell(0.5e-3, math.inf)):
+        assert bounce(FLAT[name](nothing), softening) == bounce(FLAT[name](0.5e-3), softening)
+
+
+@pytest.mark.parametrize("softening", [1.0, 5.0])
+def test_a_stiff_foundation_adds_no_energy(softening):
+    """Six exponentials alone would do so from 20 swings in a contact on: COR of 1.0008."""
+    for stiffness in (1e13, 3e13, 1e14):
+        bed = cl.Foundation(0.3e-3, stiffness)
+        (row,), _ = dropped(HERTZ, [flat(bed)], (0, 0, R + 1e-5), dt=4e-8, steps=4000, softening=softening)
+        assert row["restitution"] < 1.0
+        assert row["restitution"] == pytest.approx(HERTZ.solve(5.0, R, bed).restitution, abs=6e-4)
+
+
+@pytest.mark.parametrize("softening", [1.0, 5.0])
+@pytest.mark.parametrize("kind", ["cylinder", "sphere", "mesh"])
+def test_facets_of_a_curved_wall_swing_back_with_the_flat_radius(kind, softening):
+    """Their R* is between those inside and outside, of which the mean has no first-order error."""
+    a, h = 20 * R, 0.5e-3
+    wall = flat(cl.Shell(h, a, kind)) if kind != "mesh" else Mesh.cylinder((-0.02, 0, a), (0.02, 0, a), a, h)
+    both = [cl.Shell(h, radius, "cylinder" if kind == "mesh" else kind) for radius in (a, -a)]
+    expected = np.mean([MYC.solve(5.0, R, one).restitution for one in both])
+    assert bounce(wall, softening)["restitution"] == pytest.approx(expected, abs=4e-4)
+    assert expected > MYC.solve(5.0, R, h).restitution + 0.01
+
+
+@pytest.mark.parametrize("softening", [1.0, 5.0])
+def test_layers_and_ribs_are_flagged_as_in_solve(softening):
+    steel = cl.material("steel-s235").plane_modulus * 1e-9 / 12
+    tops = ("glass", 1e-3, "steel-s235"), ("glass", 2e-5, "steel-s235"), ("glass", 1e-3, "pmma")
+    plates = [cl.Layers([(top, thick), (below, 1e-3)]) for top, thick, below in tops]
+    plates += [cl.Orthotropic("glass", steel, steel, steel, mass=2.5, pitch=pitch) for pitch in (1e-3, 0.1)]
+    found, seen = [], cl.Validity.LINER | cl.Validity.RIBS
+    for plate in [*plates, cl.Foundation(plates[1], 1e10)]:
+        hit = MYC.solve(5.0, R, plate)
+        found.append(cl.Validity(bounce(flat(plate), softening)["flags"]) & seen)
+        assert found[-1] == hit.flags & seen
+    assert [bool(one) for one in found] == [False, True, True, False, True, True]
+
+
+MEASURED = cl.Mobility.of_plate("glass", 1e-3, (0.05, 0.05), (0.02, 0.03), longest=3e-5)
+BED = cl.Foundation(1e-3, 1e12)
+REFUSED = {
+    "Mobility is known": lambda: flat(MEASURED),
+    "a round wall is a shell": lambda: Cylinder((-1, 0, 0), (1, 0, 0), A, BED),
+    "only bare sheets have edges": lambda: flat(BED, edges="free"),
+    "beads touch 'pmma'": lambda: flat(cl.Shell(cl.Layers([("pmma", 1e-3)]), A)),
+    "stiffness.*-1": lambda: flat(cl.Foundation(1e-3, -1.0)),
+    "stiffness: .*one number": lambda: flat(cl.Foundation(1e-3, [1.0, 2.0])),
+    "radius: .*0.0": lambda: FLAT["mesh"](cl.Shell(1e-3, 0.0)),
+    "thickness: got -1": lambda: flat(cl.Shell(-1.0, A)),
+}
+
+
+@pytest.mark.parametrize("said", REFUSED)
+def test_what_time_steps_cannot_hold_is_refused(said):
+    with pytest.raises(ValueError, match=said):
+        scene(MYC, [REFUSED[said]()])
