@@ -24,10 +24,10 @@ test-long: $(VENV)/test.done  ## run long validations: whole fits, statistics, e
 
 ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 
-test-engines: $(VENV)/engines.done  ## run the tests of LIGGGHTS, CUDA and OpenCL; none may be skipped
+test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, CUDA, OpenCL; none may be skipped
 	@dpkg-query --show $(ENGINES) >/dev/null || \
 	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
-	$(BIN)/python -m pytest tests/export/test_liggghts.py tests/export/test_gpu.py \
+	$(BIN)/python -m pytest tests/export/test_lammps_fix.py tests/export/test_liggghts.py tests/export/test_gpu.py \
 	  --junitxml=$(VENV)/engines.xml
 	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
 

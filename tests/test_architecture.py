@@ -51,7 +51,7 @@ FILES = {
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
     "fitting": "measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
-    "export": "functions page_functions c_header liggghts_wall web_page",
+    "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
@@ -78,13 +78,13 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 35_759,
+    "contactlaw": 36_136,
     "contactlaw/answers": 2_760,
-    "contactlaw/cli": 3_739,
-    "contactlaw/emit": 707,
+    "contactlaw/cli": 3_755,
+    "contactlaw/emit": 835,
     "contactlaw/engines": 4_076,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
-    "contactlaw/export": 1_155,
+    "contactlaw/export": 1_378,
     "contactlaw/fitting": 2_044,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 4_052,  # with laws, impacts, bodies: 700 less in answers and export
@@ -92,14 +92,14 @@ BUDGETS = {
     "contactlaw/reporting": 1_027,
     "contactlaw/stepping": 2_860,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_504,
-    "contactlaw templates": 1_208,  # sources of other languages, and pages
+    "contactlaw/walls": 2_514,
+    "contactlaw templates": 2_272,  # sources of other languages, and pages
     "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
-    "validation": 14_498,
-    "tests": 25_693,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "validation": 14_522,
+    "tests": 26_028,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -1,12 +1,10 @@
 """``contactlaw explore``: a page with sliders for a browser."""
 
 import argparse
-import itertools
 from typing import Any
 
 from contactlaw import export
 from contactlaw.cli.parts import chosen, options, wording
-from contactlaw.model import ImpactModel
 
 
 def add(commands: Any) -> None:
@@ -20,10 +18,7 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    models = []
-    for bodies in itertools.product(arguments.sphere, arguments.plate):
-        arguments.sphere, arguments.plate = bodies
-        models.append(ImpactModel(chosen.pair(arguments), law=arguments.law))
+    models = chosen.models(arguments)
     with wording.writing("out", arguments.out):
         export.page(arguments.out, models)
     print(arguments.out)

@@ -1,4 +1,4 @@
-"""``contactlaw export``: source files for codes that do not run Python: header, liggghts."""
+"""``contactlaw export``: source files for codes that do not run Python: header, lammps, liggghts."""
 
 import argparse
 from typing import Any
@@ -10,7 +10,7 @@ from contactlaw.model import ImpactModel
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "source files for codes that do not run Python: header, liggghts"
+    about = "source files for codes that do not run Python: header, lammps, liggghts"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
     header = options.command(kinds, "header", "the law and a table of COR as one file for C, C++ and GPUs", _header)
     options.add_pair(header)
@@ -29,6 +29,11 @@ def add(commands: Any) -> None:
         help="what its names begin with, as in steel_on_glass: several pairs in "
         "one source file need one each (default: %(default)s)",
     )
+    lammps = options.command(kinds, "lammps", "a fix for LAMMPS's input scripts, with a build script", _lammps)
+    options.add_pair(lammps, action="append")
+    options.add_name_of_law(lammps)
+    lammps.add_argument("--out", required=True, metavar="DIR", help="folder to write into, made if need be")
+    lammps.epilog = "Give --sphere or --plate again for beads or walls of several materials."
     liggghts = options.command(kinds, "liggghts", "contact models for LIGGGHTS, with a build script", _liggghts)
     options.add_pair(liggghts)
     options.add_name_of_law(liggghts)
@@ -39,6 +44,12 @@ def _header(arguments: argparse.Namespace) -> None:
     with wording.writing("out", arguments.out):
         model = ImpactModel(chosen.pair(arguments), law=arguments.law)
         export.header(arguments.out, model, arguments.table, prefix=arguments.prefix)
+    print(arguments.out)
+
+
+def _lammps(arguments: argparse.Namespace) -> None:
+    with wording.writing("out", arguments.out, folder=True):
+        export.lammps(arguments.out, chosen.models(arguments))
     print(arguments.out)
 
 

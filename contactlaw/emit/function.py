@@ -14,7 +14,7 @@ import numpy as np
 
 from contactlaw.emit import types
 from contactlaw.emit.program import Program
-from contactlaw.emit.types import DOUBLE, INT, UNKNOWN, Array, Known, Struct, Type, Value, traced
+from contactlaw.emit.types import DOUBLE, ELEMENTS, INT, UNKNOWN, Array, Known, Rows, Struct, Type, Value, traced
 
 # Operators: how they are written, how tightly they bind, what they make of known whole numbers.
 OPERATORS: dict[type, tuple[str, int, Callable[..., Any]]] = {
@@ -66,6 +66,8 @@ class Function:
         """Type that holds values of both."""
         if one in (types.VOID, other):
             return other
+        if isinstance(one, Array) and isinstance(other, Array) and one.of == other.of and not (one.data or other.data):
+            return Array(of=one.of)
         if {one, other} != {INT, DOUBLE}:
             self.refuse(node, f"a variable has one type, not {one.name} and {other.name}")
         return DOUBLE
@@ -133,10 +135,32 @@ class Function:
     def _for(self, node: Any) -> list[str]:
         args = [ast.Constant(0), *node.iter.args, ast.Constant(1)][len(node.iter.args) > 1 :]
         start, stop, step = map(self.value, args[:3])
+        if any(self._picks(one, node.target.id) for line in node.body for one in ast.walk(line)):
+            if UNKNOWN in (start.known, stop.known):
+                self.refuse(node.iter, "a loop over the members of a tuple has known ends")
+            return self._unrolled(node, start.known, stop.known)
         self.types[node.target.id] = INT
         body, name = self._block(node.body), self._language.variable(node.target.id)
         head = f"for ({name} = {start.text}; {name} < {stop.within(7)}; {name} += {step.text}) {{"
         return [head, *body, "}"] if body else []
+
+    def _picks(self, node: Any, index: str) -> bool:
+        """Whether an expression is a member of a tuple whose place is a variable."""
+        if not (isinstance(node, ast.Subscript) and getattr(node.slice, "id", "") == index):
+            return False
+        kind = self.types.get(getattr(node.value, "id", "")) or self.value(node.value).type
+        return isinstance(kind, Struct) and not isinstance(kind, Rows)
+
+    def _unrolled(self, node: Any, start: Any, stop: Any) -> list[str]:
+        """Write a loop over the members of tuples, which have no place, once for each."""
+        name, lines = node.target.id, list[str]()
+        before = self.types.get(name)
+        for n in range(start, stop):
+            self.types[name] = Known(value=n)
+            lines += self._block(node.body)
+        self.types.pop(name)
+        self.types |= {name: before} if before else {}
+        return lines
 
     def _unpacked(self, places: list[Any], value: Any) -> tuple[list[Any], list[Any]]:
         """Places and values by which a tuple is assigned; one of several may be read later on."""
@@ -161,6 +185,8 @@ class Function:
         if not (traced(place.type) and place.text) or value.text in (place.text, "empty"):
             return []
         zeros, language = value.text == "zeros", self._language
+        if isinstance(target, ast.Subscript) and isinstance(place.type, Struct) and place.type.row:
+            return [f"*{place.within(10)} = *{value.within(10)};"]
         if isinstance(place.type, Array) and (zeros or not isinstance(value.type, Array)):
             number, size = "0.0" if zeros else value.text, math.prod(place.type.shape)
             return [language.fill.format(language.prefix, place.text, size, number)]
@@ -191,7 +217,7 @@ class Function:
     def _member(self, base: Value, whole: Struct, name: str) -> Value:
         kind = dict(whole.members)[name]
         text = self._language.member(base.within(11), name, whole) if traced(kind) else ""
-        return Value(kind, text, 11, getattr(kind, "value", UNKNOWN))
+        return Value(_in_formulas(kind), text, 11, getattr(kind, "value", UNKNOWN))
 
     def double(self, value: Value) -> Value:
         """Write a number as one of floating point."""
@@ -218,12 +244,16 @@ class Function:
                 return self._program.named(getattr(value, name), name.upper(), module)
             case Struct() as kind:
                 return self._member(base, kind, name)
+            case Type("int") if name == "value":  # of an enum
+                return base
             case Array(shape=shape) if shape and name in ("size", "shape"):
                 return self._program.constant(math.prod(shape) if name == "size" else shape)
         self.refuse(node, "of an array only the size counts, where its shape is known")
 
     def _subscript(self, node: ast.Subscript) -> Value:
         base, at = self.value(node.value), node.slice
+        if isinstance(base.type, Rows):
+            return self._of_rows(base, base.type, at)
         places = [at.lower] if isinstance(at, ast.Slice) else getattr(at, "elts", [at])
         index, *column = map(self.value, places)
         match base.type:
@@ -240,9 +270,36 @@ class Function:
                 if not column:
                     return self._language.operation("tail", base, index, kind=kind)
                 index = Value(INT, f"{index.text} + {column[0].within(9)}", 8)
+            case Array(of=of) if not column:
+                return Value(_in_formulas(of), f"{base.within(11)}[{index.text}]", 11)
             case kind if column or not isinstance(kind, Array):
                 self.refuse(node, "index arrays, rows of known shape, tuples by known numbers")
         return Value(DOUBLE, f"{base.within(11)}[{index.text}]", 11)
+
+    def _of_rows(self, base: Value, kind: Rows, at: Any) -> Value:
+        """Take a row, by its address; rows from one on; a row of a matrix, which is rows itself."""
+        first, count = (self._member(base, kind, name) for name in ("at", "n"))
+        whole: Any = first.type
+        if isinstance(at, ast.Slice):
+            low, high = self.value(at.lower or ast.Constant(0)), self.value(at.upper) if at.upper else count
+            return self._program.span(whole, f"{first.text} + {low.within(9)}", f"{high.within(8)} - {low.within(9)}")
+        if len(kind.members) == 2:
+            return Value(whole, f"{first.text} + {self.value(at).within(9)}", 8)
+        columns = f"{base.within(11)}.m"
+        if isinstance(at, ast.Tuple):
+            one, other = map(self.value, at.elts)
+            return Value(whole, f"{first.text} + {one.within(9)} * {columns} + {other.within(9)}", 8)
+        return self._program.span(whole, f"{first.text} + {self.value(at).within(9)} * {columns}", columns)
+
+    def _at_address(self, at: ast.expr, shape: ast.expr, kind: ast.expr) -> Value:
+        """Array at an address that a row has."""
+        address, dtype = self.value(at).within(10), np.dtype(self.value(kind).known)
+        if dtype.names:
+            row = self._program.row(dtype)
+            return self._program.span(row, f"({self._language.type(row)})(size_t){address}", self.value(shape).text)
+        columns = [self.value(one).known for one in getattr(shape, "elts", [])[1:]]
+        made = Array("array", False, (-1, *columns) if columns else (), ELEMENTS[dtype.str[1:]])
+        return Value(made, f"({self._language.type(made)})(size_t){address}", 10)
 
     def _unaryop(self, node: ast.UnaryOp) -> Value:
         one = self.value(node.operand)
@@ -271,6 +328,18 @@ class Function:
         sign, binds, act = OPERATORS[type(op)]
         known = [one.known for one in operands]
         return sign, binds, UNKNOWN if UNKNOWN in known else act(*known)
+
+    def _length(self, node: Any, one: Value) -> Value:
+        match one.type:
+            case Rows() as kind:
+                return self._member(one, kind, "n")
+            case Known(value=tuple() as value):
+                return self._program.constant(len(value))
+            case Struct(members=members, row=False):
+                return self._program.constant(len(members))
+            case Array(shape=shape) if shape:
+                return self._program.constant(shape[0])
+        self.refuse(node, "rows, tuples and arrays of known shape have a length")
 
     def _compare(self, node: ast.Compare) -> Value:
         if len(node.ops) > 1:
@@ -302,8 +371,13 @@ class Function:
         name, module = (getattr(called, one, "") for one in ("__name__", "__module__"))
         if called in (np.zeros, np.empty):
             sizes = getattr(node.args[0], "elts", node.args[:1])
-            return Value(Array(shape=tuple(self.value(one).known for one in sizes)), name)
+            found = (self.value(one).known for one in sizes)
+            return Value(Array(shape=tuple(self._program.most if n is UNKNOWN else n for n in found)), name)
+        if name == "_array_at":
+            return self._at_address(*node.args)
         values = [self.value(one) for one in node.args]
+        if called is len:
+            return self._length(node, values[0])
         if called in (min, max, np.minimum, np.maximum):
             kind = functools.reduce(functools.partial(self.unified, node), [v.type for v in values])
             name = f"{self._language.prefix}{name[:3]}{self._language.whole * (kind == INT)}"
@@ -329,17 +403,32 @@ class Function:
             Known(value=one.known) if key in self._program.fixed and one.known is not UNKNOWN else one.type
             for key, one in given.items()
         ]
-        name, result = add(self._program, called, *kinds)
+        name, result = add(self._program, called, *kinds, caller=self._python)
         texts = [one.text for one, kind in zip(given.values(), kinds, strict=True) if traced(kind)]
         text = f"{self._language.prefix}{name}({', '.join(texts)})"
         return Value(result, text) if traced(result) else self._program.constant(None)
 
 
-def add(program: Program, kernel: Callable[..., Any], *given: Type) -> tuple[str, Type]:
-    """Add a kernel for these types of arguments; returns its name there, and its type."""
-    kernel = program.instead.get(kernel, kernel)
+def _in_formulas(kind: Type) -> Type:
+    """Type of a number of a row or an array where it is read."""
+    return INT if kind in ELEMENTS.values() and kind != DOUBLE else kind
+
+
+def add(program: Program, kernel: Callable[..., Any], *given: Type, caller: Any = None) -> tuple[str, Type]:
+    """Add a kernel for these types of arguments; returns its name there, and its type.
+
+    What is written instead of a kernel may call that kernel itself.
+    """
+    other = program.instead.get(kernel, kernel)
+    if getattr(other, "py_func", other) is not caller:
+        kernel = other
     python = getattr(kernel, "py_func", kernel)
     key = python.__module__, python.__name__, given
+    if python in program.elsewhere and key not in program.functions:
+        result, language = program.elsewhere[python], program.language
+        program.functions[key] = python.__name__, result
+        types_given = ", ".join(map(language.type, given))
+        program.parts.append(f"static {language.type(result)}{language.prefix}{python.__name__}({types_given});")
     if key not in program.functions:
         outermost = None not in program.functions.values()
         program.functions[key] = None

@@ -13,9 +13,9 @@ WIDTH = 100
 # What a variable cannot be called in one of the languages.
 RESERVED = frozenset(
     """arguments auto await bool case catch char class const constant debugger
-default delete do double else enum eval export extends extern far float function global goto half
+default delete do double else enum eval export extends extern false far float function global goto half
 implements in instanceof int interface kernel let local long near new operator package private
-protected public register short signed static struct super switch template this throw typeof union
+protected public register short signed static struct super switch template this throw true typeof union
 unsigned var void with yield""".split()
 )
 _COMMENT = re.compile(r"^    (\w+)\b.*?:.*?#\s*(.*)$", re.MULTILINE)
@@ -75,7 +75,7 @@ class C:
     def type(self, kind: Type) -> str:
         """Write a type, with a space if a name may follow directly."""
         if isinstance(kind, Array):
-            return f"{self.prefix}data *" if kind.data else "double *"
+            return f"{self.prefix}data *" if kind.data else f"{kind.of.name} *"
         if isinstance(kind, Struct):
             return f"{self.prefix}{kind.name} {'*' * kind.row}"
         return f"{kind.name} "
@@ -101,12 +101,12 @@ class C:
         lines, comments = list[str](), dict[str, str]()
         if hasattr(kind.source, "_fields"):
             lines = [f"/* {(inspect.getdoc(kind.source) or '').partition(chr(10))[0]} */"]
-            comments = dict(_COMMENT.findall(inspect.getsource(kind.source)))
+            comments = dict(_COMMENT.findall(inspect.getsource(kind.source).replace("*/", "* /")))
         lines.append(f"typedef struct {self.prefix}{kind.name} {{")
         for name, one in kind.members:
             comment = f" /* {comments[name]} */" if name in comments else ""
             if kind.row and isinstance(one, Array):
-                lines.append(f"double {self.array.format(self.variable(name), one.shape[0])};")
+                lines.append(f"{one.of.name} {self.array.format(self.variable(name), math.prod(one.shape))};")
             elif traced(one):
                 lines.append(f"{self.type(one)}{self.variable(name)};{comment}")
         return laid_out([*lines, f"}} {self.prefix}{kind.name};"])
@@ -114,7 +114,7 @@ class C:
     def function(self, name: str, said: str, made: Any) -> str:
         """Write a `Function`, and declare those of its own variables that are left in its body."""
         begin, line, end = self.comment
-        said = f"{begin}{said.replace('`', '')}{end}"
+        said = f"{begin}{said.replace('`', '').replace('*/', '* /')}{end}"
         words = set(re.findall(r"\w+", " ".join(made.body)))
         assigned = {one.partition(" = ")[0] for one in made.body}
         by_type, given = dict[str, list[str]](), dict[str, str]()
@@ -142,7 +142,8 @@ class C:
             text = self.define.format(name, value if value[0] != "-" else f"({value})")
             return wrapped(text, " \\" if text.startswith("#") else "")
         numbers = (re.sub(r"\b0(?=\.)", "", self.number(one).removesuffix(".0")) for one in value)
-        text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH)).replace(", ", ",")
+        # a line has at least four commas, whose spaces go
+        text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH + 4)).replace(", ", ",")
         return f"{self.data[0].format(name)}\n{text}\n{self.data[1]}"
 
 

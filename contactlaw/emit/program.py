@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw.emit.languages import C as Language
-from contactlaw.emit.types import DOUBLE, INT, Array, Known, Struct, Type, Value, traced
+from contactlaw.emit.types import DOUBLE, ELEMENTS, INT, Array, Known, Rows, Struct, Type, Value, traced
 
 
 class Program:
@@ -16,7 +16,8 @@ class Program:
     Functions are made anew for each value of parameters whose names are in `fixed`. `names` are for
     kernels, NamedTuples and dtypes, and for tuples by the types of their members; others get their
     own. A name may be kept for what is not written here, under any key. `instead` of some kernels
-    others are written.
+    others are written. Arrays whose length is first known in a call have room for `most` numbers. Kernels that are
+    written by hand have the types of their results in `elsewhere`, and are declared.
     """
 
     def __init__(
@@ -25,13 +26,17 @@ class Program:
         fixed: Collection[str] = (),
         names: Mapping[Any, str] | None = None,
         instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
+        most: int = 0,
     ) -> None:
         self.language, self.fixed, self.instead = language, fixed, instead or {}
+        self.most = most
+        self.elsewhere: dict[Callable[..., Any], Type] = {}
         self._given: dict[Any, str] = dict(names or {})
         self._names = {*self._given.values()}
         self.parts: list[str] = []
         self._constants: dict[str, str] = {}
         self._structs: dict[Any, Struct] = {}
+        self._rows: dict[tuple[Struct, bool], Rows] = {}
         self._arrays: dict[int, Value] = {}
         self.functions: dict[Any, tuple[str, Type] | None] = {}
 
@@ -49,8 +54,19 @@ class Program:
 
     def row(self, dtype: np.dtype[Any]) -> Struct:
         """Row of a dtype."""
-        shapes = [(name, dtype[name].shape) for name in dtype.names or ()]
-        return self.struct(dtype, {n: Array(shape=one) if one else DOUBLE for n, one in shapes})
+        kinds = [(name, dtype[name]) for name in dtype.names or ()]
+        numbers = {name: ELEMENTS[one.base.str[1:]] for name, one in kinds}
+        made = {name: Array(shape=one.shape, of=numbers[name]) if one.shape else numbers[name] for name, one in kinds}
+        return self.struct(dtype, made)
+
+    def rows(self, row: Struct, matrix: bool = False) -> Rows:
+        """Rows of a dtype, or a matrix of them."""
+        if (row, matrix) not in self._rows:
+            members = (("at", row), ("n", INT), ("m", INT))[: 3 if matrix else 2]
+            made = Rows(self.free_name(None, f"{row.name}_{'matrix' if matrix else 'rows'}"), members)
+            self._rows[row, matrix] = made
+            self.parts.append(self.language.structure(made))
+        return self._rows[row, matrix]
 
     def make(self, source: Any, parts: Mapping[str, Value]) -> Value:
         """Write a NamedTuple or a tuple of these members; those without a trace are left out."""
@@ -82,6 +98,8 @@ class Program:
         """Write an object that has a name in a module of Python; numbers are defined by it."""
         name, prefix = name.strip("_"), self.language.prefix
         if isinstance(value, np.ndarray):
+            if value.dtype.names and id(value) not in self._arrays:
+                self._arrays[id(value)] = self._empty_rows(value, name)
             if id(value) not in self._arrays:
                 one = self.free_name(id(value), name.lower())
                 self.parts.append(self.language.constant(one, value.ravel().tolist()))
@@ -94,6 +112,18 @@ class Program:
             if self._constants.setdefault(one, found.text) == found.text:
                 return Value(found.type, f"{prefix}{one}", known=found.known)
         raise ValueError(f"{one}: two constants have this name, rename one of them")
+
+    def _empty_rows(self, value: Any, name: str) -> Value:
+        """Write rows that are all zero."""
+        row = self.row(value.dtype)
+        at = f"{self.language.prefix}{self.free_name(id(value), name.strip('_').lower())}"
+        self.parts.append(f"static {self.language.type(row)[:-2]} {at}[{value.size}] = {{ {{ 0 }} }};")
+        return self.span(row, at, str(value.size))
+
+    def span(self, row: Struct, at: str, n: str) -> Value:
+        """Rows from an address on."""
+        made = self.rows(row)
+        return Value(made, self.language.make(made, {"at": at, "n": n}))
 
     def text(self) -> str:
         """Definitions of all constants, structures and functions."""

@@ -12,6 +12,8 @@ class Type:
 
 
 DOUBLE, INT, VOID = Type("double"), Type("int"), Type("void")
+# Members of rows and elements of arrays, by numpy's names; in formulas whole numbers are INT.
+ELEMENTS = {"f8": DOUBLE, "i8": Type("long long"), "i4": INT, "u1": Type("unsigned char")}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,6 +32,12 @@ class Array(Type):
     name: str = "array"
     data: bool = False
     shape: tuple[int, ...] = ()
+    of: Type = DOUBLE
+
+
+@dataclasses.dataclass(frozen=True)
+class Rows(Struct):
+    """Rows of a dtype: their address `at`, their number `n`, and of a matrix the number `m` of columns."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -10,7 +10,7 @@ import os
 import re
 import string
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from typing import Any, Literal
 
@@ -155,6 +155,32 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.rub_softened, pair, bead, DOUBLE, softened, sliding, DOUBLE, point, point, DOUBLE)
     add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
+
+
+def models_of(model: ImpactModel | Sequence[ImpactModel]) -> Sequence[ImpactModel]:
+    """One or several models as several; what is none is refused."""
+    models: Sequence[Any] = model if isinstance(model, (list, tuple)) else [model]
+    for one in models:
+        if not isinstance(one, ImpactModel):
+            raise TypeError(f"model: expected a contactlaw.ImpactModel, got {one!r}")
+    if not models:
+        raise ArgumentError("model", None, "expected at least one contactlaw.ImpactModel, got none")
+    return models
+
+
+def filled(folder: str, files: Iterable[str], values: Mapping[str, str]) -> Iterator[tuple[str, bytes]]:
+    """Fill the templates of a folder, whose names end in ``.in``; names and contents of all files."""
+    for name in files:
+        text = (resources.files("contactlaw.export") / folder / name).read_text("utf-8")
+        if name.endswith(".in"):
+            name, text = name.removesuffix(".in"), string.Template(text).substitute(values)
+        yield name, text.encode()
+
+
+def preamble() -> str:
+    """Return what the kernels in C have of C itself: structures of their members, least and largest."""
+    template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
+    return "/* A structure" + template.partition("/* A structure")[2].partition("/* The kernels")[0]
 
 
 def _text(model: ImpactModel, table: Table | None, prefix: str) -> str:

@@ -5,8 +5,6 @@ their motion and ranks are LIGGGHTS's.
 """
 
 import os
-import string
-from importlib import resources
 
 from contactlaw import _atomic
 from contactlaw._escaped import line
@@ -75,14 +73,14 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     with _atomic.folder(folder) as made:
         c_header.header(made / "contactlaw.h", model, table="none")
         c_header.header(made / "contactlaw_beads.h", between, table="none", prefix="contactlaw_beads")
-        for name, content in _texts(model, between.pair).items():
-            (made / name).write_bytes(content.encode())
+        for name, content in c_header.filled("liggghts", _FILES, _values(model, between.pair)):
+            (made / name).write_bytes(content)
 
 
-def _texts(model: ImpactModel, beads: Pair) -> dict[str, str]:
-    """Fill the templates."""
+def _values(model: ImpactModel, beads: Pair) -> dict[str, str]:
+    """Give the numbers and names that the templates ask for."""
     pair = model.pair
-    values = {
+    return {
         "version": VERSION,
         "sphere": line(pair.sphere.name),
         "plate": line(pair.plate.name),
@@ -97,10 +95,3 @@ def _texts(model: ImpactModel, beads: Pair) -> dict[str, str]:
         "THINNEST": repr(lookup.THINNEST),
         "edge_names": ", ".join(f'"{kind}Edge"' for kind in KINDS),
     }
-    found = {}
-    for name in _FILES:
-        text = (resources.files("contactlaw.export") / "liggghts" / name).read_text("utf-8")
-        if name.endswith(".in"):
-            name, text = name.removesuffix(".in"), string.Template(text).substitute(values)
-        found[name] = text
-    return found

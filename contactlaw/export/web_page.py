@@ -10,15 +10,15 @@ import os
 import re
 import shlex
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from contactlaw import _atomic, laws
-from contactlaw._errors import ArgumentError
 from contactlaw._template import template
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
 from contactlaw.equation.numbers import Impact
 from contactlaw.export import functions, page_functions
+from contactlaw.export.c_header import models_of
 from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
@@ -70,12 +70,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     >>> file.stat().st_size < 1e6
     True
     """
-    models: Sequence[Any] = model if isinstance(model, (list, tuple)) else [model]
-    for one in models:
-        if not isinstance(one, ImpactModel):
-            raise TypeError(f"model: expected a contactlaw.ImpactModel, got {one!r}")
-    if not models:
-        raise ArgumentError("model", None, "expected at least one contactlaw.ImpactModel, got none")
+    models = models_of(model)
     made = [_kernels(*_bodies(one)) for one in models]
     kernels = list(dict.fromkeys(one for one, _ in made))  # each once, for all its pairs
     text = template("contactlaw.export", "explore.html").render(

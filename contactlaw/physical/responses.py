@@ -63,7 +63,7 @@ def response_of(
     return np.ascontiguousarray(np.concatenate(parts, axis=-1))
 
 
-RIMS = tuple(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from
+RIMS = np.array(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from
 SPHERE = len(KINDS) + len(RIMS)  # places of the curved walls
 CYLINDER = SPHERE + 1
 RESPONSES = CYLINDER + 1

@@ -839,7 +839,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
                 bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
         both = row.push[0] + drag[0], row.push[1] + drag[1], row.push[2] + drag[2]
         for i in range(3):
-            if not math.isfinite(both[i]):
+            if not abs(both[i]) < math.inf:
                 report_trouble(scene, Trouble.NO_FORCE, contact.wall, row.approach_speed, bead.r)
             bead.force[i] += both[i]
             bead.torque[i] += torque[i]

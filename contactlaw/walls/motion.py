@@ -269,9 +269,9 @@ POSE: list[tuple[Any, ...]] = [
 
 
 @kernel
-def _interval(times: Any, time: float) -> int:
+def _interval(times: Any, count: int, time: float) -> int:
     """Index of the table's last time that has passed; -1 before the first."""
-    low, high = -1, len(times)
+    low, high = -1, count
     while high - low > 1:
         middle = (low + high) // 2
         if times[middle] <= time:
@@ -290,7 +290,7 @@ def _displacement(row: Any, time: float) -> tuple[float, float, float]:
         return x, y, z
     times = array_at(row.times, row.count, np.float64)
     places = array_at(row.displacements, (row.count, 3), np.float64)
-    n = _interval(times, time)
+    n = _interval(times, row.count, time)
     m, share = min(n + 1, row.count - 1), 0.0
     n = max(n, 0)
     if m > n:

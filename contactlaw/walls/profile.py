@@ -122,6 +122,12 @@ def bending(facet: Any, p: tuple[float, float, float], size: float, r: float) ->
         around, along = cosine * out / max(shape[0] + q.t * shape[1], _TIP * r), 0.0
     if q.face and 1.0 + around * size <= 0.0 and (facet.kind == ARC or shape[1] == 0.0):
         return Bend(1.0 / around, around, along)
+    return bent(around, along, r)
+
+
+@kernel
+def bent(around: float, along: float, r: float) -> Bend:
+    """R*/R of a sphere on a surface of these curvatures."""
     one, two = 1.0 + around * r, 1.0 + along * r
     ratio = 1.0 / math.sqrt(min(max(one, 1.0 / _MOST), _MOST) * min(max(two, 1.0 / _MOST), _MOST))
     return Bend(ratio, around, along)

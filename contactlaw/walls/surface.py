@@ -112,7 +112,8 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
 @kernel
 def box(frames: Any) -> tuple[float, float, float, float, float, float]:
     """Box around all walls at their present positions: three lowest coordinates, three highest."""
-    low, high = np.full(3, math.inf), np.full(3, -math.inf)
+    low, high = np.empty(3), np.empty(3)
+    low[:], high[:] = math.inf, -math.inf
     for f in range(len(frames)):
         frame = frames[f]
         small, large, turn = frame.low, frame.high, frame.turn
@@ -177,9 +178,12 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any, rows: Any
 
 
 @kernel
-def _rank(row: Any, r: float) -> tuple[int, int, int]:
-    """Sort key of facets: the deepest first, and at equal overlap a face before an edge."""
-    return math.floor(-row.x / (_TIE * r)), 1 - row.face, row.facet
+def _before(one: Any, other: Any, r: float) -> bool:
+    """Order of facets: the deepest first, and at equal overlap a face before an edge."""
+    here, there = math.floor(-one.x / (_TIE * r)), math.floor(-other.x / (_TIE * r))
+    if here != there:
+        return bool(here < there)
+    return one.face > other.face if one.face != other.face else bool(one.facet < other.facet)
 
 
 @kernel
@@ -273,11 +277,11 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
     """Find the pass of largest overlap to a deeper facet: the widest path, by Dijkstra's search."""
     for n in range(count):
         found[n].level, found[n].done = 0.0, 0
-    mine, row, at = _rank(found[start], r), found[start], start
+    row, at = found[start], start
     row.level, row.representative, row.shared, row.near, row.far = row.x, start, 0.0, start, start
     while True:
         here, touch = found[at], touch_of(found[at])
-        if _rank(here, r) < mine:
+        if _before(here, row, r):
             if here.level >= row.x - _TIE * r:
                 row.representative = at
             else:
@@ -309,7 +313,7 @@ def group_surfaces(r: float, found: Any, count: int) -> bool:
         found[0].representative, found[0].shared = 0, 0.0
         return False
     for n in range(1, count):
-        if _rank(found[n], r) < _rank(found[first], r):
+        if _before(found[n], found[first], r):
             first = n
     deepest = touch_of(found[first])
     for n in range(count):

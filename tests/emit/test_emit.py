@@ -1,13 +1,16 @@
 """The generator: what it writes for small kernels, and what it refuses with line and remedy."""
 
+import ctypes
 import inspect
 import math
+import subprocess
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from contactlaw.emit import DOUBLE, Array, C, Known, Program, add
+from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program, add
+from contactlaw.walls.memory import array_at
 
 FACTOR = 3
 
@@ -119,3 +122,56 @@ def grown(row, to, x):
     row.at[1] = x
     row.size += x
     to[0] += row.size
+
+
+ROW = np.dtype([("x", "f8"), ("count", "i8"), ("at", "i8"), ("v", "f8", 3)])
+
+
+def gathered(rows, pages, way):
+    """Copies, parts, a matrix, arrays by address, and members of a tuple by their places."""
+    rows[0] = rows[len(rows) - 1]
+    rest, total = rows[1:], 0.0
+    for k in range(len(rest)):
+        numbers = array_at(rest[k].at, rest[k].count, np.float64)
+        total += numbers[rest[k].count - 1] * pages[1, k].x + pages[k][1].x
+    for k in range(3):
+        total += rows[0].v[k] * way[k]
+    return total
+
+
+def test_rows_are_read_as_in_python(tmp_path):
+    program = Program(C("k_"), names={ROW: "row", gathered: "gathered"})
+    row = program.row(ROW)
+    way = program.struct(tuple, dict.fromkeys(("f0", "f1", "f2"), DOUBLE))
+    add(program, gathered, program.rows(row), program.rows(row, matrix=True), way)
+    new = "#include <stddef.h>\n#define k_new(type) (k_##type)\n"
+    call = "return k_gathered((k_row_rows){ rows, 3 }, (k_row_matrix){ pages, 2, 2 }, (k_f0_f1_f2){ 3.0, 5.0, 7.0 });"
+    call = call.replace("k_f0_f1_f2", f"k_{way.name}")
+    source = f"{new}{program.text()}\ndouble run(k_row *rows, k_row *pages)\n{{\n{call}\n}}\n"
+    (tmp_path / "rows.c").write_text(source)
+    gcc = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-shared", "-fPIC"]
+    done = subprocess.run([*gcc, "rows.c", "-o", "rows.so"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    library = ctypes.CDLL(str(tmp_path / "rows.so"))
+    library.run.restype = ctypes.c_double
+    numbers = np.array([[2.0, 3.0], [11.0, 13.0]])
+    rows, pages = np.zeros(3, ROW), np.zeros((2, 2), ROW)
+    rows["v"], pages["x"] = np.arange(9.0).reshape(3, 3), [[17.0, 19.0], [23.0, 29.0]]
+    rows["count"][1:], rows["at"][1:] = (1, 2), (numbers[0].ctypes.data, numbers[1].ctypes.data)
+    found = library.run(*(ctypes.c_void_p(one.ctypes.data) for one in (rows, pages)))
+    assert found == 2.0 * 23.0 + 19.0 + 13.0 * 29.0 + 29.0 + 6.0 * 3.0 + 7.0 * 5.0 + 8.0 * 7.0
+    assert rows["x"][0] == rows["x"][2] and rows["at"][0] == rows["at"][2]
+
+
+def unbounded(way, n):
+    total = 0.0
+    for k in range(n):
+        total += way[k]
+    return total
+
+
+def test_a_tuple_is_not_read_at_a_place_that_is_first_known_in_a_call():
+    program = Program(C())
+    way = program.struct(tuple, dict.fromkeys(("f0", "f1"), DOUBLE))
+    with pytest.raises(SyntaxError, match=r"range\(n\).* a loop over the members of a tuple has known ends"):
+        add(program, unbounded, way, INT)

