@@ -47,7 +47,7 @@ FILES = {
         "few backend solver tabulated edges beads compiled constant histories loads oblique varied "
         "sensitivity speed_table law_errors uncertainty inverse"
     ),
-    "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",
+    "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
     "fitting": "measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
@@ -78,9 +78,9 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 35_490,
+    "contactlaw": 35_575,
     "contactlaw/answers": 2_728,
-    "contactlaw/cli": 3_725,
+    "contactlaw/cli": 3_727,
     "contactlaw/emit": 707,
     "contactlaw/engines": 4_038,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
@@ -92,14 +92,14 @@ BUDGETS = {
     "contactlaw/reporting": 1_027,
     "contactlaw/stepping": 2_816,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_481,
+    "contactlaw/walls": 2_564,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
     "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_498,
-    "tests": 25_370,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 25_446,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
