@@ -215,7 +215,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
             if model is None:
                 continue
             if beads is None:
-                remedy = f"give them a dict of models for the atom types {sorted(own)}"
+                remedy = f"give them a dict of models for the atom types {[k for k in sorted(own) if own[k]]}"
                 reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
                 raise ArgumentError("plates", None, reason)
             one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
