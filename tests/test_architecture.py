@@ -78,7 +78,7 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 35_601,
+    "contactlaw": 35_600,
     "contactlaw/answers": 2_728,
     "contactlaw/cli": 3_727,
     "contactlaw/emit": 707,
@@ -92,14 +92,14 @@ BUDGETS = {
     "contactlaw/reporting": 1_027,
     "contactlaw/stepping": 2_816,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_564,
+    "contactlaw/walls": 2_563,
     "contactlaw templates": 1_208,  # sources of other languages, and pages
     "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_498,
-    "tests": 25_480,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 25_482,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
