@@ -311,7 +311,10 @@ class LammpsPlates:
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
         self.softening, self.parcel = float(contact["softening"]), float(contact["parcel"])
-        self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
+        with warnings.catch_warnings():
+            if self._comm.rank > 0:
+                warnings.simplefilter("ignore")  # the first rank warns of walls that cross
+            self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0

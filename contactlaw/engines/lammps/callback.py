@@ -230,7 +230,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         known = bodies[: count * n]
         _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, mask, history, last, known)
     for i in range(count * n):
-        if advancing and bodies[i, 0] != 0.0:
+        if advancing and step % _EVERY != 0 and bodies[i, 0] != 0.0:  # a look has the axes of this step
             spin = omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds
             turn(array_at(int(bodies[i].ctypes.data), 1, BODY)[0], spin, dt)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
