@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import warnings
 from typing import Any
 
 from contactlaw.cli.parts import options, wording
@@ -49,5 +50,6 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _mesh(path: str, scale: float | None) -> Mesh:
-    with wording.reading(path):
+    with wording.reading(path), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".* look round")  # on a map facets do no harm
         return Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)

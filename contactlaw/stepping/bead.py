@@ -103,7 +103,7 @@ class WallContacts:
         check_friction(friction)
         check_softening(softening, parcel)
         check_models(models)
-        kinds = sorted(by_type(models, types))
+        kinds = sorted(set().union(*(by_type(one, types) for one in (models, *(wall.model for wall in walls)))))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
         own = by_type(models, types)

@@ -21,12 +21,14 @@ from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.round import between, positive
+from contactlaw.walls.roundness import round_parts
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Vector = Sequence[float]
 
 _LONGEST = 20.0  # [m] of a mesh that was likely drawn in metres; our choice
+_NAMED = 5  # round parts of a mesh that a warning names
 _FLAT = 1e-10  # least height of a triangle over its longest side; a flatter one has no sure normal
 
 
@@ -136,6 +138,10 @@ class Mesh:
     ) -> Self:
         """Read a mesh from a file: STL (binary or text), PLY, OBJ or another that trimesh reads.
 
+        A warning names parts that are facets of a whole cylinder, cone, sphere or cap, and the
+        walls of `contactlaw.walls` to take in their place. It does not know parts that go on
+        smoothly in another shape, as the cylinder of a capsule does.
+
         Parameters
         ----------
         path : str or Path
@@ -198,7 +204,15 @@ class Mesh:
         if scale is None and extent > _LONGEST:
             said = f"scale: the mesh is {extent:g} m long; scale=1e-3 if it is drawn in mm?"
             warnings.warn(said, stacklevel=2)
-        return cls(size * vertices, triangles, thickness, model, motion, edges)
+        mesh = cls(size * vertices, triangles, thickness, model, motion, edges)
+        if walls := round_parts(mesh.vertices, mesh.triangles):
+            said, more = "; ".join(walls[:_NAMED]), f"; and {len(walls) - _NAMED} more" * (len(walls) > _NAMED)
+            warnings.warn(
+                f"Mesh: {len(walls)} of its parts look round, but a bead that rolls on facets loses energy; "
+                f"leave them out of the drawing, and attach walls of contactlaw.walls beside it: {said}{more}",
+                stacklevel=2,
+            )
+        return mesh
 
     @classmethod
     def cone(

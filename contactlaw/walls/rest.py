@@ -89,25 +89,24 @@ def crossing(facets: Rows) -> tuple[int, int] | None:
     for row, four in zip(facets, corners_of(facets), strict=True):
         flat = row["kind"] == RECTANGLE
         parts.append(four[[[0, 1, 2], [0, 2, 3]]] if flat else _tessellated(row, np.empty((0, 3)), _COARSE)[0])
-    which = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
     corners = np.concatenate([np.empty((0, 3, 3)), *parts])
+    order = np.argsort(corners[:, :, 0].min(axis=1))
+    corners, which = corners[order], np.repeat(np.arange(len(parts)), [len(part) for part in parts])[order]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     low, high, wall = corners.min(axis=1), corners.max(axis=1), facets["wall"][which]
     least = _SAG * ((facets["kind"] < RECTANGLE) * np.ptp(boxes_of(facets), axis=1).max(axis=1))[which]
-    for n in range(len(which)):
-        j = np.flatnonzero((wall[:n] != wall[n]) & ((low[:n] <= high[n]) & (high[:n] >= low[n])).all(axis=1))
-        i, along = np.full(j.size, n), np.cross(normal[n], normal[j])
-        (a, b), (c, d) = (
-            _cut(corners[k], corners[m], normal[m], along, least[[n, *j]].max()) for k, m in ((i, j), (j, i))
-        )
-        crossed = np.minimum(b, d) - np.maximum(a, c) > _BEHIND * np.minimum(b - a, d - c)
-        if crossed.any():
-            return int(wall[j[crossed][0]]), int(wall[n])
-    return None
+    last = np.searchsorted(low[:, 0], high[:, 0], side="right")
+    near = [n + np.flatnonzero(((low[n:m] <= high[n]) & (high[n:m] >= low[n])).all(axis=1)) for n, m in enumerate(last)]
+    i, j = np.repeat(np.arange(len(near)), [len(one) for one in near]), np.concatenate([[], *near]).astype(int)
+    along, deep = np.cross(normal[i], normal[j]), np.maximum(least[i], least[j])
+    (a, b), (c, d) = (_cut(corners[k], corners[m], normal[m], along, deep) for k, m in ((i, j), (j, i)))
+    crossed = (wall[i] != wall[j]) & (np.minimum(b, d) - np.maximum(a, c) > _BEHIND * np.minimum(b - a, d - c))
+    pairs = zip(wall[i[crossed]].tolist(), wall[j[crossed]].tolist(), strict=True)
+    return min(((min(pair), max(pair)) for pair in pairs), default=None)
 
 
-def _cut(one: Floats, two: Floats, normal: Floats, along: Floats, least: float) -> tuple[Floats, Floats]:
+def _cut(one: Floats, two: Floats, normal: Floats, along: Floats, least: Floats) -> tuple[Floats, Floats]:
     """Where the planes of triangles cut others: from, to along a direction; inf, -inf if not."""
     h = ((one - two[:, :1]) * normal[:, None]).sum(axis=2)
     after, deep = np.roll(h, -1, axis=1), np.minimum(h.max(axis=1), -h.min(axis=1))

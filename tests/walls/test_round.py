@@ -223,5 +223,7 @@ def test_walls_that_cross_are_found():
     box = [floor, Plate((0, 0, 0), (0, 1, 0), (0, 0, 1), 1e-3), Plate((0.5, 0, -0.04), (0, 1, 0), (0, 0, 1), 1e-3)]
     shaft, ball = Cylinder((0.5, 0.5, -1), (0.5, 0.5, 1), 0.2, 1e-3), Sphere((0.5, 0.5, 0), 0.2, 1e-3)
     cross = [[floor, one] for one in (Plate((0.5, 0, -0.5), (0, 1, 0), (0, 0, 1), 1e-3), shaft, ball)]
-    for walls, found in [(drum, None), (box, None), *((walls, (0, 1)) for walls in cross)]:
+    fins = [tube, Plate((0.96, 1, 0), (0.03, 0, 0), (0, 0.03, 0), 1e-3)]  # by a wall of coarse triangles
+    fins += [Plate((0.975, 1, -0.015), (0, 0.03, 0), (0, 0, 0.03), 1e-3)]
+    for walls, found in [(drum, None), (box, None), (fins, (1, 2)), *((walls, (0, 1)) for walls in cross)]:
         assert crossing(framed(walls, [0] * len(walls), 1e-3).facets) == found

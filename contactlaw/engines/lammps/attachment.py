@@ -215,7 +215,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
             if model is None:
                 continue
             if beads is None:
-                remedy = f"give them a dict of models for the atom types {sorted(own)}"
+                remedy = f"give them a dict of models for the atom types {[k for k in sorted(own) if own[k]]}"
                 reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
                 raise ArgumentError("plates", None, reason)
             one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
@@ -311,7 +311,10 @@ class LammpsPlates:
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
         self.softening, self.parcel = float(contact["softening"]), float(contact["parcel"])
-        self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
+        with warnings.catch_warnings():
+            if self._comm.rank > 0:
+                warnings.simplefilter("ignore")  # the first rank warns of walls that cross
+            self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
@@ -437,12 +440,14 @@ class LammpsPlates:
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
-            text = "" if name == "file" else next(iter((*arguments, *keywords.values())), "")
-            given = commands.read(text)
+            text = next(iter((*arguments, *keywords.values())), "")
+            given = [] if name == "file" else commands.read(text)
             commands.check(given, {part for _, part, _ in _PARTS})
             calls = int(self._shared["calls"][0])
-            gone, new = ({one[1] for one in given if one[0] == name and len(one) > 1} for name in ("unfix", "fix"))
-            if len(given) > 1 and any(map(self._bodies.follows, gone - new)):
+            script = commands.whole([["include", str(text)]] if name == "file" else given)
+            if ["unfix"] in [one[:1] for one in script]:
+                self._fixes = []  # a new fix may have the name of the old one
+            if commands.go_on_without(script, self._bodies.follows):
                 self._bodies.pause()  # LAMMPS would stop a run in which the compute has lost its fix
                 self._shared["look"] = 0
             renumbers = commands.renumbers(given)

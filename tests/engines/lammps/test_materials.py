@@ -1,15 +1,16 @@
 """Beads and plates of several materials in LAMMPS, and other units than SI."""
 
 import dataclasses
+import itertools
 import math
 
 import metal
 import numpy as np
 import pytest
-from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, quiet
+from lammps_box import DENSITY, PAIR, PLATE, R, above, attach, flat, quiet, state
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Plate, Rotation, Translation
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Translation, pair_coeff
 
 SPHERES = ("gamma-alumina", "glass", "bearing-steel-52100")
 STEEL, ALUMINIUM = "stainless-steel-304", "aluminium-6061-t6"
@@ -73,11 +74,21 @@ def run(lmp, given, walls):
 
 
 def test_each_bead_and_plate_has_its_material():
+    """Beads on each other, too: in the air a pair of each two types meets."""
     left, right = models(STEEL), models(ALUMINIUM)
     walls = [flat(1e-3, x=-0.05, width=0.05, model=left), flat(2e-3, x=0.0, width=0.05)]
-    lmp = scene(beads=three())
+    pairs, beads = list(itertools.combinations_with_replacement((1, 2, 3), 2)), three()
+    for n, pair in enumerate(pairs):
+        for side, kind in zip((-1, 1), pair, strict=True):
+            density = cl.material(SPHERES[kind - 1]).density
+            beads.append((kind, (side * (R + 1e-5), 0.01 * n - 0.03, 0.02), (-1.5 * side, 0, 0), density))
+    lmp = scene(beads=beads)
+    lmp.commands_string(f"comm_modify vel yes\npair_style granular\n{pair_coeff(SPHERES, radius=R, speed=3.0)}")
     rows = run(lmp, right, walls)
     assert rows["bead"].tolist() == [1, 2, 3, 4, 5, 6]
+    v = state(lmp)["v"][6:, 0].reshape(-1, 2)
+    asked = [cl.restitution_sphere_sphere(SPHERES[i - 1], SPHERES[j - 1], 3.0, R, R) for i, j in pairs]
+    assert (v[:, 1] - v[:, 0]) / 3.0 == pytest.approx(asked, abs=2e-3)
     expected = [table[kind].restitution(3.0, R, h) for kind in (1, 2, 3) for table, h in ((left, 1e-3), (right, 2e-3))]
     assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
     assert len({round(e, 2) for e in expected}) == 6
@@ -105,6 +116,16 @@ def test_fines_fly_through_the_deck_of_a_sieve():
         assert both[name][:2].tolist() == below[name].tolist(), name
 
 
+def test_a_type_that_flies_through_all_walls():
+    """It may be of any speed and mass; a bead that is made one in mid-contact is named."""
+    beads = [(1, above(1e-5), (0, 0, -3), DENSITY), (2, above(0.07, 0.02), (0, 0, -1e4), 5.0)]
+    lmp = scene(types=2, beads=beads)
+    attach(lmp, {1: models(STEEL)[1], 2: None}, [flat(1e-3)])
+    lmp.command("run 60")
+    with pytest.raises(RuntimeError, match="bead 1 at step 60: type: it is of atom type 2 and was of 1"):
+        lmp.commands_string("set group all type 2\nrun 1")
+
+
 def test_a_type_without_a_model_is_named():
     lmp = scene(beads=three())
     some = {kind: model for kind, model in models(STEEL).items() if kind != 2}
@@ -121,7 +142,8 @@ def test_a_type_without_a_model_is_named():
         (lambda: {1: None}, None, "model: has none for any atom type"),
         (lambda: {"1": models(STEEL)[1]}, None, "got '1'; atom types are integers from 1 on"),
         (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel or None for atom type 1"),
-        (lambda: {1: models(STEEL)[1]}, lambda: {2: models(STEEL)[2]}, "type 2, for which"),
+        (lambda: models(STEEL), lambda: {4: None}, r"types of beads are 1 to 3, got \[1, 2, 3, 4\]"),
+        (lambda: {1: models(STEEL)[1], 2: None}, lambda: {2: models(STEEL)[2]}, r"type 2, for which .* types \[1\]$"),
         (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "other beads than"),
         (lambda: models(STEEL), lambda: models(STEEL)[2], "other beads than"),
     ],
