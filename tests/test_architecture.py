@@ -30,7 +30,7 @@ LAYERS = [
     {"answers"},  # by a table or by the solver
     {"fitting"},
     {"model"},  # where the towers meet
-    {"dashpot", "walls"},
+    {"comparison", "dashpot", "walls"},
     {"stepping"},  # the contacts of a time step; no engine
     {"softsphere"},
     {"export", "reporting"},
@@ -56,10 +56,10 @@ FILES = {
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
-    "cli/parts": "wording columns impacts options plots own chosen layout figure",
+    "cli/parts": "wording columns impacts options plots own rebounds chosen layout figure",
     "cli/constant": "records walls lines",
     "cli/cor": "bands inverse",
-    "cli/fit": "measured printed figure",
+    "cli/fit": "printed figure",
     "physical": (
         "arguments kind hardness flow materials mobility plates pair impacts rate responses law strengths scaling "
         "measured validity history bodies rebound oblique"

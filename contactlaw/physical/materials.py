@@ -495,7 +495,7 @@ def number_of(field: str, text: str) -> float | str:
     return quantities.value(text, _QUANTITIES[field])
 
 
-def _spelled_out(table: dict[str, Any]) -> dict[str, Any]:
+def spelled_out(table: dict[str, Any]) -> dict[str, Any]:
     """Write short names in full, and numbers with a unit in SI units."""
     long = {SHORT.get(key, key): value for key, value in table.items()}
     if len(long) < len(table):
@@ -521,7 +521,7 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
             if (key := _key(one)) in owner and not (one != name and key == _key(name)):
                 raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
             owner[key] = name
-        tables[name] = _spelled_out(table)
+        tables[name] = spelled_out(table)
     known = {_key(one): table for name, table in (others | tables).items() for one in (name, *table.get("aliases", ()))}
     found = {name: _from_table(name, tables[name], known, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}

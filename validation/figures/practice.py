@@ -6,7 +6,6 @@ import csv
 import dataclasses
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 import pymunk
@@ -17,6 +16,8 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw import style
 from contactlaw.answers.solver import solved
+from contactlaw.cli.compare.figure import curve as model_curve
+from contactlaw.cli.compare.figure import points
 from contactlaw.engines.pymunk import attach
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges
@@ -324,49 +325,33 @@ def fig27_measured() -> chart.Drawn:
     )
     numbers: dict[str, float] = {}
     for source, left, right in zip(sources, every[::2], every[1::2], strict=True):
-        model, one = cl.ImpactModel(source.pair), source.rebounds[0]
+        model, found = cl.ImpactModel(source.pair), source.compared()
+        cor, error = (np.asarray(one) for one in (found.data.restitution, found.data.restitution_error))
+        at = {name: np.asarray(getattr(found.data, name)) for name in ("speed", "radius", "thickness")}
+        first = {name: values[0].item() for name, values in at.items()}
         speed, thickness = np.geomspace(0.5, 10.0, 60), np.geomspace(5e-3, 0.1, 120)
-        _model(left, speed, model, speed, one.radius, one.thickness)
-        _model(right, 1e3 * thickness, model, one.speed, one.radius, thickness)
-        for rebound in source.rebounds:
-            left.errorbar(
-                rebound.speed,
-                rebound.restitution,
-                rebound.reading_error,
-                fmt="o",
-                color=INK,
-                markersize=8,
-                markerfacecolor=ORANGE,
-                capsize=5,
-                label="measured",
-            )
-        least, most = (one.restitution + sign * one.reading_error for sign in (-1.0, 1.0))
+        model_curve(left, speed, model, first | {"speed": speed}, source.errors, BLUE)
+        model_curve(right, 1e3 * thickness, model, first | {"thickness": thickness}, source.errors, BLUE)
+        points(left, at["speed"], cor, error, ORANGE)
+        least, most = (cor[0] + sign * error[0] for sign in (-1.0, 1.0))
         right.axhspan(least, most, color=ORANGE, alpha=0.5, linewidth=0.0, label="measured, thickness unknown")
         for axes in (left, right):
             axes.legend(loc="lower right")
-        band = model.uncertainty(one.speed, one.radius, one.thickness).restitution
-        found = float(model.restitution(one.speed, one.radius, one.thickness))
-        curve = np.asarray(model.restitution(one.speed, one.radius, thickness))
+        over = np.asarray(model.restitution(first["speed"], first["radius"], thickness))
         numbers |= {
-            f"{source.title}: COR": found,
-            f"{source.title}: COR, standard error": float(band.high - band.low) / 2.0,
-            f"{source.title}: COR, model minus measured": found - one.restitution,
+            f"{source.title}: COR": found.restitution[0],
+            f"{source.title}: COR, standard error": 0.5 * np.ravel(found.band.high - found.band.low)[0],
+            f"{source.title}: COR, model minus measured": found.restitution[0] - cor[0],
             f"{source.title}: least thickness within the reading error, mm": 1e3
-            * float(np.interp(least, curve, thickness)),
+            * float(np.interp(least, over, thickness)),
         }
     return figure, numbers
 
 
 def _panels(source: Source) -> tuple[Panel, Panel]:
-    one = source.rebounds[0]
-    cor = chart.RESTITUTION.between(one.restitution - 0.08, 1.0)
-    return Panel(_OVER_SPEED, cor, source.title), Panel(_OVER_THICKNESS, cor, f"at {one.speed:g} m/s")
-
-
-def _model(axes: Axes, x: NDArray[np.float64], model: cl.ImpactModel, *impact: Any) -> None:
-    band = model.uncertainty(*impact).restitution
-    axes.fill_between(x, band.low, band.high, color=SKY, alpha=0.35, linewidth=0.0)
-    axes.plot(x, model.restitution(*impact), color=BLUE, linewidth=2.4, label="model")
+    least, speed = np.min(np.asarray(source.rebounds.restitution)), np.ravel(source.rebounds.speed)[0]
+    cor = chart.RESTITUTION.between(least - 0.08, 1.0)
+    return Panel(_OVER_SPEED, cor, source.title), Panel(_OVER_THICKNESS, cor, f"at {speed:g} m/s")
 
 
 _EDGE_RADIUS, _EDGE_THICKNESS, _EDGE_SPEED = 1.2973e-3, 1e-3, 2.0  # [m, m, m/s]: lambda is 0.3
