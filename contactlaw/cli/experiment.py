@@ -23,6 +23,7 @@ from contactlaw.physical.validity import count_flags, edge_distance
 from contactlaw.quantities import LENGTH, SHARE, TIME
 
 _GRAVITY = 9.80665  # [m/s2]
+_RADIUS = 2e-3  # [m] of a bead, where none is given
 _TOLD = 3.0  # standard errors by which a COR is told from another
 _LIMITS = {  # in SI units
     "drop": (1e-3, 100.0, "m"),
@@ -57,7 +58,7 @@ def add(commands: Any) -> None:
     options.add_quantity(command, "--precision", SHARE, what, default=0.05, metavar="SHARE")
     options.add_errors(command, ())
     options.add_name_of_law(command)
-    command.set_defaults(radius=2e-3, outside="solve")
+    command.set_defaults(outside="solve")
     command.epilog = f"{options.UNITS} Several are a list, 1mm,2mm, or a range start:stop:count."
 
 
@@ -133,13 +134,14 @@ def _moved(model: ImpactModel, precision: float) -> ImpactModel:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
+    radius = _RADIUS if arguments.radius is None else arguments.radius
     for name, limits in _LIMITS.items():
         within(name, np.ravel(getattr(arguments, name)), *limits)
     model = chosen.model(arguments)
     errors = {name: getattr(arguments, name) for name in ("timing_error", "height_error", "scatter", "precision")}
     sizes = (np.array(one) for one in (arguments.thickness, arguments.drop))
-    made = plan(model, arguments.radius, *sizes, **errors)
-    print(impacts.in_words(impacts.asked(model, radius=arguments.radius)), *_rows(made), "", sep="\n")
+    made = plan(model, radius, *sizes, **errors)
+    print(impacts.in_words(impacts.asked(model, radius=radius)), *_rows(made), "", sep="\n")
     for said in _said(made, errors):
         print(*textwrap.wrap(said, _WIDTH), sep="\n")
 
