@@ -33,8 +33,11 @@ def sources() -> list[Source]:
 
     Examples
     --------
-    >>> [source.title for source in sources()]
-    ['alumina on a thick glass anvil, R = 2.5 mm']
+    >>> for source in sources():
+    ...     print(source.title)
+    nylon on an aluminium plate, R = 6.5 mm
+    alumina on a thick glass anvil, R = 2.5 mm
+    glass on acrylic, R = 1.55 mm
     """
     return [_read(path) for path in sorted(FOLDER.glob("*-normal.csv"))]
 

@@ -22,3 +22,8 @@ def test_the_measured_rebound_of_kharaz_and_others():
     off = found.restitution[0] - source.rebounds.restitution[0]
     assert abs(off) < np.hypot(0.5 * (found.band.high - found.band.low)[0], error)
     assert found.chi_squared < 1.0 and abs(off) < 2.0 * error
+
+
+def test_all_agree_within_the_errors_of_what_is_known():
+    for source in measured.sources():
+        assert source.compared().probability > 0.3, source.title
