@@ -183,7 +183,7 @@ class Material:
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
         lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
-        knows it: answers that depend on it have no range.
+        knows it: of answers that depend on it one end is known.
 
     Raises
     ------
