@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -103,10 +103,8 @@ def compare(
         if getattr(data, name) is None:
             raise ArgumentError(name, None, "has to be given for each rebound, to compare it with the model")
     has_one = np.isfinite(np.asarray(data.restitution))
-    given = {one.name: getattr(data, one.name) for one in fields(data)}
-    data = Measurements(
-        **{name: given[name][has_one] for name in ("speed", *_NEEDED, "line") if given[name] is not None}
-    )
+    given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
+    data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
     speed, radius, thickness, measured, error = (np.array(getattr(data, name)) for name in ("speed", *_NEEDED))
     model = ImpactModel(pair, law)
     hit = model.solve(speed, radius, thickness)
@@ -121,16 +119,10 @@ def compare(
         alike = np.exp(-apart / _LENGTH) if cause == "model" else 1.0
         covariance += np.outer(size, size) * alike
     chi_squared = float(off @ np.linalg.solve(covariance, off))
-    return Comparison(
-        data=data,
-        restitution=np.asarray(hit.restitution),
-        band=band,
-        flags=np.asarray(hit.flags),
-        chi_squared=chi_squared,
-        probability=_by_chance(chi_squared, off.size),
-        rms=float(np.sqrt(np.average(off**2, weights=error**-2.0))),
-        unknown=tuple(band.causes.keys() - known.keys()),
-    )
+    chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
+    unknown = tuple(band.causes.keys() - known.keys())
+    cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
+    return Comparison(data, cor, band, flags, chi_squared, chance, rms, unknown)
 
 
 def _by_chance(chi_squared: float, count: int) -> float:

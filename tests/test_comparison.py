@@ -78,7 +78,7 @@ def test_the_command_reads_conditions_and_draws(tmp_path, capsys):
     assert main(["compare", str(path)]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "steel on glass" in said and "my steel on soda-lime-glass, law fem" in said
-    assert "agrees within the errors" in said and "Nearest to the data is law fem" in said
+    assert "agrees within the known errors" in said and "Nearest to the data is law fem" in said
     assert main(["compare", str(path), "--plot", str(tmp_path / "one.svg")]) == 0
     assert "chi-squared" in (tmp_path / "one.svg").read_text()
     capsys.readouterr()

@@ -25,12 +25,11 @@ from contactlaw.quantities import LENGTH, SHARE, TIME
 _GRAVITY = 9.80665  # [m/s2]
 _RADIUS = 2e-3  # [m] of a bead, where none is given
 _TOLD = 3.0  # standard errors by which a COR is told from another
-_LIMITS = {  # in SI units
-    "drop": (1e-3, 100.0, "m"),
-    "timing_error": (1e-7, 0.1, "s"),
-    "height_error": (1e-6, 1.0, "m"),
-    "scatter": (1e-4, 0.5, ""),
-    "precision": (1e-3, 0.5, ""),
+_PRECISION = 0.05  # relative standard error to which an unknown is to be found
+_ERRORS = {  # quantity, help, default, least and largest
+    "timing_error": (TIME, "standard error of the time of a bounce [s] (default: 1 ms)", 1e-3, 1e-7, 0.1),
+    "height_error": (LENGTH, "standard error of the height of a drop [m] (default: 2 mm)", 2e-3, 1e-6, 1.0),
+    "scatter": (SHARE, "standard deviation of the COR from drop to drop (default: 0.02)", 0.02, 1e-4, 0.5),
 }
 _MOST = 100  # drops of one kind; more are not worth while, and errors that drops share dominate
 _WIDTH = 110  # of a line of text
@@ -48,14 +47,8 @@ def add(commands: Any) -> None:
     options.add_quantity(command, "--thickness", LENGTH, what, default=thicknesses, **several)
     what = "heights of drops [m], or with a unit (default: 10 cm, 30 cm, 1 m)"
     options.add_quantity(command, "--drop", LENGTH, what, default=(0.1, 0.3, 1.0), **several)
-    what = "standard error of the time of a bounce [s], or with a unit (default: 1 ms)"
-    options.add_quantity(command, "--timing-error", TIME, what, default=1e-3, metavar="T")
-    what = "standard error of the height of a drop [m], or with a unit (default: 2 mm)"
-    options.add_quantity(command, "--height-error", LENGTH, what, default=2e-3, metavar="H")
-    what = "standard deviation of the COR from drop to drop (default: 0.02)"
-    options.add_quantity(command, "--scatter", SHARE, what, default=0.02, metavar="E")
-    what = "relative standard error to which the unknown is to be found (default: 5%%)"
-    options.add_quantity(command, "--precision", SHARE, what, default=0.05, metavar="SHARE")
+    for name, (quantity, what, default, *_) in _ERRORS.items():
+        options.add_quantity(command, f"--{name.replace('_', '-')}", quantity, what, default=default, metavar="E")
     options.add_errors(command, ())
     options.add_name_of_law(command)
     command.set_defaults(outside="solve")
@@ -77,28 +70,19 @@ class Plan(NamedTuple):
     flags: Integers
 
 
-def plan(
-    model: ImpactModel,
-    radius: float,
-    thickness: Array,
-    drop: Array,
-    *,
-    timing_error: float,
-    height_error: float,
-    scatter: float,
-    precision: float,
-) -> Plan:
+def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, errors: dict[str, float]) -> Plan:
     """Count the drops that are needed, for every combination of thicknesses and heights.
 
     The COR of a drop is half of g times the time to the next bounce over the speed. The errors of
     single drops become smaller with their number; those of the law and of the other inputs do not.
     """
+    timing_error, height_error, scatter = (errors[name] for name in _ERRORS)
     h, fall = (one.ravel() for one in np.meshgrid(thickness, drop, indexing="ij"))
     v = np.sqrt(2.0 * _GRAVITY * fall)
     with wording.naming_impact(v, radius, h):
         hit = model.solve(v, radius, h)
         causes = model.uncertainty(v, radius, h).restitution.causes
-        moved = _moved(model, precision).uncertainty(v, radius, h, thickness_error=precision).restitution.causes
+        moved = _moved(model).uncertainty(v, radius, h, thickness_error=_PRECISION).restitution.causes
     cor = np.asarray(hit.restitution)
     by_time, by_height = math.sqrt(2.0) * timing_error * _GRAVITY / (2.0 * v), 0.5 * cor * height_error / fall
     error = np.sqrt(scatter**2 + by_time**2 + by_height**2)
@@ -109,7 +93,6 @@ def plan(
         return np.where(left > 0.0, np.maximum(np.ceil(error**2 / np.where(left > 0.0, left, 1.0)), 1.0), math.inf)
 
     squares = {cause: np.asarray(size) ** 2 for cause, size in causes.items()}
-    law = squares["model"]
     with np.errstate(divide="ignore"):  # each bounce is slower by the COR, and its time shorter
         bounces = 1.0 + np.floor(np.log(np.minimum(by_time / scatter, 1.0)) / np.log(cor))
     found = {
@@ -118,31 +101,31 @@ def plan(
         if cause != "model"
     }
     distance = np.asarray(edge_distance(model.pair.plate, h, hit.contact_time))
-    told = drops(np.abs(cor - cor.mean()) / _TOLD, law)
+    told = drops(np.abs(cor - cor.mean()) / _TOLD, squares["model"])
     return Plan(h, fall, v, cor, error, bounces, 2.0 * distance, told, found, np.asarray(hit.flags))
 
 
-def _moved(model: ImpactModel, precision: float) -> ImpactModel:
+def _moved(model: ImpactModel) -> ImpactModel:
     """Model whose strengths and loss factors have the wanted error, and nothing else has one."""
     bodies = []
     for body in model.pair.given:
         strength = "yield_strength" if body.yield_strength is not None else "hardness"
         names = [strength] * (body.strength is not None) + ["loss_factor"] * (body.loss_factor is not None)
-        bodies.append(dataclasses.replace(body, uncertainty=dict.fromkeys(names, precision)))
+        bodies.append(dataclasses.replace(body, uncertainty=dict.fromkeys(names, _PRECISION)))
     return ImpactModel(Pair(*bodies), model.force_law if not model.force_law.from_pair else model.force_law.family)
 
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     radius = _RADIUS if arguments.radius is None else arguments.radius
-    for name, limits in _LIMITS.items():
-        within(name, np.ravel(getattr(arguments, name)), *limits)
+    within("drop", np.array(arguments.drop), 1e-3, 100.0, "m")
+    errors = {name: getattr(arguments, name) for name in _ERRORS}
+    for name, size in errors.items():
+        within(name, np.array([size]), *_ERRORS[name][3:], "")
     model = chosen.model(arguments)
-    errors = {name: getattr(arguments, name) for name in ("timing_error", "height_error", "scatter", "precision")}
-    sizes = (np.array(one) for one in (arguments.thickness, arguments.drop))
-    made = plan(model, radius, *sizes, **errors)
+    made = plan(model, radius, np.array(arguments.thickness), np.array(arguments.drop), errors)
     print(impacts.in_words(impacts.asked(model, radius=radius)), *_rows(made), "", sep="\n")
-    for said in _said(made, errors):
+    for said in _said(made):
         print(*textwrap.wrap(said, _WIDTH), sep="\n")
 
 
@@ -168,9 +151,9 @@ def _rows(made: Plan) -> Iterator[str]:
     yield from impacts.explained(count_flags(made.flags), made.flags.size)
 
 
-def _said(made: Plan, errors: dict[str, float]) -> Iterator[str]:
+def _said(made: Plan) -> Iterator[str]:
     """Say what the columns mean, and which drops are the best."""
-    mean, share = made.restitution.mean(), f"{100.0 * errors['precision']:g} %"
+    mean, share = made.restitution.mean(), f"{100.0 * _PRECISION:g} %"
     yield (
         f"told by: drops whose mean is {_TOLD:g} standard errors from one COR for all of them, {mean:.3f}. The last "
         f"columns: drops that find a number within {share}, if all others are known as stated. -: more than {_MOST}, "
@@ -179,8 +162,8 @@ def _said(made: Plan, errors: dict[str, float]) -> Iterator[str]:
         "--sphere-error or --plate-error."
     )
     for cause, counts in made.found.items():
-        if (counts <= _MOST).any():
-            n = np.lexsort((made.sheet, counts))[0]
+        n = np.lexsort((made.sheet, counts))[0]
+        if counts[n] <= _MOST:
             many = f"{counts[n]:.0f} drop{'s' * bool(counts[n] > 1)}"
             where = f"from {in_unit(made.drop[n], 'm')} onto {in_unit(made.thickness[n], 'm')}"
             yield f"{cause}: {many} {where} (a sheet of {100.0 * made.sheet[n]:.2g} cm) find it within {share}."

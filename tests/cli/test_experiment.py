@@ -10,13 +10,13 @@ from contactlaw.cli.experiment import plan
 
 STEEL = cl.Pair("soda-lime-glass", cl.Material("metal", 70e9, 0.33, 2700.0, 250e6, kind="metal"))
 RADIUS = 2e-3
-USUAL = {"timing_error": 1e-3, "height_error": 2e-3, "scatter": 0.02, "precision": 0.05}
+USUAL = {"timing_error": 1e-3, "height_error": 2e-3, "scatter": 0.02}
 ARGUMENTS = ["experiment", "--sphere", "soda-lime-glass", "--plate", "aluminium-6061-t6"]
 
 
 @pytest.fixture(scope="module")
 def made():
-    return plan(cl.ImpactModel(STEEL), RADIUS, np.array([1e-3, 2e-3, 5e-3]), np.array([0.1, 0.5]), **USUAL)
+    return plan(cl.ImpactModel(STEEL), RADIUS, np.array([1e-3, 2e-3, 5e-3]), np.array([0.1, 0.5]), USUAL)
 
 
 @pytest.mark.parametrize(
@@ -62,12 +62,6 @@ def test_a_sheet_of_the_stated_side_has_no_edges(made):
     endless = model.restitution(*impact)
     near, far = (model.restitution(*impact, edge_distance=share * made.sheet[n]) for share in (0.25, 0.5))
     assert far == pytest.approx(endless, abs=3e-3) and abs(near - endless) > 3e-3
-
-
-def test_thick_sheets_tell_their_strength_and_thin_ones_their_thickness(made):
-    thin, _, thick = made.found["thickness"].reshape(3, 2)
-    assert (thin <= 5.0).all() and (thick > 50.0).all()
-    assert made.sheet[made.thickness == 5e-3].min() > made.sheet[made.thickness == 2e-3].max()
 
 
 def test_the_command_says_what_to_do(capsys):

@@ -52,9 +52,8 @@ def _run(arguments: argparse.Namespace) -> None:
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:
-            about = ", ".join(
-                filter(None, (known.title, f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"))
-            )
+            bodies = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
+            about = f"{known.title}: {bodies}" if known.title else bodies
             figure.save(found, pair, arguments.law, known.errors, about, arguments.plot)
         else:
             print(*filter(None, (known.title, known.reference)), *_rows(found, pair, arguments.law), "", sep="\n")
@@ -63,31 +62,23 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def _rows(found: Comparison, pair: Pair, law: str) -> Iterator[str]:
     """Lines of the rebounds: measured COR, its error, COR of the model, its range, and flags."""
-    by_name = {column.name: column for column in COLUMNS}
-    ends = {
-        name: np.where(np.isfinite(end), end, np.nan)
-        for name, end in (("low", found.band.low), ("high", found.band.high))
-    }
-    values = {name: getattr(found.data, name) for name in ("speed", "radius", "thickness")}
-    values |= {
-        "measured": found.data.restitution,
-        "error": found.data.restitution_error,
-        "restitution": found.restitution,
-    }
+    by_name, data = {column.name: column for column in COLUMNS}, found.data
+    values = {name: getattr(data, name) for name in ("speed", "radius", "thickness")}
+    values |= {"measured": data.restitution, "error": data.restitution_error, "restitution": found.restitution}
+    ends = np.array([found.band.low, found.band.high])
+    low, high = np.where(np.isfinite(ends), ends, np.nan)
     columns = *(by_name.get(name, Column(name, "", name)) for name in values), Column("low", "", "68 %", to="high")
     asked = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": law}
-    return impacts.text(ImpactTable(values | ends, found.flags, asked), columns)
+    return impacts.text(ImpactTable(values | {"low": low, "high": high}, found.flags, asked), columns)
 
 
 def _judged(found: Comparison) -> list[str]:
     """Say what chi-squared means."""
     many = f"{len(found.data)} rebound{'s' * (len(found.data) > 1)}"
-    verdict = (
-        "differs by more than the known errors explain" if found.probability < _UNLIKELY else "agrees within the errors"
-    )
+    verdict = "agrees within" if found.probability >= _UNLIKELY else "differs by more than"
     said = (
         f"chi-squared {found.chi_squared:.3g} of {many}, as large or larger by chance in "
-        f"{100.0 * found.probability:.2g} % of cases: the model {verdict}."
+        f"{100.0 * found.probability:.2g} % of cases: the model {verdict} the known errors."
     )
     if found.unknown:
         said += f" Not in it, as nobody knows the error: {', '.join(found.unknown)}."
@@ -103,12 +94,10 @@ def _by_law(pair: Pair, found: Comparison, errors: dict[str, float]) -> Iterator
         except NoYieldStrengthError:
             without.append(name)
     compared.sort(key=lambda one: one[1].rms)
-    cells = [
-        (name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", f"{100.0 * one.probability:.0f}", "")
-        for name, one in compared
-    ]
-    heads = ("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")
+    rows = [("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")]
+    for name, one in compared:
+        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", f"{100.0 * one.probability:.0f}", ""))
     yield f"Nearest to the data is law {compared[0][0]}. A law with large errors of its own has a small chi-squared."
-    yield from impacts.aligned([*zip(*heads, *cells, strict=True)])
+    yield from impacts.aligned([*zip(*rows, strict=True)])
     if without:
         yield f"without an answer, as {pair.sphere.name} has no yield strength: {', '.join(without)}"

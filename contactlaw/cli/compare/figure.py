@@ -18,6 +18,7 @@ from contactlaw.physical.pair import Pair
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_UNITS = {"speed": "m/s", "radius": "m", "thickness": "m"}
 _SAMPLES = 80  # points of a curve
 _WIDER = 1.5  # ratio of a curve's ends to the extreme values of the data
 
@@ -27,29 +28,29 @@ def save(
 ) -> None:
     """Draw a comparison into a file: over thickness if there are several, otherwise over speed."""
     data, model = found.data, ImpactModel(pair, law)
-    sizes = {name: np.asarray(getattr(data, name)) for name in ("speed", "radius", "thickness")}
-    thickness = sizes["thickness"]
-    along = "thickness" if np.unique(thickness[np.isfinite(thickness)]).size > 1 else "speed"
+    sizes = {name: np.asarray(getattr(data, name)) for name in _UNITS}
+    along = "thickness" if np.isfinite(np.unique(sizes["thickness"])).sum() > 1 else "speed"
     rest = [name for name in sizes if name != along]
-    units, scale = {"speed": "m/s", "radius": "m", "thickness": "m"}, 1e3 if along == "thickness" else 1.0
-    groups = np.unique(np.column_stack([sizes[name] for name in rest]), axis=0)
+    table = np.column_stack([sizes[name] for name in rest])
+    groups, inside = np.unique(table, axis=0), sizes[along][np.isfinite(sizes[along])]
+    measured, error = np.asarray(data.restitution), np.asarray(data.restitution_error)
+    label, scale = ("impact speed [m/s]", 1.0) if along == "speed" else ("plate thickness [mm]", 1e3)
+    x = np.geomspace(inside.min() / _WIDER, inside.max() * _WIDER, _SAMPLES)
     with style.applied():
+        edge = "; a half-space stands at the right end" if inside.size < len(data) else ""
         title = f"Measured COR beside the model: chi-squared {found.chi_squared:.2g} of {len(data)}"
-        made = style.figure(9.0, 6.0, title, f"{about}; the band is of 68 %, nothing is fitted")
+        made = style.figure(9.0, 6.0, title, f"{about}; the band is of 68 %, nothing is fitted{edge}")
         axes = made.subplots()
-        inside = sizes[along][np.isfinite(sizes[along])]
-        x = np.geomspace(inside.min() / _WIDER, inside.max() * _WIDER, _SAMPLES)
-        for n, group in enumerate(groups.tolist()):
-            here = dict(zip(rest, group, strict=True)) | {along: x}
+        for n, group in enumerate(groups):
+            here = dict(zip(rest, group.tolist(), strict=True))
             colour = plots.colour_of(n, len(groups)) if len(groups) > 1 else style.BLUE
-            name = ", ".join(f"{one} {in_unit(value, units[one])}" for one, value in zip(rest, group, strict=True))
-            curve(axes, scale * x, model, here, errors, colour, name)
-            rows = np.all([sizes[one] == value for one, value in zip(rest, group, strict=True)], axis=0)
-            measured, error = (np.asarray(one)[rows] for one in (data.restitution, data.restitution_error))
-            points(axes, scale * sizes[along][rows], measured, error, colour if len(groups) > 1 else style.ORANGE)
-        unit = "m/s" if along == "speed" else "mm"
-        axes.set(xlabel=f"{'impact speed' if along == 'speed' else 'plate thickness'} [{unit}]", xscale="log")
-        axes.set_ylabel("coefficient of restitution [-]")
+            name = ", ".join(f"{one} {in_unit(value, _UNITS[one])}" for one, value in here.items())
+            curve(axes, scale * x, model, here | {along: x}, errors, colour, name)
+            rows = (table == group).all(axis=1)
+            face = colour if len(groups) > 1 else style.ORANGE
+            at = scale * np.minimum(sizes[along][rows], x[-1])
+            points(axes, at, measured[rows], error[rows], face, "_" if n else "measured")
+        axes.set(xlabel=label, ylabel="coefficient of restitution [-]", xscale="log")
         style.decades(axes.xaxis, (1.0, 2.0, 5.0))
         axes.legend(loc="best")
         plots.save(made, path)
