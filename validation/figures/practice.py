@@ -344,7 +344,7 @@ def fig27_measured() -> chart.Drawn:
             f"{source.title}: COR": found.restitution[0],
             f"{source.title}: COR, standard error": 0.5 * np.ravel(found.band.high - found.band.low)[0],
             f"{source.title}: COR, model minus measured": found.restitution[0] - cor[0],
-            f"{source.title}: chi-squared": found.chi_squared,
+            f"{source.title}: share of cases as far off by chance": found.probability,
         }
         over = np.asarray(model.restitution(first["speed"], first["radius"], thickness))
         if over[0] < least < over[-1]:
