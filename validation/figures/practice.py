@@ -587,9 +587,9 @@ def fig31_walls() -> chart.Drawn:
     """Fig. 31: a wall that swings back gives a bead some of its energy back.
 
     Left, elastic impacts on walls that are curved or lie on a foundation; T is the contact time of
-    Hertz's law, lambda the loss to the flat plate. The circles are a convolution in time, which has
-    neither the fit nor the equation of the model. Right, one bead inside walls of one thickness: from
-    a radius of some 200 mm on they are flat.
+    Hertz's law, the number at a curve the loss to the flat plate. The circles are a convolution in
+    time, which has neither the fit nor the equation of the model. Right, one bead inside walls of one
+    thickness: from a radius of some 200 mm on they are flat.
     """
     figure, (left, right) = chart.sheet(
         (14.0, 6.2),
