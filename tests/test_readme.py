@@ -92,7 +92,7 @@ def test_the_pymunk_section():
 # A block of commands, and what they print if the page shows it: the first block after it, with one
 # line of text between them at most.
 CONSOLE = re.compile(r"```sh\n(.*?)```\n+(?:[^\n`]+\n+)?(?:```text\n(.*?)```)?", re.DOTALL)
-SHOWN = {"README": 1, "command_line": 3}  # blocks of output of a page, which are compared
+SHOWN = {"README": 1, "command_line": 3, "materials": 1, "measure": 1}  # blocks of output of a page, which are compared
 
 
 def commands(block):
@@ -108,7 +108,8 @@ def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys,
     monkeypatch.chdir(tmp_path)
     Path("impacts.csv").write_text("speed_m/s\n0.5\n1.2\n")
     Path("docs/examples").mkdir(parents=True)
-    shutil.copy(ROOT / "docs/examples/rebounds.csv", "docs/examples")
+    for name in ("rebounds.csv", "pom_drops.csv"):
+        shutil.copy(ROOT / "docs/examples" / name, "docs/examples")
     Path("rain").mkdir()
     write_rain(Path("rain/rain.h5"), pair)
     compared = 0

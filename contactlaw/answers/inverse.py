@@ -267,7 +267,7 @@ class Inverse(Uncertain):
             most = np.maximum(2.0 * wanted - band.low, wanted)
             for n, one in enumerate(zip(x, least, most, strict=True)):
                 ends[:, n] = [curve.leaves(wanted, *one, up=up) for up in (False, True)]
-            ends[:, np.isinf(band.low)] = [[-0.0], [0.0]]  # reciprocals of -inf and inf
+            ends[:, np.isinf(band.low) | np.isinf(band.high)] = [[-0.0], [0.0]]  # reciprocals of -inf and inf
         last = [int(curve.e.argmin()), int(curve.e.argmax())]
         with np.errstate(divide="ignore"):
             value, low, high, at = 1.0 / x, *(1.0 / ends), 1.0 / curve.x[last]

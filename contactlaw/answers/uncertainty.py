@@ -47,8 +47,8 @@ _LARGEST_ERROR = 1.0
 _LEAST_COR = 1e-12  # the lower end of a range that reaches below zero
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
 _STRENGTHS = "yield_strength", "hardness"
-# A specified minimum matters if a strength 10 % higher changes an answer by more than 1e-4 of it.
-_STRONGER, _MATTERS = 0.1, 1e-4
+# A specified minimum matters if a strength 10 % or 3 times higher changes an answer by more than 1e-4.
+_STRONGER, _MATTERS = (0.1, math.log(3.0)), 1e-4
 _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
 
 
@@ -59,11 +59,13 @@ class Band:
     Attributes
     ----------
     low, high
-        Quantiles of 16 and 84 %: of three real impacts two are between them. Or -inf and inf.
+        Quantiles of 16 and 84 %: of three real impacts two are between them. An end is -inf or
+        inf where it is not known: that towards which a strength above a specified minimum moves
+        the answer, mostly the high one of the COR, and both of a law of your own.
     causes : dict of str to float or ndarray
         Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
-        ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf, and
-        no range known, of a law of your own and of a specified minimum that matters.
+        ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf of a law
+        of your own and of a specified minimum that matters.
     """
 
     low: float | Array
@@ -112,7 +114,7 @@ class Variants:
             if error
         ]
         self.changes = [one for one in changes if one.error < math.inf]
-        self.minima = [one._replace(error=_STRONGER) for one in changes if one.error == math.inf]
+        self.minima = [one._replace(error=1.0) for one in changes if one.error == math.inf]
         self.solver = functools.cache(self._solver)
 
     def _solver(self, moved: tuple[tuple[Change, float], ...], *decades: float) -> Solver:
@@ -340,12 +342,15 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
         causes["model"][0] = curves.cor_by_law
     else:
         causes["model"] = np.full_like(low, math.inf)
+    up, down = np.zeros(low.shape, dtype=bool), np.zeros(low.shape, dtype=bool)
     for one in variants.minima:
-        matters = np.abs(curves.moved((one, 1.0))[:3]).max(axis=0) > _MATTERS
-        if matters.any():
-            causes[one.cause] = np.where(matters, math.inf, np.zeros_like(low))
-    unknown = np.isinf(np.sum([*causes.values()], axis=0))
-    low, high = np.where(unknown, -math.inf, low), np.where(unknown, math.inf, high)
+        moved = np.array([curves.moved((one, z)) for z in _STRONGER])
+        higher, lower = moved.max(axis=0) > _MATTERS, moved.min(axis=0) < -_MATTERS
+        if np.any((higher | lower)[:3]):
+            causes[one.cause] = np.where(higher | lower, math.inf, 0.0)
+        up, down = up | higher, down | lower
+    unknown = np.isinf(causes["model"])
+    low, high = np.where(unknown | down, -math.inf, low), np.where(unknown | up, math.inf, high)
     bands = (
         Band(
             shaped(low[n], impacts.shape),

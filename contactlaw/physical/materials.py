@@ -38,6 +38,11 @@ _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 _LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
 _FREQUENCIES = 1e-3, 1e9  # [Hz]; from slow tests to ultrasound and beads of micrometres
 _LARGEST_ERROR = 1.0  # relative standard error; beyond, nothing is known
+# Least and largest loss factor that handbooks of acoustics print for audible sound, without a frequency:
+# Mechel, Formulas of Acoustics (2008), Table 3; Bies, Hansen & Howard, Engineering Noise Control,
+# 5th ed. (2017), Table C.1, which has a range from the material to a mounted panel.
+_HANDBOOK = {"hdpe": (0.003, 0.1), "pmma": (0.002, 0.06), "polypropylene": (0.003, 0.1), "polystyrene": (0.003, 0.1)}
+_AUDIBLE = 1e3  # [Hz]; our choice
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
@@ -167,17 +172,18 @@ class Material:
     rate : (float, float), optional
         C [-], 0 to 0.5, and rate0 [1/s], positive: the flow stress grows by the factor
         1 + C ln(rate/rate0) (Johnson & Cook 1983). Only ``law="fem"`` takes it.
-    loss_factor : (float, float), optional
+    loss_factor : (float, float) or str, optional
         tan delta [-], 0 to 1, and the frequency [Hz] at which it and Young's modulus were measured:
         that of an impact, 1/(2 contact times), or near it. From there the modulus is carried to
         each impact's frequency as that of a body whose loss factor is the same at all of them.
-        Only ``law="fem"`` takes it.
+        Only ``law="fem"`` takes it. ``"handbook"`` takes that of handbooks of acoustics, with
+        their disagreement as its error, for the polymers of the catalogue that they have.
     uncertainty : mapping of str to float, optional
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
         lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
-        knows it: answers that depend on it have no range.
+        knows it: of answers that depend on it one end is known.
 
     Raises
     ------
@@ -246,6 +252,10 @@ class Material:
         object.__setattr__(self, "hardness", hardness)
         object.__setattr__(self, "hardening", _hardening(self))
         object.__setattr__(self, "rate", _rate(self))
+        if str(self.loss_factor) == "handbook":
+            loss_factor, error = _from_handbook(self.name)
+            object.__setattr__(self, "loss_factor", loss_factor)
+            object.__setattr__(self, "uncertainty", {"loss_factor": error, **self.uncertainty})
         object.__setattr__(self, "loss_factor", _loss_factor(self))
         object.__setattr__(self, "uncertainty", _uncertainty(self))
 
@@ -495,7 +505,7 @@ def number_of(field: str, text: str) -> float | str:
     return quantities.value(text, _QUANTITIES[field])
 
 
-def _spelled_out(table: dict[str, Any]) -> dict[str, Any]:
+def spelled_out(table: dict[str, Any]) -> dict[str, Any]:
     """Write short names in full, and numbers with a unit in SI units."""
     long = {SHORT.get(key, key): value for key, value in table.items()}
     if len(long) < len(table):
@@ -521,7 +531,7 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
             if (key := _key(one)) in owner and not (one != name and key == _key(name)):
                 raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
             owner[key] = name
-        tables[name] = _spelled_out(table)
+        tables[name] = spelled_out(table)
     known = {_key(one): table for name, table in (others | tables).items() for one in (name, *table.get("aliases", ()))}
     found = {name: _from_table(name, tables[name], known, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
@@ -660,6 +670,16 @@ def _rate(body: Material) -> tuple[float, float] | None:
         raise refused(f"C must be from 0 to {_STEEPEST_RATE:g}")
     rate0 = _positive("rate", given[1], "1/s")
     return (slope, rate0) if slope else None
+
+
+def _from_handbook(name: str) -> tuple[tuple[float, float], float]:
+    """Loss factor of a polymer by handbooks, even in its logarithm between their extremes, and its error."""
+    if name not in _HANDBOOK:
+        reason = f"no handbook has that of {name!r}, but of {', '.join(_HANDBOOK)}: measure it by a drop"
+        raise ArgumentError("loss_factor", "handbook", reason)
+    low, high = _HANDBOOK[name]
+    error = math.log(high / low) / math.sqrt(12.0)
+    return (math.sqrt(low * high), _AUDIBLE), min(error, _LARGEST_ERROR)
 
 
 def _loss_factor(body: Material) -> tuple[float, float] | None:

@@ -204,11 +204,16 @@ def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():
     assert cor.causes == {"model": pytest.approx(0.0169 * 0.3)}
 
 
-def test_a_specified_minimum_has_no_range_where_a_stronger_body_rebounds_otherwise():
-    """Not below yield, nor beside a body so weak that it alone flows."""
+def test_a_specified_minimum_has_a_lower_end_alone_where_a_stronger_body_rebounds_otherwise():
+    """Both ends are known below yield, and beside a body so weak that it alone flows."""
     band = range_of("soda-lime-glass", "steel-s235", [1e-3, 1.0])
     assert band.causes["yield strength of the plate"].tolist() == [0.0, INF]
-    assert (band.low[1], band.high[1]) == (-INF, INF)
+    assert band.high[1] == INF
+    for factor in (1.0, 1.3, 2.0, 4.0):  # whatever the strength is, the COR is not lower
+        plate = dataclasses.replace(cl.material("steel-s235"), yield_strength=factor * 235e6)
+        assert cl.ImpactModel(cl.Pair("soda-lime-glass", plate)).restitution(1.0, 1e-3, 5e-3) > band.low[1]
+    exact = range_of("soda-lime-glass", known_to("steel-s235", yield_strength=1e-6), [1e-3, 1.0])
+    assert band.low == pytest.approx(exact.low, abs=4e-4)  # a tenth of half the width: other draws
     weak = range_of("lead", "steel-s235", [1e-3, 1.0])
     known = range_of("soda-lime-glass", known_to("steel-s235", yield_strength=0.15), [1.0])
     ends = [band.low[0], band.high[0], *weak.low, *weak.high, *known.low, *known.high]

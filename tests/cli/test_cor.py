@@ -4,9 +4,11 @@ import csv
 import dataclasses
 import json
 import os
+import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import contactlaw as cl
@@ -201,17 +203,42 @@ def test_strengths_without_an_error_are_named(capsys):
     assert "as far as errors are known (errors of the strength of the bead are not)." in table
 
 
-def test_no_range_is_printed_where_a_specified_minimum_matters(capsys):
+def test_no_upper_end_is_printed_where_a_specified_minimum_matters(capsys):
     asked = "--sphere soda-lime-glass --plate steel-s235 --radius 1.5mm --speed 2.43"
-    why = "(no range: the yield strength of the plate is a specified minimum"
+    why = "(no upper end: the yield strength of the plate is a specified minimum"
     for command in (f"cor {asked} --thickness 5mm", f"thickness {asked} --cor 0.4"):
         assert why in " ".join(printed(command, capsys).split())
         (row,) = csv.DictReader(printed(f"{command} --csv", capsys).splitlines())
         ends = [cell for name, cell in row.items() if "_low" in name or "_high" in name]
-        assert len(ends) > 1 and set(ends) == {""}
+        assert len(ends) > 1 and ends[1] == "" and ends[0] == row.get("restitution_low", "")
     record = json.loads(printed(f"{command} --json", capsys))[0]
     assert record["thickness_low"] is record["thickness_high"] is None
-    assert " 0.6408        -  6.951" in printed(f"cor {asked},1e-3 --thickness 5mm", capsys)
+    assert re.search(r" 0.6408 +>0.638  6.951", printed(f"cor {asked},1e-3 --thickness 5mm", capsys))
+
+
+@pytest.mark.parametrize(
+    ("asked", "size", "said"),
+    [
+        ("soda-lime-glass --plate steel-s235", 0.1, "hardness of the plate: a specified minimum, and"),
+        ("soda-lime-glass --plate aluminium-6061-t6", 0.1, "plate: its error is not known, and each"),
+        ("bearing-steel-52100-ball --plate steel-dc01", 0.19, "plate, 0.041 of half the width; all"),
+        ("glass --plate glass", 0.0, ""),
+    ],
+)
+def test_it_asks_for_what_narrows_the_band_most(asked, size, said, capsys):
+    """That is the strength, by as much as a strength that is off by its error changes the COR."""
+    text = printed(f"cor --sphere {asked} --radius 1.5mm --speed 2.43 --thickness 5mm", capsys)
+    (first,) = re.findall("measure this first .*", text) or [""]
+    assert said in first and bool(first) == bool(said)
+    if size:
+        sphere, plate = asked.split(" --plate ")
+        body = cl.material(plate)
+        ends = [
+            dataclasses.replace(body, yield_strength=body.yield_strength * np.exp(z * size), uncertainty={})
+            for z in (-1, 1)
+        ]
+        low, high = (cl.ImpactModel(cl.Pair(sphere, end)).restitution(2.43, 1.5e-3, 5e-3) for end in ends)
+        assert f"{0.5 * (high - low):.2g} of" in first
 
 
 def test_without_errors_of_materials_it_says_so(capsys):

@@ -12,7 +12,7 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main
-from contactlaw.cli.fit import measured
+from contactlaw.cli.parts import rebounds as tables
 from contactlaw.engines.record import IMPACT
 from contactlaw.physical.kind import Kind
 
@@ -70,9 +70,9 @@ def test_json_holds_all_of_the_fit(usual, found, capsys):
 )
 def test_tables_as_people_write_them(head, rows, table):
     path = table(head, *rows)
-    found = measured.read(path)
+    found = tables.read(path)
     sizes = {} if "radius" in found.columns else {"radius": RADIUS}
-    data = measured.completed(found, path, thickness=THICKNESS, **sizes)
+    data = tables.completed(found, path, thickness=THICKNESS, **sizes)
     assert data.radius == pytest.approx([RADIUS] * 2) and found.unused == ()
     assert data.speed == pytest.approx([1.0, 2.0])
     assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
@@ -194,7 +194,7 @@ def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(tmp_path, capsys)
     heads = "Velocity [m/s];Bemerkung µ;COR;Contact time [µs]"
     rows = ("1,0;;0,45;7,9", "", "2,0;;1,03;7,5")
     path.write_bytes("\r\n".join([heads, *rows]).encode("cp1252"))
-    assert measured.read(path).columns["contact_time"] == pytest.approx([7.9e-6, 7.5e-6])
+    assert tables.read(path).columns["contact_time"] == pytest.approx([7.9e-6, 7.5e-6])
     assert main(["fit", str(path), *FIT]) == 1
     assert "restitution of rebound 1, line 4 is above 1" in capsys.readouterr().err
 
@@ -249,14 +249,14 @@ def test_where_yield_begins_is_drawn(tmp_path):
     ids=["no remark", "commas at the ends", "comma after the heads", "quoted", "comment"],
 )
 def test_rows_as_spreadsheets_and_people_end_them(text):
-    found = measured._read(text.encode()).columns
+    found = tables._read(text.encode()).columns
     assert found["speed"].tolist() == [1.0, 2.0]
     assert found["restitution"].tolist() == [0.8, 0.7]
 
 
 def test_what_is_too_long_for_a_cell_is_refused_in_words():
     with pytest.raises(ValueError, match="field larger than"):
-        measured._read(b"speed,COR,remark\n1,0.8," + b"x" * 140_000 + b"\n")
+        tables._read(b"speed,COR,remark\n1,0.8," + b"x" * 140_000 + b"\n")
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from command_line import refused
 
@@ -39,6 +40,22 @@ IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".sp
 )
 def test_numbers_make_the_material_that_python_makes(text, more):
     assert material_of("sphere", text, {}) == cl.Material(text, **NUMBERS, **more)
+
+
+def test_a_name_and_what_differs():
+    """What is replaced has no known error any more, and a hardness is the strength."""
+    soft = material_of("plate", "pmma yield=70MPa loss_factor=handbook", {})
+    low, high = 0.002, 0.06  # the extremes of both handbooks
+    assert soft.yield_strength == 70e6 and soft.density == cl.material("pmma").density
+    assert soft.uncertainty["youngs_modulus"] == 0.11 and "yield_strength" not in soft.uncertainty
+    middle, error = soft.loss_factor[0], soft.uncertainty["loss_factor"]
+    assert middle == pytest.approx((low * high) ** 0.5)
+    assert middle * np.exp([-(3**0.5) * error, 3**0.5 * error]) == pytest.approx([low, high])
+    band = cl.ImpactModel(cl.Pair(soft, "glass")).uncertainty(0.3, 3e-3, 20e-3).restitution
+    largest = max(band.causes, key=band.causes.get)
+    assert largest == "loss factor of the bead" and band.high - band.low > 0.02
+    hard = material_of("plate", "steel-s235 hardness=140HV", {})
+    assert hard.strength == hard.hardness / 3.0 and not hard.uncertainty.keys() - {"youngs_modulus"}
 
 
 def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
@@ -80,7 +97,7 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
         ("E=2GPa E=3GPa nu=0.35 rho=1410", "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice"),
         ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
         ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
-        ("POM, E=2GPa nu=0.35 rho=1410", "'POM' has no key: write KEY=..."),
+        ("pom loss_factor=handbook", "no handbook has that of 'pom', but of hdpe, pmma"),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):

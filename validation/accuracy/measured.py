@@ -1,31 +1,17 @@
-"""Published measurements of the normal COR, in ``validation/measured``, and the model beside them.
+"""Published measurements of the normal COR, in ``validation/measured``.
 
-Each file ``NAME-normal.csv`` is one source. Its lines with # are a header in TOML: the reference,
-how the numbers were read, and both materials, each ``like`` one of the catalogue.
+Each file ``NAME-normal.csv`` is one source, in the format of ``contactlaw compare``.
 """
 
 from __future__ import annotations
 
-import csv
-import tomllib
-from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import contactlaw as cl
+from contactlaw.cli.parts import rebounds
 
 FOLDER = Path(__file__).parent.parent / "measured"
-_COLUMNS = "speed_m_s", "radius_m", "thickness_m", "restitution", "reading_error"
-
-
-class Rebound(NamedTuple):
-    """A measured rebound, in SI units."""
-
-    speed: float
-    radius: float
-    thickness: float  # inf: a block, or a plate that the source calls thick
-    restitution: float
-    reading_error: float  # of the restitution
 
 
 class Source(NamedTuple):
@@ -34,7 +20,12 @@ class Source(NamedTuple):
     title: str
     reference: str
     pair: cl.Pair
-    rebounds: tuple[Rebound, ...]
+    rebounds: cl.Measurements
+    errors: dict[str, float]  # of speed and sizes
+
+    def compared(self, law: str = "fem") -> cl.Comparison:
+        """Compare the rebounds with the model."""
+        return cl.compare(self.pair, self.rebounds, law, **self.errors)
 
 
 def sources() -> list[Source]:
@@ -42,23 +33,16 @@ def sources() -> list[Source]:
 
     Examples
     --------
-    >>> [source.title for source in sources()]
-    ['alumina on a thick glass anvil, R = 2.5 mm']
+    >>> for source in sources():
+    ...     print(source.title)
+    nylon on an aluminium plate, R = 6.5 mm
+    alumina on a thick glass anvil, R = 2.5 mm
+    glass on acrylic, R = 1.55 mm
     """
     return [_read(path) for path in sorted(FOLDER.glob("*-normal.csv"))]
 
 
 def _read(path: Path) -> Source:
-    lines = path.read_text("utf-8").splitlines()
-    header = tomllib.loads("\n".join(line[1:] for line in lines if line.startswith("#")))
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return Source(
-        header["title"],
-        header["reference"],
-        cl.Pair(_material(header["sphere"]), _material(header["plate"])),
-        tuple(Rebound(*(float(row[name]) for name in _COLUMNS)) for row in rows),
-    )
-
-
-def _material(numbers: dict[str, Any]) -> cl.Material:
-    return replace(cl.material(numbers.pop("like")), **numbers)
+    read = rebounds.read(path)
+    known, data = rebounds.conditions(read, {}), rebounds.completed(read, path)
+    return Source(known.title, known.reference, cl.Pair(**known.bodies), data, known.errors)

@@ -19,6 +19,7 @@ from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import bands, inverse
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
+from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
 
@@ -85,10 +86,17 @@ def _run(arguments: argparse.Namespace) -> None:
         if known:
             print(*bands.explained(known.restitution, model.pair), sep="\n")
     else:
-        _print_one(found, known, model.pair)
+        first = ""
+        if errors is not None:
+            why, stated = bands.assumed(model.pair)
+            plate_given = chosen.wall(arguments, stated.given[1], thickness)
+            guess = ImpactModel(stated, law=arguments.law)
+            ask = guess.uncertainty(speed, radius, plate_given, **errors, mass=mass)
+            first = bands.measure_first(ask.restitution, why)
+        _print_one(found, known, model.pair, first)
 
 
-def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair) -> None:
+def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair, first: str) -> None:
     print(f"{'asked':21s} {impacts.in_words(found.asked)}")
     for name, unit in impacts.units().items():
         value, band = found.columns[name][0], getattr(known, name, None)
@@ -101,6 +109,8 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
         band = known.restitution
         said = f"{bands.meaning(band)}{bands.left_out(band, pair)}; half the width by cause"
         print(f"{'in brackets':21s} {said}")
+    if first:
+        print(f"{'measure this first':21s} {first}")
     flags = int(found.flags[0])
     print(f"{'flags':21s} {', '.join(impacts.flag_names(flags)) or 'none: inside every limit'}")
     for words in explain(flags):

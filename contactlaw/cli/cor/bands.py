@@ -1,6 +1,7 @@
 """Bands of ``contactlaw cor``: how far a real impact may be from its COR, and why."""
 
 import dataclasses
+import math
 import textwrap
 from collections.abc import Iterator
 
@@ -9,11 +10,13 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
 _OF_LAW = "two of three impacts by finite elements (no errors of the materials are known)"
 _OF_ALL = "two of three impacts, as far as errors are known"
+_ASSUMED = 0.1  # relative error of a strength whose own is not known
 WIDTH = 110  # of a line of text
 
 
@@ -39,13 +42,55 @@ def unknown(band: Band) -> str:
     minimum = "is a specified minimum, and nobody knows how far the real one exceeds it"
     law = "how far the law is from finite elements is not known"
     said = (law if name == "model" else f"the {name} {minimum}" for name in names)
-    return f"no range: {'; '.join(said)}" if names else ""
+    return f"no {'range' if 'model' in names else 'upper end'}: {'; '.join(said)}" if names else ""
 
 
 def in_brackets(band: Band) -> str:
     """Band of one impact, with its causes, as text after its value."""
     low, high = (np.ravel(end).item() for end in (band.low, band.high))
-    return "(no range)" if np.isinf(low) else f"({low:.3g} to {high:.3g}; {_causes(band)})"
+    if np.isinf([low, high]).all():
+        return "(no range)"
+    ends = (
+        f"{low:.3g} or more"
+        if np.isinf(high)
+        else f"{high:.3g} or less"
+        if np.isinf(low)
+        else f"{low:.3g} to {high:.3g}"
+    )
+    return f"({ends}; {_causes(band)})"
+
+
+def assumed(pair: Pair) -> tuple[dict[str, str], Pair]:
+    """Say which strengths have no known error, and why; and the pair with one of 10 % in its place."""
+    why, bodies = dict[str, str](), list[Material]()
+    for role, body in zip(("bead", "plate"), pair.given, strict=True):
+        name = "hardness" if body.yield_strength is None else "yield_strength"
+        error = body.uncertainty.get(name)
+        if body.strength is not None and (error is None or error == math.inf):
+            remark = "a specified minimum" if error else "its error is not known"
+            why |= {f"{name.replace('_', ' ')} of {of}": remark for of in (f"the {role}", "both bodies")}
+            body = dataclasses.replace(body, uncertainty={**body.uncertainty, name: _ASSUMED})
+        bodies.append(body)
+    return why, Pair(*bodies)
+
+
+def measure_first(band: Band, assumed: dict[str, str]) -> str:
+    """Name the input of one impact whose measurement narrows the band most, and by how much.
+
+    Causes that are `assumed` have an error of 10 %, since theirs is not known.
+    """
+    sizes = {cause: np.ravel(size).item() for cause, size in band.causes.items()}
+    cause, size = max(sizes.items(), key=lambda one: one[1])
+    rest = math.sqrt(sum(one**2 for name, one in sizes.items() if name != cause))
+    if cause == "model" or size < rest:
+        return ""
+    what = "the " + cause.replace("yield strength", "yield strength or hardness")
+    why = (
+        f": {assumed[cause]}, and each 10 % of it is {size:.2g} of COR"
+        if cause in assumed
+        else f", {size:.2g} of half the width"
+    )
+    return f"{what}{why}; all else is {rest:.2g}"
 
 
 def explained(band: Band, pair: Pair) -> Iterator[str]:

@@ -13,13 +13,12 @@ import numpy as np
 
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.fit import figure, measured, printed
-from contactlaw.cli.parts import chosen, options, wording
+from contactlaw.cli.fit import figure, printed
+from contactlaw.cli.parts import chosen, options, rebounds, wording
 from contactlaw.cli.parts.impacts import in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
-from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import HDF5, read_record
@@ -110,17 +109,8 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def _typed(arguments: argparse.Namespace) -> Measurements:
     """Read a table of rebounds, with warnings about what is not used or likely wrong."""
-    read = measured.read(arguments.data)
-    if read.unused:
-        wording.print_warning(f"{arguments.data}: columns that are not used: {', '.join(read.unused)}")
-    for name in ("radius", "thickness"):
-        if (size := unlikely(read.columns.get(name, 0.0))) is not None:
-            said = f"{name} {size:g} is {size:g} m; call the column {name}_mm for millimetres?"
-            wording.print_warning(f"{arguments.data}: {said}")
-    if read.empty:
-        lines = ", ".join(map(str, read.empty))
-        wording.print_warning(f"{arguments.data}: lines without a rebound are left out: {lines}")
-    return measured.completed(
+    read = rebounds.checked(arguments.data)
+    return rebounds.completed(
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness, friction=arguments.friction
     )
 

@@ -47,16 +47,17 @@ def models(arguments: argparse.Namespace) -> list[ImpactModel]:
 
 def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
     """Materials that the options name, otherwise those of the `known` pair of a record."""
-    bodies = {}
-    for name in ("sphere", "plate"):
-        chosen = getattr(arguments, name)
-        if chosen is None:
-            if known is None:
-                raise ArgumentError(name, None, "has to be given, no record says it")
-            bodies[name] = getattr(known, name)
-        else:
-            bodies[name] = own.material_of(name, chosen, arguments.materials)
-    return Pair(**bodies)
+    return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
+
+
+def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:
+    """Material that an option names, otherwise the one `known` from a file."""
+    chosen = getattr(arguments, role)
+    if chosen is None:
+        if known is None:
+            raise ArgumentError(role, None, "has to be given, no record says it")
+        return known
+    return own.material_of(role, chosen, arguments.materials)
 
 
 def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:

@@ -149,7 +149,14 @@ def _cells(table: ImpactTable, column: Column) -> Iterator[str]:
     if not column.to:
         return (f"{value:.4g}" for value in values)
     ends = zip(values, table.columns[column.to] * column.scale, strict=True)
-    return ("-" if math.isnan(low) else f"{low:.3g}-{high:.3g}" for low, high in ends)
+    return (_range(low, high) for low, high in ends)
+
+
+def _range(low: float, high: float) -> str:
+    """Write a range, one end of which may be NaN: not known."""
+    if math.isnan(low):
+        return "-" if math.isnan(high) else f"<{high:.3g}"
+    return f">{low:.3g}" if math.isnan(high) else f"{low:.3g}-{high:.3g}"
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:

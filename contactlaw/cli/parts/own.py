@@ -1,17 +1,19 @@
 """Materials on the command line: a name, or numbers of one's own."""
 
+import dataclasses
 import difflib
 import re
 from collections.abc import Mapping
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
-from contactlaw.physical.materials import SHORT, Material, find, number_of
+from contactlaw.physical.materials import SHORT, Material, UnknownMaterialError, find, number_of
 
 _NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
 
 
-_FIELDS = SHORT | {name: name for name in ("hardness", "kind", "name")}
+_TEXTS = "kind", "name", "loss_factor"
+_FIELDS = SHORT | {name: name for name in ("hardness", *_TEXTS)}
 
 # Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
 _BARE = re.compile(r"[\d.eE+-]+")
@@ -24,13 +26,12 @@ _LIKELY = {
 
 
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
-    """Material of an option: a name of the catalogue or of the user's own, or numbers."""
+    """Material of an option: a name of the catalogue or of the user's own, numbers, or a name and what differs."""
     try:
         if "=" not in text:
             return find(text, own)
         given: dict[str, object] = {}
-        if first := re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;"):
-            raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}")
+        first = re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;")
         for key, word in _NUMBER.findall(text):
             if key not in _FIELDS:
                 near = difflib.get_close_matches(key, _FIELDS, n=1)
@@ -39,12 +40,26 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             field = _FIELDS[key]
             if field in given:
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
-            given[field] = found = word if key in ("kind", "name") else number_of(field, word)
+            given[field] = found = word if key in _TEXTS else number_of(field, word)
             least, likely = _LIKELY.get(key, (0.0, ""))
             if isinstance(found, float) and found < least and _BARE.fullmatch(word):
                 wording.print_warning(f"{key}={word} is {word} {likely}?")
+        if first:
+            return _changed(first, given, own)
         if missing := [key for key in ("E", "nu", "rho") if _FIELDS[key] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
         raise ArgumentError(option, None, wording.sentence(error, ())) from error
+
+
+def _changed(name: str, given: dict[str, object], own: Mapping[str, Material]) -> Material:
+    """Body with other numbers, whose errors are not known; a hardness replaces its yield strength."""
+    try:
+        body = find(name, own)
+    except UnknownMaterialError:
+        raise ValueError(f"{name!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}") from None
+    if "hardness" in given and body.hardening is None:
+        given = {"yield_strength": None} | given
+    errors = {key: error for key, error in body.uncertainty.items() if key not in given}
+    return dataclasses.replace(body, uncertainty=errors, **given)  # type: ignore[arg-type]

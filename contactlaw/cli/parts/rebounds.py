@@ -1,7 +1,11 @@
-"""Measured rebounds from a table of named columns with units."""
+"""Measured rebounds from a table of named columns with units, and the conditions in its head."""
 
+import dataclasses
+import difflib
+import itertools
 import os
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,10 +14,12 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts import columns, wording
+from contactlaw.cli.parts import columns, own, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
+from contactlaw.physical.arguments import unlikely
+from contactlaw.physical.materials import Material, find, spelled_out
 from contactlaw.quantities import FORCE, SHARE, SPEED, TIME
 
 _KINDS = {
@@ -46,6 +52,7 @@ class Read(NamedTuple):
     unused: tuple[str, ...]  # names of other columns, with what they may be meant for
     lines: list[int]  # line of the file of each rebound
     empty: list[int]  # lines of the file in which nothing was measured
+    head: str  # comments above the table
 
 
 def read(path: str | os.PathLike[str]) -> Read:
@@ -96,7 +103,26 @@ def _read(content: bytes) -> Read:
     lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
     unused = [name for n, name in enumerate(names) if name and n not in wanted]
     missing = _COLUMNS.keys() - found.keys()
-    return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines, empty)
+    comments = itertools.takewhile(
+        lambda line: line.startswith("#"), content.decode("utf-8-sig", "replace").splitlines()
+    )
+    head = "\n".join(line[1:] for line in comments)
+    return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines, empty, head)
+
+
+def checked(path: str | os.PathLike[str]) -> Read:
+    """Read a table of rebounds, with warnings about what is not used or likely wrong."""
+    found = read(path)
+    if found.unused:
+        wording.print_warning(f"{path}: columns that are not used: {', '.join(found.unused)}")
+    for name in ("radius", "thickness"):
+        if (size := unlikely(found.columns.get(name, 0.0))) is not None:
+            said = f"{name} {size:g} is {size:g} m; call the column {name}_mm for millimetres?"
+            wording.print_warning(f"{path}: {said}")
+    if found.empty:
+        lines = ", ".join(map(str, found.empty))
+        wording.print_warning(f"{path}: lines without a rebound are left out: {lines}")
+    return found
 
 
 def _nearest(heads: list[str], fields: Iterable[str]) -> str:
@@ -120,3 +146,49 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     except ArgumentError as error:
         at = "" if error.element is None else f", line {found.lines[error.element]}"
         raise ValueError(f"{path}{at}: {error}") from None
+
+
+class Conditions(NamedTuple):
+    """What the head of a file of measurements says: TOML behind # above the table."""
+
+    title: str
+    reference: str
+    bodies: dict[str, Material]  # those of sphere and plate that it names
+    errors: dict[str, float]  # relative standard errors of speed and sizes, by argument
+
+
+_TEXTS = "title", "reference", "provenance", "reading", "missing"
+_SIZES = "speed_error", "radius_error", "thickness_error"
+
+
+def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
+    """Read the conditions in the head of a file."""
+    try:
+        given = tomllib.loads(found.head)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f'the lines with # above its table are no TOML, as title = "...": {error}') from None
+    _check_keys(given, (*_TEXTS, *_SIZES, "sphere", "plate"))
+    bodies: dict[str, Material] = {
+        role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
+    }
+    errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
+    return Conditions(str(given.get("title", "")), str(given.get("reference", "")), bodies, errors)
+
+
+def _check_keys(given: Mapping[str, Any], known: tuple[str, ...]) -> None:
+    for key in given.keys() - {*known}:
+        near = difflib.get_close_matches(key, known, n=1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        raise ValueError(f"its head has an unknown {key!r}; {hint}known: {', '.join(known)}")
+
+
+def _body(role: str, given: Any, materials: Mapping[str, Material]) -> Material:
+    """Material of a head: a name, numbers in one text, or a table of numbers `like` another."""
+    if isinstance(given, str):
+        return own.material_of(role, given, materials)
+    numbers = spelled_out(given)
+    like = numbers.pop("like", None)
+    _check_keys(numbers, tuple(one.name for one in dataclasses.fields(Material)))
+    if like is not None:
+        return dataclasses.replace(find(like, materials), **numbers)
+    return Material(**{"name": role} | numbers)

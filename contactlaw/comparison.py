@@ -1,0 +1,131 @@
+"""Measured CORs beside the model: its band, chi-squared, and how likely that is by chance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from contactlaw._arrays import Array, Integers
+from contactlaw._errors import ArgumentError
+from contactlaw.answers.uncertainty import Band
+from contactlaw.fitting.measurements import Measurements
+from contactlaw.laws import DEFAULT, Law
+from contactlaw.model import ImpactModel
+from contactlaw.physical.pair import Pair
+
+_NEEDED = "radius", "thickness", "restitution", "restitution_error"
+_LENGTH = 1.0  # correlation length of the law's errors in ln(speed) and ln(R/H), as in a fit
+_THICK = 1e-3  # R/H that stands for that of a half-space
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Measured CORs beside those of a model; arrays have a value for each rebound.
+
+    Attributes
+    ----------
+    data : Measurements
+        The rebounds that have a COR.
+    restitution : ndarray
+        COR of the model [-].
+    band : Band
+        Its range by the errors of materials, sizes and law, as in `ImpactModel.uncertainty`.
+    flags : ndarray of int
+        `Validity` limits that each impact exceeds.
+    chi_squared : float
+        Sum of squares of the differences over all known errors, of data and model. Errors of a
+        material or a size are alike at all rebounds, and those of the law at similar ones.
+    probability : float
+        Share of cases in which chance alone makes `chi_squared` as large; small if the model
+        differs by more than the errors explain.
+    rms : float
+        Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
+    unknown : tuple of str
+        Causes whose error is not known, as a specified minimum; `chi_squared` is without them.
+    """
+
+    data: Measurements
+    restitution: Array
+    band: Band
+    flags: Integers
+    chi_squared: float
+    probability: float
+    rms: float
+    unknown: tuple[str, ...]
+
+
+def compare(
+    pair: Pair,
+    data: Measurements | Mapping[str, ArrayLike],
+    law: str | Law = DEFAULT,
+    *,
+    speed_error: float = 0.0,
+    radius_error: float = 0.0,
+    thickness_error: float = 0.0,
+) -> Comparison:
+    """Compare measured CORs with a model to which they were not fitted.
+
+    Parameters
+    ----------
+    pair : Pair
+        Materials of bead and plate, with their `Material.uncertainty`.
+    data : Measurements or mapping
+        Rebounds as for `fit`, with radius, thickness, COR and its standard error.
+    law : str or Law, optional
+        As in `ImpactModel`.
+    speed_error, radius_error, thickness_error : float, optional
+        Relative standard errors of speeds and sizes [-], alike at all rebounds.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        Data that lack a size, a COR or its error; otherwise as in `ImpactModel`.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> data = {"speed": 3.9, "radius": 2.5e-3, "thickness": float("inf"),
+    ...         "restitution": 0.98, "restitution_error": 0.005}
+    >>> found = cl.compare(cl.Pair("alumina", "soda-lime-glass"), data)
+    >>> found.restitution.round(3), round(found.chi_squared, 1), round(found.probability, 1)
+    (array([0.985]), 0.6, 0.4)
+    """
+    data = Measurements.of(data)
+    for name in _NEEDED:
+        if getattr(data, name) is None:
+            raise ArgumentError(name, None, "has to be given for each rebound, to compare it with the model")
+    has_one = np.isfinite(np.asarray(data.restitution))
+    given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
+    data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
+    speed, radius, thickness, measured, error = (np.array(getattr(data, name)) for name in ("speed", *_NEEDED))
+    model = ImpactModel(pair, law)
+    hit = model.solve(speed, radius, thickness)
+    errors = {"speed_error": speed_error, "radius_error": radius_error, "thickness_error": thickness_error}
+    band = model.uncertainty(speed, radius, thickness, **errors).restitution
+    off = measured - hit.restitution
+    known = {cause: np.asarray(size) for cause, size in band.causes.items() if np.isfinite(size).all()}
+    slenderness = np.log(np.maximum(radius / thickness, _THICK))
+    apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
+    covariance = np.diag(error**2)
+    for cause, size in known.items():
+        alike = np.exp(-apart / _LENGTH) if cause == "model" else 1.0
+        covariance += np.outer(size, size) * alike
+    chi_squared = float(off @ np.linalg.solve(covariance, off))
+    chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
+    unknown = tuple(band.causes.keys() - known.keys())
+    cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
+    return Comparison(data, cor, band, flags, chi_squared, chance, rms, unknown)
+
+
+def _by_chance(chi_squared: float, count: int) -> float:
+    """Probability of a larger sum of squares of so many normal deviates (Wilson & Hilferty 1931)."""
+    spread = 2.0 / (9.0 * count)
+    return 0.5 * math.erfc(((chi_squared / count) ** (1.0 / 3.0) - 1.0 + spread) / math.sqrt(2.0 * spread))
