@@ -59,7 +59,7 @@ def _revolved(points: Array, axis: Array, area: float) -> str:
         wall = f"{'Cylinder' if straight else 'Cone'}({low}, {high}, {said(*size * radii[straight:])}"
     else:
         far, least = np.hypot(rho, z - 0.5 * b), _COVERED_SPHERE
-        if np.ptp(far) > _OFF * far.mean():
+        if np.ptp(far) > _OFF * np.ptp(ends):  # a large sphere is near any bumpy plate
             return ""
         whole, wall = 4.0 * math.pi * far.mean() ** 2, f"Sphere({centre}, {said(size * far.mean())}"
         if area < least * whole * size**2:
