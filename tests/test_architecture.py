@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_522,
-    "tests": 26_383,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 26_387,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

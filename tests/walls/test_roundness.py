@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.walls import Mesh
@@ -28,6 +29,8 @@ TUBE, HEIGHT = revolved(0.1, np.linspace(0.1, 0.3, 30)), np.linspace(0, 0.1, 20)
 HOPPER = revolved(np.array([0.02, 0.1]), np.array([0, 0.08 * 2**0.5]))  # its normals have no principal axis
 for corner, angle in zip(HOPPER.vertices, np.random.default_rng(1).uniform(-0.03, 0.03, 96), strict=True):
     corner[:] = Turn.from_euler("z", angle).apply(corner)
+X, Y = np.meshgrid(np.linspace(0, 1, 8), np.linspace(0, 1, 8))
+SHEET = np.column_stack([one.ravel() for one in (X, Y, 0.01 * X**2)])
 ROUND = {
     "can": (made.cylinder(0.1, 0.3), "Cylinder((0, 0, -0.15), (0, 0, 0.15), 0.1"),
     "tip": (made.cone(0.1, 0.3), "Cone((0, 0, 0), (0, 0, 0.3), 0.1, 0"),
@@ -43,6 +46,7 @@ OTHER = {
     "box": made.box(),
     "disc": revolved(np.array([0.0, 0.1]), np.zeros(2)),
     "prism": made.cylinder(0.1, 0.3, sections=12),
+    "bent sheet": trimesh.Trimesh(SHEET, Delaunay(SHEET[:, :2]).simplices),
     "torus": made.torus(0.1, 0.03),
     "capsule": made.capsule(0.2, 0.05),
     "half a pipe": without(TUBE, lambda at: at[:, 0] > 0),
