@@ -266,6 +266,8 @@ COMMANDS = [
     f"contactlaw history {BEAD} --thickness 1mm --speed 5",
     f"contactlaw history {BEAD} --thickness 1mm --speed 5 --solve",
     f"contactlaw fit rebounds.csv {BEAD} --thickness 1mm --unknown yield_strength",
+    f"contactlaw compare rebounds.csv {BEAD} --thickness 1mm",
+    f"contactlaw experiment {PAIR} --thickness 1mm --drop 30cm",
     "contactlaw materials",
     f"contactlaw thickness {BEAD} --cor 0.8 --speed 5",
     f"contactlaw speed {BEAD} --cor 0.8 --thickness 1mm",
