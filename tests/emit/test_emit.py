@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from contactlaw.emit import DOUBLE, Array, C, Known, Program, add
+from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program, add
 
 FACTOR = 3
 
@@ -119,3 +119,16 @@ def grown(row, to, x):
     row.at[1] = x
     row.size += x
     to[0] += row.size
+
+
+def test_rows_from_one_on_end_with_the_rows():
+    program = Program(C("k_"))
+    rows = program.rows(program.row(np.dtype([("size", "f8")])))
+    name, _ = add(program, counted, rows, INT)
+    assert "k_min_int(k + 1, rows.n) - k" in program.text()
+    assert f"int k_{name}(" in program.text()
+
+
+def counted(rows, k):
+    """Whether there is a row of this number."""
+    return len(rows[k : k + 1])
