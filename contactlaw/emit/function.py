@@ -282,7 +282,8 @@ class Function:
         whole: Any = first.type
         if isinstance(at, ast.Slice):
             low, high = self.value(at.lower or ast.Constant(0)), self.value(at.upper) if at.upper else count
-            return self._program.span(whole, f"{first.text} + {low.within(9)}", f"{high.within(8)} - {low.within(9)}")
+            end = f"{self._language.prefix}min{self._language.whole}({high.text}, {count.text})"  # as numpy has it
+            return self._program.span(whole, f"{first.text} + {low.within(9)}", f"{end} - {low.within(9)}")
         if len(kind.members) == 2:
             return Value(whole, f"{first.text} + {self.value(at).within(9)}", 8)
         columns = f"{base.within(11)}.m"

@@ -117,7 +117,9 @@ def lammps(folder: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactM
     spheres, plates = ([*dict.fromkeys(pair[n] for pair in by_pair)] for n in range(2))
     if not len(given) == len(by_pair) == len(spheres) * len(plates) > 0:
         raise ArgumentError("model", None, "must have each bead's material with each wall's, once")
-    names = [[line(one.name) for one in bodies] for bodies in (spheres, plates)]
+    names = [[line(one.name).replace("\\", "/") for one in bodies] for bodies in (spheres, plates)]
+    if any(len({*some}) < len(some) for some in names):
+        raise ArgumentError("model", names, "needs materials of different names")
     ordered = [by_pair[sphere, plate] for sphere in spheres for plate in plates]
     step = 0.5 * time_step(ordered[0], 1.0, 1e-3, 1e-3)  # of the example
     values = {

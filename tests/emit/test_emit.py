@@ -144,7 +144,7 @@ def test_rows_are_read_as_in_python(tmp_path):
     row = program.row(ROW)
     way = program.struct(tuple, dict.fromkeys(("f0", "f1", "f2"), DOUBLE))
     add(program, gathered, program.rows(row), program.rows(row, matrix=True), way)
-    new = "#include <stddef.h>\n#define k_new(type) (k_##type)\n"
+    new = "#include <stddef.h>\n#define k_new(type) (k_##type)\n#define k_min_int(a, b) (a < b ? a : b)\n"
     call = "return k_gathered((k_row_rows){ rows, 3 }, (k_row_matrix){ pages, 2, 2 }, (k_f0_f1_f2){ 3.0, 5.0, 7.0 });"
     call = call.replace("k_f0_f1_f2", f"k_{way.name}")
     source = f"{new}{program.text()}\ndouble run(k_row *rows, k_row *pages)\n{{\n{call}\n}}\n"
@@ -175,3 +175,16 @@ def test_a_tuple_is_not_read_at_a_place_that_is_first_known_in_a_call():
     way = program.struct(tuple, dict.fromkeys(("f0", "f1"), DOUBLE))
     with pytest.raises(SyntaxError, match=r"range\(n\).* a loop over the members of a tuple has known ends"):
         add(program, unbounded, way, INT)
+
+
+def test_rows_from_one_on_end_with_the_rows():
+    program = Program(C("k_"))
+    rows = program.rows(program.row(np.dtype([("size", "f8")])))
+    name, _ = add(program, counted, rows, INT)
+    assert "k_min_int(k + 1, rows.n) - k" in program.text()
+    assert f"int k_{name}(" in program.text()
+
+
+def counted(rows, k):
+    """Whether there is a row of this number."""
+    return len(rows[k : k + 1])

