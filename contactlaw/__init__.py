@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from contactlaw.answers.loads import LoadSignal, load_signal
     from contactlaw.answers.sensitivity import Sensitivity
     from contactlaw.answers.uncertainty import Uncertainty
+    from contactlaw.fitting.bounces import Bounces, bounces
     from contactlaw.fitting.fit import Fit, fit
     from contactlaw.fitting.identify import UnidentifiedError
     from contactlaw.fitting.measurements import Measurements
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ArgumentError",
     "Bodies",
+    "Bounces",
     "Fit",
     "ForceHistory",
     "Foundation",
@@ -62,6 +64,7 @@ __all__ = [
     "UnidentifiedError",
     "Validity",
     "__version__",
+    "bounces",
     "edge_distance",
     "explain",
     "export",
@@ -79,6 +82,7 @@ __all__ = [
 # Where the public names are defined.
 _MODULES = {
     "_errors": "ArgumentError",
+    "fitting.bounces": "Bounces bounces",
     "fitting.fit": "Fit fit",
     "fitting.identify": "UnidentifiedError",
     "fitting.measurements": "Measurements",

@@ -1,0 +1,336 @@
+"""Speeds and CORs of beads that bounce, from the sound of their impacts or from noted times."""
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from contactlaw._arrays import Array, Integers, Places
+from contactlaw._errors import ArgumentError
+from contactlaw.fitting.drops import rebounds_of
+from contactlaw.physical import flight
+from contactlaw.physical.arguments import positive
+
+# All numbers are our choice, by the recordings of validation/hostile/recordings.py.
+_RATE, _MOST = 16e3, 120.0  # least samples in a second; longest recording [s], which takes 0.5 GB
+_FRAME = 1e-3  # [s] steps of the spectrum, whose window is four times as long
+_BAND = 400.0, 16e3  # [Hz] in which impacts are sought
+_SURE, _RISE = 6.0, 0.2  # least rise of the spectrum in deviations of the noise's, and in logarithms
+_VOICE = 13e-3  # [s] longest period of a voice, whose pulses follow each other so soon
+_ORDER, _PAST = 48, 30e-3  # linear prediction of an impact from the ringing before it, of this time [s]
+_INSTANT = 5e-5  # [s] least error of an instant; contacts last about so long
+_SHORTEST, _LONGEST = 0.02, 1.5  # [s] between two bounces
+_NEXT = 6  # impacts among which the next bounce of a bead is sought
+_FEWEST = 5  # impacts of a series, or one fewer if the height of the drop agrees with them
+_SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
+_CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
+_SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
+_OF_DROP = 0.85, 1.3  # the same for the drop's, from which the air is not taken off
+_ECHO = 80e-3  # [s] until an echo
+_STRANGERS = 0.3  # largest number of other impacts during a series, over the number of its own
+_UNSURE = 0.0025  # a COR with a larger standard error is left out
+
+
+@dataclass(frozen=True, eq=False)
+class Bounces:
+    """Bounces that were heard, which `fit` takes as ``{**found, "radius": radius}``.
+
+    Attributes
+    ----------
+    at : ndarray (n,)
+        Time of each bounce that has a COR [s].
+    speed : ndarray (n,)
+        Its speed of approach [m/s].
+    restitution : ndarray (n,)
+        Its COR [-].
+    restitution_error : ndarray (n,) or None
+        Standard error, by the errors of the instants and by how far the COR is off its neighbours;
+        None if nothing is known of these.
+    drop : ndarray of int (n,)
+        Number of the drop that it belongs to, from 0.
+    impacts : tuple of ndarray
+        Times of all bounces of each drop [s].
+    """
+
+    at: Array
+    speed: Array
+    restitution: Array
+    restitution_error: Array | None
+    drop: Integers
+    impacts: tuple[Array, ...]
+
+    def keys(self) -> list[str]:
+        """Names of what `fit` takes."""
+        return ["speed", "restitution", *["restitution_error"] * (self.restitution_error is not None)]
+
+    def __getitem__(self, name: str) -> Array:
+        return np.asarray(getattr(self, name))
+
+
+def bounces(
+    samples: ArrayLike,
+    rate: float,
+    drop: float | None = None,
+    *,
+    radius: float | None = None,
+    density: float | None = None,
+) -> Bounces:
+    """Hear a bead that is dropped and bounces on a plate: speeds and CORs from the times between bounces.
+
+    Parameters
+    ----------
+    samples : array_like (n,) or (n, channels)
+        The recording, as `scipy.io.wavfile.read` gives it; floats lie between -1 and 1.
+    rate : float
+        Samples in a second, at least 16000.
+    drop : float, optional
+        Height from which each bead fell from rest [m], for the speed and the COR of the first bounce.
+    radius, density : float, optional
+        Of the beads [m, kg/m3], whose drag in air is then taken off.
+
+    Returns
+    -------
+    Bounces
+        Those whose COR is known within a standard error of 0.0025.
+
+    Raises
+    ------
+    ValueError
+        A silent or a clipped recording, or one in which nothing bounces.
+    ImportError
+        Without scipy.
+
+    Notes
+    -----
+    A series has at least five bounces, or four that agree with the height of the drop, with hardly
+    any other sound during them. Pulses of a voice, ticks and echoes are left out.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> rate, sound = 44100, np.random.default_rng(1).normal(0.0, 0.001, 88200)
+    >>> for n, at in enumerate(0.2 + 0.5 * np.array([0.0, 0.8, 1.44, 1.952, 2.3616, 2.68928])):
+    ...     t = np.arange(4410) / rate
+    ...     sound[round(at * rate) :][:4410] += 0.8**n * np.exp(-t / 0.01) * np.sin(2 * np.pi * 3000 * t) / 2
+    >>> found = cl.bounces(sound, rate)
+    >>> found.speed.round(2), found.restitution.round(2)
+    (array([1.96, 1.57, 1.26, 1.  ]), array([0.8, 0.8, 0.8, 0.8]))
+    """
+    x = _checked(samples, rate)
+    try:
+        t, error, strength = _impacts(x, rate)
+    except ImportError as missing:
+        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from missing
+    series = list(_series(t, strength, drop))
+    if not series:
+        raise ArgumentError(
+            "samples",
+            None,
+            f"{t.size} impacts, but none that follow each other as the bounces of a bead: it takes five, or four "
+            "with the height of the drop. Lay the microphone beside the plate, and let nothing else be heard",
+        )
+    found = [_measured(t[one], error[one], drop, radius, density) for one in series]
+    parts = zip(*((*one, np.full(one[0].size, n)) for n, one in enumerate(found)), strict=True)
+    at, speed, cor, errors, number = (np.concatenate(part) for part in parts)
+    sure = errors <= _UNSURE
+    if not sure.any():
+        reason = f"the bounces follow each other too soon: no COR is known within {_UNSURE:g}; drop it from higher up"
+        raise ArgumentError("samples", None, reason)
+    order = np.flatnonzero(sure)
+    return Bounces(*(part[order] for part in (at, speed, cor, errors, number)), tuple(t[one] for one in series))
+
+
+def of_times(
+    times: ArrayLike, drop: float | None = None, *, radius: float | None = None, density: float | None = None
+) -> Bounces:
+    """Speeds and CORs from the times of all bounces of one drop [s], of which no errors are known."""
+    t = np.asarray(times, dtype=np.float64)
+    gaps = np.diff(t)
+    wrong = ~(gaps > 0.0)
+    if wrong.any():
+        reason = "the times of bounces have to rise; times between them are columns t1, t2, ... of `contactlaw fit`"
+        n = int(np.argmax(wrong)) + 1
+        raise ArgumentError("times", t[n], reason, n)
+    wrong = gaps[1:] >= gaps[:-1]
+    if wrong.any():
+        n = int(np.argmax(wrong)) + 2
+        raise ArgumentError("times", t[n], "the time between bounces has to fall, and each drop to have its own file", n)
+    if t.size < 3 - (drop is not None):
+        raise ArgumentError("times", t.tolist(), "a COR takes three bounces, or two and the height of the drop")
+    at, speed, cor, _ = _measured(t, 0.0 * t, drop, radius, density)
+    return Bounces(at, speed, cor, None, np.zeros(at.size, dtype=np.int64), (t,))
+
+
+def _measured(
+    t: Array, error: Array, drop: float | None, radius: float | None, density: float | None
+) -> tuple[Array, Array, Array, Array]:
+    """Times, speeds, CORs and their errors of the bounces of one drop."""
+    gaps, worst = np.diff(t), np.maximum(error[1:], error[:-1])
+    sphere = {"radius": 1.0 if radius is None or density is None else radius}
+    density = flight.NO_AIR if density is None else density
+    parts = [(t[1:-1], {"t1": gaps[:-1], "t2": gaps[1:], "time_error": np.maximum(worst[1:], worst[:-1])})]
+    if drop is not None and (t.size < 3 or _agrees(gaps, drop)):
+        parts.insert(0, (t[:1], {"drop": drop, "t1": gaps[:1], "time_error": worst[:1]}))
+    elif drop is not None:
+        warnings.warn(
+            f"drop: the first bounce heard, at {t[0]:.3f} s, is not that of a fall from {drop:g} m, "
+            "which is not used there",
+            stacklevel=3,
+        )
+    found = [rebounds_of(columns | sphere, density) for _, columns in parts]
+    speed, cor, errors = (
+        np.concatenate([one[name] for one in found]) for name in ("speed", "restitution", "restitution_error")
+    )
+    bends = np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # as large as the errors where these are independent
+    for n, bend in enumerate(bends):
+        errors[n : n + 3] = np.maximum(errors[n : n + 3], bend)
+    return np.concatenate([at for at, _ in parts]), speed, cor, errors
+
+
+def _agrees(gaps: Array, drop: float) -> bool:
+    """Whether the COR of the drop's bounce goes with that of the next."""
+    first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
+    return bool(first < 1.0 and _OF_DROP[0] < gaps[1] / gaps[0] / first < _OF_DROP[1])
+
+
+def _checked(samples: ArrayLike, rate: float) -> Array:
+    """One channel of a recording, between -1 and 1."""
+    given = np.asarray(samples)
+    if given.dtype.kind not in "iuf" or given.ndim not in (1, 2):
+        raise ArgumentError("samples", None, f"expected numbers (n,) or (n, channels), got {given.dtype} {given.shape}")
+    x = given.astype(np.float64)
+    if given.dtype.kind in "iu":
+        half = 0.5 * (float(np.iinfo(given.dtype).max) + 1.0 - float(np.iinfo(given.dtype).min))
+        x = (x - half * (given.dtype.kind == "u")) / half
+    x = x if x.ndim == 1 else x.mean(axis=1)
+    if not np.isfinite(x).all():
+        raise ArgumentError("samples", None, "must be finite")
+    rate = positive("rate", rate, "1/s")
+    if rate < _RATE:
+        raise ArgumentError("rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and dictations too little is left")
+    if not 0.5 <= x.size / rate <= _MOST:
+        raise ArgumentError("samples", None, f"{x.size / rate:.3g} s; must last from 0.5 to {_MOST:g} s: cut it")
+    low, high = x.min(), x.max()
+    if high - low < 2e-4:
+        raise ArgumentError("samples", None, "silent: was the microphone on, and allowed to the app?")
+    ends = (x == low) | (x == high)
+    if np.count_nonzero(ends[1:] & (x[1:] == x[:-1])) >= 5:
+        reason = f"clipped at {max(-low, high):.3g} of full scale: record with less gain, or from farther away"
+        raise ArgumentError("samples", None, reason)
+    return x
+
+
+def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
+    """Instants of impacts [s], their errors [s], and how loud they are beside the noise."""
+    from scipy import linalg, ndimage, signal
+
+    step = round(_FRAME * rate)
+    f, _, power = signal.spectrogram(x, rate, "hann", 4 * step, 3 * step, detrend=False, scaling="spectrum")
+    power = power[(f > _BAND[0]) & (f < _BAND[1])]
+    floor = np.median(power, axis=1, keepdims=True) + 1e-20
+    after, before = (ndimage.uniform_filter1d(power, n, axis=1) for n in (3, 5))
+    rise = np.zeros(power.shape[1])
+    rise[8:-1] = np.maximum(np.log((after[:, 9:] + floor) / (before[:, 2:-7] + floor)), 0.0).mean(axis=0)
+    usual = np.median(rise)
+    least = usual + max(_SURE * 1.4826 * np.median(np.abs(rise - usual)), _RISE)
+    at = np.flatnonzero((rise == ndimage.maximum_filter1d(rise, 17)) & (rise > least))
+    at = at[(at > 5 + 1.1 * _PAST / _FRAME) & (at < rise.size - 8)]
+    soon, level = np.diff(at) * _FRAME < _VOICE, rise[at]
+    pulses = np.zeros(at.size, dtype=bool)
+    for n in np.flatnonzero(soon[:-1] & soon[1:]):
+        pulses[n : n + 3] |= level[n + 1 : n + 3].min() > 0.6 * level[n]
+    at = at[~pulses]
+    high = signal.sosfilt(signal.butter(2, _BAND[0], "high", fs=rate, output="sos"), x)
+    instants = [_instant(high, n - 4, step, rate, linalg.solve_toeplitz) for n in at]
+    loud = np.sqrt((power / floor).mean(axis=0))
+    times, errors = np.array(instants).reshape(-1, 2).T
+    return times, errors, ndimage.maximum_filter1d(loud, 5)[at + 2]
+
+
+def _instant(x: Array, frame: int, step: int, rate: float, solve_toeplitz: Any) -> tuple[float, float]:
+    """Instant of the impact within nine frames, and its error [s], by Akaike's criterion.
+
+    What cannot be predicted from the sound before has one variance until the impact and another
+    one after it (Sleeman and van Eck 1999, for earthquakes).
+    """
+    first = frame * step
+    past = x[first - round(_PAST * rate) : first + step]
+    r = np.correlate(past, past, "full")[past.size - 1 : past.size + _ORDER]
+    r[0] = r[0] * (1.0 + 1e-4) + 1e-30
+    whole = x[first - _ORDER : first + 9 * step]
+    new = np.convolve(whole, np.concatenate([[1.0], -solve_toeplitz(r[:-1], r[1:])]), "valid")
+    energy = np.cumsum(new**2) + 1e-30
+    m = np.arange(8, energy.size - 8)
+    left, right = energy[m - 1], energy[-1] - energy[m - 1]
+    aic = m * np.log(left / m) + (energy.size - m) * np.log(right / (energy.size - m) + 1e-30)
+    weight = np.exp(0.5 * (aic.min() - aic))
+    weight /= weight.sum()
+    spread = math.sqrt(float(weight @ (m - weight @ m) ** 2)) / rate
+    return (first + float(m[np.argmin(aic)])) / rate, math.hypot(spread, _INSTANT)
+
+
+def _series(t: Array, strength: Array, drop: float | None) -> Iterator[Places]:
+    """Impacts of each bead, without echoes, and without series that other sounds are mixed with."""
+    free, found = np.ones(t.size, dtype=bool), list[Places]()
+    while (best := _longest(t, strength, np.flatnonzero(free))).size >= _FEWEST - 1:
+        free[best] = False
+        gaps = np.diff(t[best])
+        surely = best.size >= _FEWEST or (drop is not None and _agrees(gaps, drop))
+        echo = any(_follows(t[best], t[one], strength[best].mean() < strength[one].mean()) for one in found)
+        if surely and not echo and gaps[-1] < _SHRINKS * gaps[0]:
+            found.append(best)
+    heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
+    for one in sorted(found, key=lambda one: t[one[0]]):
+        others = np.flatnonzero(free & (t > t[one[0]]) & (t < t[one[-1]]) & (strength > 0.5 * strength[one].min()))
+        late = t[others, None] - t[heard]
+        echoes = (late > 0.0) & (late < _ECHO) & (strength[others, None] < strength[heard])
+        if np.count_nonzero(~echoes.any(axis=1)) <= _STRANGERS * one.size:
+            yield one
+
+
+def _follows(t: Array, of: Array, weaker: bool) -> bool:
+    """Whether impacts are the echo of others: weaker, and always as long after them."""
+    late = t[:, None] - of
+    late = np.where(late > 0.0, late, np.inf).min(axis=1)
+    middle = float(np.median(late))
+    return weaker and middle < _ECHO and bool(np.median(np.abs(late - middle)) < 2.0 * _FRAME)
+
+
+def _longest(t: Array, strength: Array, free: Places) -> Places:
+    """The longest series of impacts, and the loudest of these, whose intervals shrink as a bead's."""
+    best, size = np.empty(0, dtype=np.intp), (0, 0.0)
+    for n in range(free.size):
+        for m in range(n + 1, min(n + 1 + _NEXT, free.size)):
+            for last in free[m + 1 : m + 1 + _NEXT]:
+                one = _extended(t, strength, free, [free[n], free[m], last])
+                if (trial := (one.size, float(strength[one].sum()))) > size:
+                    best, size = one, trial
+    return best
+
+
+def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Places:
+    """Add to three impacts those that may follow; nothing if the three cannot be of a bead."""
+    first, gap = np.diff(t[chain])
+    loud = strength[chain]
+    cor, change = gap / first, None
+    if not (_SHORTEST < gap < 0.99 * first and first < _LONGEST and cor > 0.1 and _fades(loud[1:], loud[:-1]).all()):
+        return np.empty(0, dtype=np.intp)
+    while True:
+        low, high = _CHANGE if change is None else (_SMOOTH[0] * change, _SMOOTH[1] * change)
+        ends = t[chain[-1]] + gap * np.array([max(low * cor, _SHORTEST / gap), min(high * cor, 0.995)])
+        after = free[slice(*np.searchsorted(t[free], ends))]
+        after = after[_fades(strength[after], strength[chain[-1]])]
+        if not after.size:
+            return np.array(chain)
+        chain.append(after[np.argmax(strength[after])])
+        new = (t[chain[-1]] - t[chain[-2]]) / gap
+        gap, cor, change = new * gap, new, min(max(new / cor, 0.97), 1.1)
+
+
+def _fades(loud: Array, before: Array) -> Any:
+    """Whether a bounce may be so loud after the one before: sound depends on the place, too."""
+    return (loud > 0.2 * before) & (loud < 1.6 * before)
