@@ -29,8 +29,8 @@ _FEWEST = 5  # impacts of a series, or one fewer if the height of the drop agree
 _SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
 _CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
 _SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
-_OF_DROP = 0.85, 1.3  # the same for the drop's, from which the air is not taken off
-_ECHO = 80e-3  # [s] until an echo
+_OF_DROP = 0.85, 1.2  # the same for the drop's, from which the air is not taken off
+_ECHO, _FAINT = 80e-3, 0.8  # [s] until an echo, and how loud it is at most beside its impact
 _STRANGERS = 0.3  # largest number of other impacts during a series, over the number of its own
 _UNSURE = 0.0025  # a COR with a larger standard error is left out
 
@@ -48,7 +48,7 @@ class Bounces:
     restitution : ndarray (n,)
         Its COR [-].
     restitution_error : ndarray (n,) or None
-        Standard error, by the errors of the instants and by how far the COR is off its neighbours;
+        Standard error, of the instants, or by how far CORs are off their neighbours if that is more;
         None if nothing is known of these.
     drop : ndarray of int (n,)
         Number of the drop that it belongs to, from 0.
@@ -95,7 +95,7 @@ def bounces(
     Returns
     -------
     Bounces
-        Those whose COR is known within a standard error of 0.0025.
+        Those whose COR is known within a standard error of 0.0025, as far as the instants go.
 
     Raises
     ------
@@ -136,12 +136,10 @@ def bounces(
     found = [_measured(t[one], error[one], drop, radius, density) for one in series]
     parts = zip(*((*one, np.full(one[0].size, n)) for n, one in enumerate(found)), strict=True)
     at, speed, cor, errors, number = (np.concatenate(part) for part in parts)
-    sure = errors <= _UNSURE
-    if not sure.any():
-        reason = f"the bounces follow each other too soon: no COR is known within {_UNSURE:g}; drop it from higher up"
+    if not at.size:
+        reason = f"no COR is known within {_UNSURE:g}, as bounces follow each other too soon: drop it from higher up"
         raise ArgumentError("samples", None, reason)
-    order = np.flatnonzero(sure)
-    return Bounces(*(part[order] for part in (at, speed, cor, errors, number)), tuple(t[one] for one in series))
+    return Bounces(at, speed, cor, errors, number, tuple(t[one] for one in series))
 
 
 def of_times(
@@ -158,7 +156,9 @@ def of_times(
     wrong = gaps[1:] >= gaps[:-1]
     if wrong.any():
         n = int(np.argmax(wrong)) + 2
-        raise ArgumentError("times", t[n], "the time between bounces has to fall, and each drop to have its own file", n)
+        raise ArgumentError(
+            "times", t[n], "the time between bounces has to fall, and each drop to have its own file", n
+        )
     if t.size < 3 - (drop is not None):
         raise ArgumentError("times", t.tolist(), "a COR takes three bounces, or two and the height of the drop")
     at, speed, cor, _ = _measured(t, 0.0 * t, drop, radius, density)
@@ -185,16 +185,22 @@ def _measured(
     speed, cor, errors = (
         np.concatenate([one[name] for one in found]) for name in ("speed", "restitution", "restitution_error")
     )
-    bends = np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # as large as the errors where these are independent
+    sure, dropped = errors <= _UNSURE, cor.size - t.size + 2
+    bends = np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # as large as the errors, if these are independent
     for n, bend in enumerate(bends):
-        errors[n : n + 3] = np.maximum(errors[n : n + 3], bend)
-    return np.concatenate([at for at, _ in parts]), speed, cor, errors
+        own = slice(n, n + (1 if n < dropped else 3))  # the error of a height is that of one COR
+        errors[own] = np.maximum(errors[own], bend)
+    at = np.concatenate([at for at, _ in parts])
+    sure &= errors <= max(_UNSURE, 3.0 * float(np.median(bends)) if bends.size else 0.0)
+    return at[sure], speed[sure], cor[sure], errors[sure]
 
 
 def _agrees(gaps: Array, drop: float) -> bool:
     """Whether the COR of the drop's bounce goes with that of the next."""
     first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
-    return bool(first < 1.0 and _OF_DROP[0] < gaps[1] / gaps[0] / first < _OF_DROP[1])
+    cor = [first, *gaps[1:3] / gaps[:2]]
+    change = np.divide(cor[1:], cor[:-1])
+    return bool(first < 1.0 and _OF_DROP[0] < change[0] < _OF_DROP[1] and change[-1] < _SMOOTH[1] * change[0])
 
 
 def _checked(samples: ArrayLike, rate: float) -> Array:
@@ -211,7 +217,9 @@ def _checked(samples: ArrayLike, rate: float) -> Array:
         raise ArgumentError("samples", None, "must be finite")
     rate = positive("rate", rate, "1/s")
     if rate < _RATE:
-        raise ArgumentError("rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and dictations too little is left")
+        raise ArgumentError(
+            "rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and dictations too little is left"
+        )
     if not 0.5 <= x.size / rate <= _MOST:
         raise ArgumentError("samples", None, f"{x.size / rate:.3g} s; must last from 0.5 to {_MOST:g} s: cut it")
     low, high = x.min(), x.max()
@@ -246,7 +254,7 @@ def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
     at = at[~pulses]
     high = signal.sosfilt(signal.butter(2, _BAND[0], "high", fs=rate, output="sos"), x)
     instants = [_instant(high, n - 4, step, rate, linalg.solve_toeplitz) for n in at]
-    loud = np.sqrt((power / floor).mean(axis=0))
+    loud = np.sqrt(np.maximum((power / floor).mean(axis=0) - 1.0, 0.0))
     times, errors = np.array(instants).reshape(-1, 2).T
     return times, errors, ndimage.maximum_filter1d(loud, 5)[at + 2]
 
@@ -280,24 +288,25 @@ def _series(t: Array, strength: Array, drop: float | None) -> Iterator[Places]:
         free[best] = False
         gaps = np.diff(t[best])
         surely = best.size >= _FEWEST or (drop is not None and _agrees(gaps, drop))
-        echo = any(_follows(t[best], t[one], strength[best].mean() < strength[one].mean()) for one in found)
-        if surely and not echo and gaps[-1] < _SHRINKS * gaps[0]:
+        if any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found):  # of another bead
+            surely = best.size > _FEWEST
+        if surely and not _is_echo(best, t, strength) and gaps[-1] < _SHRINKS * gaps[0]:
             found.append(best)
     heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
     for one in sorted(found, key=lambda one: t[one[0]]):
         others = np.flatnonzero(free & (t > t[one[0]]) & (t < t[one[-1]]) & (strength > 0.5 * strength[one].min()))
         late = t[others, None] - t[heard]
-        echoes = (late > 0.0) & (late < _ECHO) & (strength[others, None] < strength[heard])
+        echoes = (late > 0.0) & (late < _ECHO) & (strength[others, None] < _FAINT**2 * strength[heard])
         if np.count_nonzero(~echoes.any(axis=1)) <= _STRANGERS * one.size:
             yield one
 
 
-def _follows(t: Array, of: Array, weaker: bool) -> bool:
-    """Whether impacts are the echo of others: weaker, and always as long after them."""
-    late = t[:, None] - of
-    late = np.where(late > 0.0, late, np.inf).min(axis=1)
-    middle = float(np.median(late))
-    return weaker and middle < _ECHO and bool(np.median(np.abs(late - middle)) < 2.0 * _FRAME)
+def _is_echo(one: Places, t: Array, strength: Array) -> bool:
+    """Whether most impacts of a series come equally late after louder ones."""
+    late = t[one, None] - t
+    late[(late <= 0.0) | (late > _ECHO) | (strength[one, None] > _FAINT * strength)] = np.inf
+    lags = late[np.isfinite(late)]
+    return any((np.abs(late - lag) < _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
 
 
 def _longest(t: Array, strength: Array, free: Places) -> Places:
@@ -317,13 +326,15 @@ def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Plac
     first, gap = np.diff(t[chain])
     loud = strength[chain]
     cor, change = gap / first, None
-    if not (_SHORTEST < gap < 0.99 * first and first < _LONGEST and cor > 0.1 and _fades(loud[1:], loud[:-1]).all()):
+    if not (
+        _SHORTEST < gap < 0.99 * first and first < _LONGEST and cor > 0.1 and _fades(loud[1:], loud[:-1], cor).all()
+    ):
         return np.empty(0, dtype=np.intp)
     while True:
         low, high = _CHANGE if change is None else (_SMOOTH[0] * change, _SMOOTH[1] * change)
         ends = t[chain[-1]] + gap * np.array([max(low * cor, _SHORTEST / gap), min(high * cor, 0.995)])
         after = free[slice(*np.searchsorted(t[free], ends))]
-        after = after[_fades(strength[after], strength[chain[-1]])]
+        after = after[_fades(strength[after], strength[chain[-1]], cor)]
         if not after.size:
             return np.array(chain)
         chain.append(after[np.argmax(strength[after])])
@@ -331,6 +342,6 @@ def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Plac
         gap, cor, change = new * gap, new, min(max(new / cor, 0.97), 1.1)
 
 
-def _fades(loud: Array, before: Array) -> Any:
+def _fades(loud: Array, before: Array, cor: float) -> Any:
     """Whether a bounce may be so loud after the one before: sound depends on the place, too."""
-    return (loud > 0.2 * before) & (loud < 1.6 * before)
+    return (loud > 0.2 * before) & (loud < 1.6 * math.sqrt(cor) * before)

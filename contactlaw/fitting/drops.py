@@ -12,7 +12,7 @@ from contactlaw.physical import flight
 from contactlaw.physical.arguments import broadcast, within
 
 _BOUNCE = re.compile(r"(bounce|t)([0-9]*)")
-_METRES, _SECONDS = (1e-5, 100.0, "metres; in cm or mm?"), (1e-3, 10.0, "seconds; in ms?")
+_METRES, _SECONDS = (1e-5, 10.0, "metres; in cm or mm?"), (1e-3, 5.0, "seconds; in ms?")
 _ERRORS = "drop_error", "bounce_error", "time_error"
 NAMES = f"drop, bounce, bounce2, ..., t1, t2, ..., {', '.join(_ERRORS)}"
 

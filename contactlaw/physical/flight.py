@@ -87,4 +87,6 @@ def say_air(ratio: Array) -> None:
     """Warn if speeds differ by more than 1 % from those without air, of which they are this share."""
     share = float(np.max(np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0)))
     if share > _SAID:
-        warnings.warn(f"the air changes the speeds by up to {percent(share)}, which is taken into account", stacklevel=5)
+        warnings.warn(
+            f"the air changes the speeds by up to {percent(share)}, which is taken into account", stacklevel=5
+        )
