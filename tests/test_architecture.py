@@ -61,8 +61,8 @@ FILES = {
     "cli/cor": "bands inverse",
     "cli/fit": "measured printed figure",
     "physical": (
-        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths scaling "
-        "measured validity history bodies rebound oblique"
+        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "
+        "scaling measured validity history bodies rebound oblique"
     ),
 }
 FILES = {folder: names.split() for folder, names in FILES.items()}

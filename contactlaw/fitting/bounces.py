@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +25,7 @@ _ORDER, _PAST = 48, 30e-3  # linear prediction of an impact from the ringing bef
 _INSTANT = 5e-5  # [s] least error of an instant; contacts last about so long
 _SHORTEST, _LONGEST = 0.02, 1.5  # [s] between two bounces
 _NEXT = 6  # impacts among which the next bounce of a bead is sought
-_FEWEST = 5  # impacts of a series, or one fewer if the height of the drop agrees with them
+_FEWEST = 5  # impacts of a bead, or one more if another bounces meanwhile
 _SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
 _CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
 _SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
@@ -106,8 +106,8 @@ def bounces(
 
     Notes
     -----
-    A series has at least five bounces, or four that agree with the height of the drop, with hardly
-    any other sound during them. Pulses of a voice, ticks and echoes are left out.
+    A bead has to bounce five times or more, with hardly another sound meanwhile. A voice, ticks of
+    a clock and echoes are left out.
 
     Examples
     --------
@@ -121,44 +121,31 @@ def bounces(
     (array([1.96, 1.57, 1.26, 1.  ]), array([0.8, 0.8, 0.8, 0.8]))
     """
     x = _checked(samples, rate)
-    try:
-        t, error, strength = _impacts(x, rate)
-    except ImportError as missing:
-        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from missing
-    series = list(_series(t, strength, drop))
+    t, error, strength = _impacts(x, rate)
+    series = list(_series(t, strength))
     if not series:
-        raise ArgumentError(
-            "samples",
-            None,
-            f"{t.size} impacts, but none that follow each other as the bounces of a bead: it takes five, or four "
-            "with the height of the drop. Lay the microphone beside the plate, and let nothing else be heard",
-        )
-    found = [_measured(t[one], error[one], drop, radius, density) for one in series]
-    parts = zip(*((*one, np.full(one[0].size, n)) for n, one in enumerate(found)), strict=True)
-    at, speed, cor, errors, number = (np.concatenate(part) for part in parts)
-    if not at.size:
+        reason = f"{t.size} impacts, but no {_FEWEST} that follow each other as the bounces of a bead do"
+        raise ArgumentError("samples", None, f"{reason}: let it bounce on, beside the microphone, in silence")
+    measured = {tuple(t[one].tolist()): _measured(t[one], error[one], drop, radius, density) for one in series}
+    found = {impacts: one for impacts, one in measured.items() if one[0].size}
+    if not found:
         reason = f"no COR is known within {_UNSURE:g}, as bounces follow each other too soon: drop it from higher up"
         raise ArgumentError("samples", None, reason)
-    return Bounces(at, speed, cor, errors, number, tuple(t[one] for one in series))
+    at, speed, cor, errors = (np.concatenate(part) for part in zip(*found.values(), strict=True))
+    number = np.repeat(np.arange(len(found)), [one[0].size for one in found.values()])
+    return Bounces(at, speed, cor, errors, number, tuple(map(np.array, found)))
 
 
 def of_times(
-    times: ArrayLike, drop: float | None = None, *, radius: float | None = None, density: float | None = None
+    times: ArrayLike, drop: float | None, radius: float | None = None, density: float | None = None
 ) -> Bounces:
-    """Speeds and CORs from the times of all bounces of one drop [s], of which no errors are known."""
+    """Find speeds and CORs from the times of all bounces of one drop [s], of which no errors are known."""
     t = np.asarray(times, dtype=np.float64)
-    gaps = np.diff(t)
-    wrong = ~(gaps > 0.0)
+    wrong = ~(np.diff(t) > 0.0)
     if wrong.any():
-        reason = "the times of bounces have to rise; times between them are columns t1, t2, ... of `contactlaw fit`"
         n = int(np.argmax(wrong)) + 1
+        reason = "times of bounces have to rise; `contactlaw fit` takes times between them, as columns t1, t2, ..."
         raise ArgumentError("times", t[n], reason, n)
-    wrong = gaps[1:] >= gaps[:-1]
-    if wrong.any():
-        n = int(np.argmax(wrong)) + 2
-        raise ArgumentError(
-            "times", t[n], "the time between bounces has to fall, and each drop to have its own file", n
-        )
     if t.size < 3 - (drop is not None):
         raise ArgumentError("times", t.tolist(), "a COR takes three bounces, or two and the height of the drop")
     at, speed, cor, _ = _measured(t, 0.0 * t, drop, radius, density)
@@ -167,40 +154,28 @@ def of_times(
 
 def _measured(
     t: Array, error: Array, drop: float | None, radius: float | None, density: float | None
-) -> tuple[Array, Array, Array, Array]:
-    """Times, speeds, CORs and their errors of the bounces of one drop."""
-    gaps, worst = np.diff(t), np.maximum(error[1:], error[:-1])
-    sphere = {"radius": 1.0 if radius is None or density is None else radius}
-    density = flight.NO_AIR if density is None else density
-    parts = [(t[1:-1], {"t1": gaps[:-1], "t2": gaps[1:], "time_error": np.maximum(worst[1:], worst[:-1])})]
-    if drop is not None and (t.size < 3 or _agrees(gaps, drop)):
-        parts.insert(0, (t[:1], {"drop": drop, "t1": gaps[:1], "time_error": worst[:1]}))
-    elif drop is not None:
-        warnings.warn(
-            f"drop: the first bounce heard, at {t[0]:.3f} s, is not that of a fall from {drop:g} m, "
-            "which is not used there",
-            stacklevel=3,
-        )
-    found = [rebounds_of(columns | sphere, density) for _, columns in parts]
-    speed, cor, errors = (
-        np.concatenate([one[name] for one in found]) for name in ("speed", "restitution", "restitution_error")
-    )
-    sure, dropped = errors <= _UNSURE, cor.size - t.size + 2
-    bends = np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # as large as the errors, if these are independent
+) -> Sequence[Array]:
+    """Find times, speeds, CORs and their errors of the bounces of one drop."""
+    gaps, at = np.diff(t), t[1:-1]
+    worst = np.max([error[:-2], error[1:-1], error[2:]], axis=0)
+    rows = {"drop": np.full(at.size, np.nan), "t1": gaps[:-1], "t2": gaps[1:], "time_error": worst}
+    if drop is not None:
+        first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
+        if t.size > 2 and not (first < 1.0 and _OF_DROP[0] < gaps[1] / gaps[0] / first < _OF_DROP[1]):
+            said = f"the bounce at {t[0]:.3f} s is not the first after a drop from {drop:g} m, and gets no COR"
+            warnings.warn(said, stacklevel=3)
+            drop = None
+    if drop is not None:
+        one = {"drop": drop, "t1": gaps[0], "t2": np.nan, "time_error": error[:2].max()}
+        rows, at = {name: np.insert(values, 0, one[name]) for name, values in rows.items()}, t[:-1]
+    found = rebounds_of(rows | {"radius": radius or 1.0}, density or flight.NO_AIR)
+    speed, cor, errors = (found[name] for name in ("speed", "restitution", "restitution_error"))
+    sure, bends = errors <= _UNSURE, np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # the errors, if these are independent
     for n, bend in enumerate(bends):
-        own = slice(n, n + (1 if n < dropped else 3))  # the error of a height is that of one COR
+        own = slice(n, n + (1 if n == 0 and drop is not None else 3))  # an error of the height is in one COR
         errors[own] = np.maximum(errors[own], bend)
-    at = np.concatenate([at for at, _ in parts])
-    sure &= errors <= max(_UNSURE, 3.0 * float(np.median(bends)) if bends.size else 0.0)
+    sure &= errors <= max(_UNSURE, 3.0 * float(np.median([0.0, *bends])))
     return at[sure], speed[sure], cor[sure], errors[sure]
-
-
-def _agrees(gaps: Array, drop: float) -> bool:
-    """Whether the COR of the drop's bounce goes with that of the next."""
-    first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
-    cor = [first, *gaps[1:3] / gaps[:2]]
-    change = np.divide(cor[1:], cor[:-1])
-    return bool(first < 1.0 and _OF_DROP[0] < change[0] < _OF_DROP[1] and change[-1] < _SMOOTH[1] * change[0])
 
 
 def _checked(samples: ArrayLike, rate: float) -> Array:
@@ -210,23 +185,17 @@ def _checked(samples: ArrayLike, rate: float) -> Array:
         raise ArgumentError("samples", None, f"expected numbers (n,) or (n, channels), got {given.dtype} {given.shape}")
     x = given.astype(np.float64)
     if given.dtype.kind in "iu":
-        half = 0.5 * (float(np.iinfo(given.dtype).max) + 1.0 - float(np.iinfo(given.dtype).min))
+        half = 2.0 ** (8 * given.itemsize - 1)
         x = (x - half * (given.dtype.kind == "u")) / half
     x = x if x.ndim == 1 else x.mean(axis=1)
-    if not np.isfinite(x).all():
-        raise ArgumentError("samples", None, "must be finite")
-    rate = positive("rate", rate, "1/s")
-    if rate < _RATE:
-        raise ArgumentError(
-            "rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and dictations too little is left"
-        )
+    if positive("rate", rate, "1/s") < _RATE:
+        raise ArgumentError("rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and memos too little is left")
     if not 0.5 <= x.size / rate <= _MOST:
         raise ArgumentError("samples", None, f"{x.size / rate:.3g} s; must last from 0.5 to {_MOST:g} s: cut it")
     low, high = x.min(), x.max()
-    if high - low < 2e-4:
+    if not high - low > 2e-4:
         raise ArgumentError("samples", None, "silent: was the microphone on, and allowed to the app?")
-    ends = (x == low) | (x == high)
-    if np.count_nonzero(ends[1:] & (x[1:] == x[:-1])) >= 5:
+    if np.count_nonzero(((x == low) | (x == high))[1:] & (x[1:] == x[:-1])) >= 5:
         reason = f"clipped at {max(-low, high):.3g} of full scale: record with less gain, or from farther away"
         raise ArgumentError("samples", None, reason)
     return x
@@ -234,12 +203,14 @@ def _checked(samples: ArrayLike, rate: float) -> Array:
 
 def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
     """Instants of impacts [s], their errors [s], and how loud they are beside the noise."""
-    from scipy import linalg, ndimage, signal
-
+    try:
+        from scipy import linalg, ndimage, signal
+    except ImportError as error:
+        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from error
     step = round(_FRAME * rate)
     f, _, power = signal.spectrogram(x, rate, "hann", 4 * step, 3 * step, detrend=False, scaling="spectrum")
     power = power[(f > _BAND[0]) & (f < _BAND[1])]
-    floor = np.median(power, axis=1, keepdims=True) + 1e-20
+    floor = np.median(power, axis=1, keepdims=True) + 1e-9 * power.max()
     after, before = (ndimage.uniform_filter1d(power, n, axis=1) for n in (3, 5))
     rise = np.zeros(power.shape[1])
     rise[8:-1] = np.maximum(np.log((after[:, 9:] + floor) / (before[:, 2:-7] + floor)), 0.0).mean(axis=0)
@@ -253,7 +224,7 @@ def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
         pulses[n : n + 3] |= level[n + 1 : n + 3].min() > 0.6 * level[n]
     at = at[~pulses]
     high = signal.sosfilt(signal.butter(2, _BAND[0], "high", fs=rate, output="sos"), x)
-    instants = [_instant(high, n - 4, step, rate, linalg.solve_toeplitz) for n in at]
+    instants = [_instant(high, n - 4, step, rate, linalg.solve_toeplitz) for n in at.tolist()]
     loud = np.sqrt(np.maximum((power / floor).mean(axis=0) - 1.0, 0.0))
     times, errors = np.array(instants).reshape(-1, 2).T
     return times, errors, ndimage.maximum_filter1d(loud, 5)[at + 2]
@@ -281,16 +252,14 @@ def _instant(x: Array, frame: int, step: int, rate: float, solve_toeplitz: Any) 
     return (first + float(m[np.argmin(aic)])) / rate, math.hypot(spread, _INSTANT)
 
 
-def _series(t: Array, strength: Array, drop: float | None) -> Iterator[Places]:
+def _series(t: Array, strength: Array) -> Iterator[Places]:
     """Impacts of each bead, without echoes, and without series that other sounds are mixed with."""
     free, found = np.ones(t.size, dtype=bool), list[Places]()
-    while (best := _longest(t, strength, np.flatnonzero(free))).size >= _FEWEST - 1:
+    while (best := _longest(t, strength, np.flatnonzero(free))).size >= _FEWEST:
         free[best] = False
         gaps = np.diff(t[best])
-        surely = best.size >= _FEWEST or (drop is not None and _agrees(gaps, drop))
-        if any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found):  # of another bead
-            surely = best.size > _FEWEST
-        if surely and not _is_echo(best, t, strength) and gaps[-1] < _SHRINKS * gaps[0]:
+        mixed = any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found)  # with another bead's
+        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and not _is_echo(best, t, strength):
             found.append(best)
     heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
     for one in sorted(found, key=lambda one: t[one[0]]):
@@ -306,11 +275,11 @@ def _is_echo(one: Places, t: Array, strength: Array) -> bool:
     late = t[one, None] - t
     late[(late <= 0.0) | (late > _ECHO) | (strength[one, None] > _FAINT * strength)] = np.inf
     lags = late[np.isfinite(late)]
-    return any((np.abs(late - lag) < _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
+    return any((np.abs(late - lag) < 2.0 * _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
 
 
 def _longest(t: Array, strength: Array, free: Places) -> Places:
-    """The longest series of impacts, and the loudest of these, whose intervals shrink as a bead's."""
+    """Find the longest series of impacts, and its loudest, whose intervals shrink as a bead's."""
     best, size = np.empty(0, dtype=np.intp), (0, 0.0)
     for n in range(free.size):
         for m in range(n + 1, min(n + 1 + _NEXT, free.size)):

@@ -121,8 +121,8 @@ def _typed(arguments: argparse.Namespace) -> Measurements:
     density = chosen.pair(arguments).given[0].density
     if arguments.data is None:
         given = {name: size for name, size in sizes.items() if size is not None}
-        lines = range(1, len(arguments.bounce) + 1)
-        return Measurements.of(given | {"bounce": arguments.bounce, "line": list(lines)}, density=density)
+        numbers = np.arange(1, len(arguments.bounce) + 1)
+        return Measurements.of(given | {"bounce": arguments.bounce, "line": numbers}, density=density)
     read = measured.read(arguments.data)
     if read.unused:
         wording.print_warning(f"{arguments.data}: columns that are not used: {', '.join(read.unused)}")

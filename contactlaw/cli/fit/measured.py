@@ -15,7 +15,7 @@ from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import is_height_or_time
 from contactlaw.fitting.measurements import INPUTS
-from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
+from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME, Quantity
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
@@ -27,6 +27,7 @@ _KINDS = {
 }
 _MOST = 20  # bounces of a drop, in a row
 # Names of heights and times, which `contactlaw.fitting.drops` turns into speeds and CORs.
+_NOTED: dict[str, tuple[tuple[str, ...], Quantity]]
 _NOTED = {f"t{n}": ((f"t{n}", f"t_{n}", f"time_{n}", f"time{n}"), TIME) for n in range(1, _MOST + 1)}
 _NOTED |= {
     f"bounce{n}": (tuple(f"{name}{n}" for name in ("bounce", "bounce_", "h", "h_", "bounce_height_")), LENGTH)
