@@ -49,7 +49,7 @@ FILES = {
     ),
     "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
-    "fitting": "measurements unknowns predictions errors identify search notes fit",
+    "fitting": "drops bounces measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall web_page",
     "record": "columns hdf5 file",
@@ -61,8 +61,8 @@ FILES = {
     "cli/cor": "bands inverse",
     "cli/fit": "printed figure",
     "physical": (
-        "arguments kind hardness flow materials mobility plates pair impacts rate responses law strengths scaling "
-        "measured validity history bodies rebound oblique"
+        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "
+        "scaling measured validity history bodies rebound oblique"
     ),
 }
 FILES = {folder: names.split() for folder, names in FILES.items()}
