@@ -98,7 +98,7 @@ def compare(
     >>> found.restitution.round(3), round(found.chi_squared, 1), round(found.probability, 1)
     (array([0.985]), 0.6, 0.4)
     """
-    data = Measurements.of(data)
+    data = Measurements.of(data, (), pair.sphere.density)
     for name in _NEEDED:
         if getattr(data, name) is None:
             raise ArgumentError(name, None, "has to be given for each rebound, to compare it with the model")

@@ -49,7 +49,7 @@ FILES = {
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
-    "fitting": "measurements unknowns predictions errors identify search notes fit",
+    "fitting": "drops bounces measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
@@ -61,8 +61,8 @@ FILES = {
     "cli/cor": "bands inverse",
     "cli/fit": "printed figure",
     "physical": (
-        "arguments kind hardness flow materials mobility plates pair impacts rate responses law strengths scaling "
-        "measured validity history bodies rebound oblique"
+        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "
+        "scaling measured validity history bodies rebound oblique"
     ),
 }
 FILES = {folder: names.split() for folder, names in FILES.items()}
@@ -78,16 +78,16 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 36_913,
+    "contactlaw": 37_627,
     "contactlaw/answers": 2_765,
-    "contactlaw/cli": 4_253,
+    "contactlaw/cli": 4_449,
     "contactlaw/emit": 841,
     "contactlaw/engines": 4_105,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_380,
-    "contactlaw/fitting": 2_044,
+    "contactlaw/fitting": 2_470,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 4_072,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/physical": 4_164,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 702,
     "contactlaw/reporting": 1_027,
     "contactlaw/stepping": 2_860,  # 550 of them are softened contacts and parcels
@@ -98,7 +98,7 @@ BUDGETS = {
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
-    "validation": 14_522,
+    "validation": 14_646,
     "tests": 26_455,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}

@@ -17,12 +17,12 @@ from contactlaw._arrays import Array, Integers
 from contactlaw._readable import in_unit
 from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.model import ImpactModel
+from contactlaw.physical import flight
 from contactlaw.physical.arguments import within
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import count_flags, edge_distance
 from contactlaw.quantities import LENGTH, SHARE, TIME
 
-_GRAVITY = 9.80665  # [m/s2]
 _RADIUS = 2e-3  # [m] of a bead, where none is given
 _TOLD = 3.0  # standard errors by which a COR is told from another
 _PRECISION = 0.05  # relative standard error to which an unknown is to be found
@@ -78,13 +78,13 @@ def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, error
     """
     timing_error, height_error, scatter = (errors[name] for name in _ERRORS)
     h, fall = (one.ravel() for one in np.meshgrid(thickness, drop, indexing="ij"))
-    v = np.sqrt(2.0 * _GRAVITY * fall)
+    v = flight.of_height(fall, radius, model.pair.sphere.density).down
     with wording.naming_impact(v, radius, h):
         hit = model.solve(v, radius, h)
         causes = model.uncertainty(v, radius, h).restitution.causes
         moved = _moved(model).uncertainty(v, radius, h, thickness_error=_PRECISION).restitution.causes
     cor = np.asarray(hit.restitution)
-    by_time, by_height = math.sqrt(2.0) * timing_error * _GRAVITY / (2.0 * v), 0.5 * cor * height_error / fall
+    by_time, by_height = math.sqrt(2.0) * timing_error * flight.GRAVITY / (2.0 * v), 0.5 * cor * height_error / fall
     error = np.sqrt(scatter**2 + by_time**2 + by_height**2)
 
     def drops(shift: Array, others: Array) -> Array:

@@ -155,7 +155,8 @@ def fit(
         Materials of bead and plate. Their values of unknowns are ignored, except that moduli and
         densities are sought within a factor of 5 of them.
     data : Measurements, mapping or Record
-        What was measured, as `Measurements` or as a mapping with its arguments for names; or the
+        What was measured, as `Measurements` or as a mapping with its arguments for names, where
+        heights and times, as `Measurements.of` names them, may stand for speeds and COR; or the
         record of a run, of whose impacts on walls the COR counts.
     unknown : str or sequence of str
         Up to three of ``"yield_strength"``, ``"youngs_modulus"``, ``"density"`` of the bead,
@@ -205,7 +206,7 @@ def fit(
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()
     unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
-    data = Measurements.of(data, {*unknown} - {*(priors or {})})
+    data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {}, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))

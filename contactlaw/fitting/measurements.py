@@ -5,13 +5,15 @@ from __future__ import annotations
 import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
+from contactlaw.fitting.drops import NAMES, rebounds_of
+from contactlaw.physical import flight
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.record.file import Record
 
@@ -157,8 +159,18 @@ class Measurements:
         return any(getattr(self, name) is not None for name in OBLIQUE)
 
     @classmethod
-    def of(cls, data: Measurements | Mapping[str, ArrayLike] | Record, unknown: Collection[str] = ()) -> Measurements:
+    def of(
+        cls,
+        data: Measurements | Mapping[str, ArrayLike] | Record,
+        unknown: Collection[str] = (),
+        density: float = flight.NO_AIR,
+    ) -> Measurements:
         """Return measurements as they are, or make them from a mapping of names, as a DataFrame.
+
+        A mapping may have heights and times in place of speeds and COR: ``drop``, ``bounce``,
+        ``bounce2``, ... [m], ``t1``, ``t2``, ... [s] from each bounce to the next, and their errors
+        ``drop_error``, ``bounce_error`` and ``time_error``, of an instant. Each row is one drop, of
+        a bead of this `density` [kg/m3] in air; without it there is no air.
 
         Of the record of a run these are the COR of its impacts on walls, with the sizes that are
         not `unknown`; `line` is the number of the row.
@@ -180,11 +192,11 @@ class Measurements:
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
             raise TypeError(f"data: expected Measurements, a Record or a mapping of names, got {data!r}")
         known = [field.name for field in fields(cls)]
-        columns: dict[str, Any] = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
+        columns = rebounds_of(data, density)
         wrong = [name for name in columns if name not in known]
         if wrong or "speed" not in columns:
             what = f"does not know {', '.join(map(repr, wrong))}" if wrong else "lacks 'speed'"
-            raise ArgumentError("data", None, f"{what}; names are {', '.join(known)}")
+            raise ArgumentError("data", None, f"{what}; names are {', '.join(known)}, {NAMES}")
         return cls(**columns)
 
 

@@ -44,5 +44,6 @@ def sources() -> list[Source]:
 
 def _read(path: Path) -> Source:
     read = rebounds.read(path)
-    known, data = rebounds.conditions(read, {}), rebounds.completed(read, path)
+    known = rebounds.conditions(read, {})
+    data = rebounds.completed(read, path, known.bodies["sphere"].density)
     return Source(known.title, known.reference, cl.Pair(**known.bodies), data, known.errors)

@@ -47,8 +47,9 @@ def _run(arguments: argparse.Namespace) -> None:
     read = rebounds.checked(arguments.data)
     with wording.reading(arguments.data):
         known = rebounds.conditions(read, arguments.materials)
-    data = rebounds.completed(read, arguments.data, radius=arguments.radius, thickness=arguments.thickness)
     pair = Pair(**{role: chosen.body(arguments, role, known.bodies.get(role)) for role in ("sphere", "plate")})
+    sizes = {"radius": arguments.radius, "thickness": arguments.thickness}
+    data = rebounds.completed(read, arguments.data, pair.sphere.density, **sizes)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:

@@ -22,6 +22,7 @@ def add(commands: Any) -> None:
     group = command.add_mutually_exclusive_group(required=True)
     what = "normal approach speeds [m/s], or with a unit; all are equally frequent"
     options.add_quantity(group, "--speed", SPEED, what, quantities.values, metavar="V")
+    options.add_drop(group, quantities.values)
     group.add_argument(
         "--record",
         metavar="FILE",

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from contactlaw import quantities
+from contactlaw._errors import ArgumentError
 from contactlaw.answers.inverse import Solutions
 from contactlaw.cli.cor import bands
 from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
-from contactlaw.quantities import SHARE
+from contactlaw.fitting.drops import rebounds_of
+from contactlaw.quantities import HEIGHT, SHARE
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
 
@@ -31,7 +33,11 @@ def add(commands: Any) -> None:
             options.add_speed(command, quantities.values)
             options.add_layers(command)
         what = "coefficients of restitution, between 0 and 1"
-        options.add_quantity(command, "--cor", SHARE, what, quantities.values, required=True, metavar="E")
+        group = command.add_mutually_exclusive_group(required=True)
+        options.add_quantity(group, "--cor", SHARE, what, quantities.values, metavar="E")
+        if unknown == "thickness":
+            what = "heights of bounces [m], or with a unit, in place of --cor; with one --speed or --drop"
+            options.add_quantity(group, "--bounce", HEIGHT, what, quantities.values, metavar="Z")
         options.add_name_of_law(command)
         command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])
@@ -43,6 +49,11 @@ def add(commands: Any) -> None:
 
 def _run(unknown: str, arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
+    if getattr(arguments, "bounce", None) is not None:
+        if len(arguments.speed) > 1:
+            raise ArgumentError("bounce", None, "takes one speed or drop")
+        measured = {"speed": arguments.speed, "bounce": arguments.bounce, "radius": chosen.bead_radius(arguments)}
+        arguments.cor = rebounds_of(measured, chosen.density(arguments))["restitution"].tolist()
     model, known = chosen.model(arguments), _KNOWN[unknown]
     values = arguments.cor, *(getattr(arguments, name) for name in known)
     asked = np.array([*itertools.product(*values)]).T

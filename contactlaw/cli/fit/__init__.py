@@ -32,12 +32,17 @@ def add(commands: Any) -> None:
     add(
         "data",
         metavar="FILE",
+        nargs="?",
         help="record of a run (.h5), or CSV with a row per rebound. Columns: speed_m/s; at least one "
         "of COR, contact_time_us, peak_force_N, tangential_restitution, rotational_restitution, "
         "spin_rad/s; optionally radius_mm, thickness_mm and standard errors, as COR_error. The last "
         "three measurements need angle_deg from the normal too (the speed is then that of the "
-        "bead), or sliding_speed_m/s (the speed is then the normal one)",
+        "bead), or sliding_speed_m/s (the speed is then the normal one). Or a row per drop: drop_cm, "
+        "with bounce_cm or the times between its bounces, t1_ms, t2_ms, ... (default: --drop and --bounce)",
     )
+    options.add_drop(command, quantities.values, "of a bead, or of all in FILE")
+    what = "height of the bounce of each drop [m], or with a unit, without FILE"
+    options.add_quantity(command, "--bounce", quantities.HEIGHT, what, quantities.values, metavar="Z")
     options.add_pair(command, options.OF_RECORD)
     options.add_radius(command, "all beads", quantities.value)
     what = "thickness of all plates [m], or with a unit; inf: a half-space"
@@ -85,7 +90,9 @@ def _prior(text: str) -> tuple[str, float]:
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     priors = dict(arguments.prior)
-    if Path(arguments.data).suffix.lower() in (*HDF5, ".npy"):
+    if (arguments.data is None) == (arguments.bounce is None):
+        raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
+    if Path(arguments.data or "").suffix.lower() in (*HDF5, ".npy"):
         data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
     else:
         data, known = _typed(arguments), None
@@ -109,15 +116,20 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def _typed(arguments: argparse.Namespace) -> Measurements:
     """Read a table of rebounds, with warnings about what is not used or likely wrong."""
-    read = rebounds.checked(arguments.data)
-    return rebounds.completed(
-        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness, friction=arguments.friction
-    )
+    sizes = {name: getattr(arguments, name) for name in ("radius", "thickness", "friction", "drop")}
+    density = chosen.pair(arguments).given[0].density
+    if arguments.data is None:
+        given = {name: size for name, size in sizes.items() if size is not None}
+        numbers = np.arange(1, len(arguments.bounce) + 1)
+        return Measurements.of(given | {"bounce": arguments.bounce, "line": numbers}, density=density)
+    return rebounds.completed(rebounds.checked(arguments.data), arguments.data, density, **sizes)
 
 
 def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[Measurements, Pair | None]:
     """Impacts on walls of the record of a run, and their pair; one of several has to be named."""
     record = read_record(arguments.data)
+    if arguments.drop is not None:
+        raise ArgumentError("drop", None, "the record has its own speeds: leave this one out")
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
     pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
     if len(pairs) > 1:

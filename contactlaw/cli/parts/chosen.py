@@ -3,6 +3,7 @@
 import argparse
 import dataclasses
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -13,6 +14,7 @@ from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.cli.parts import own, plots, wording
+from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
@@ -96,11 +98,33 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:
-    """Refuse values beyond their limits one by one, so that the message can name the value."""
+    """Refuse values beyond their limits one by one, so that the message can name the value.
+
+    Before, heights of drops become speeds on arrival.
+    """
+    if hasattr(arguments, "speed") and getattr(arguments, "drop", None) is not None:
+        drops = arguments.drop
+        fallen = rebounds_of({"drop": drops, "radius": bead_radius(arguments)}, density(arguments))["speed"].tolist()
+        arguments.speed = tuple(fallen) if isinstance(drops, tuple) else fallen[0]
     for name in ("speed", "radius", "thickness", "friction"):
         given = getattr(arguments, name, None)
         for value in () if given is None else np.atleast_1d(given).tolist():
             scalars(**{name: value})
+
+
+def bead_radius(arguments: argparse.Namespace) -> float:
+    """Radius of the beads that fall through air, of which there may be but one."""
+    radii = np.unique(np.ravel(arguments.radius)).tolist() if arguments.radius is not None else []
+    if len(radii) != 1:
+        raise ArgumentError("drop", None, "takes one radius, as the air slows beads by their size; or give --speed")
+    return float(radii[0])
+
+
+def density(arguments: argparse.Namespace) -> float:
+    """Density of the beads [kg/m3]; of those with a mass of their own, over their volume."""
+    if (mass := getattr(arguments, "mass", None)) is not None:
+        return float(mass) / (4.0 / 3.0 * math.pi * bead_radius(arguments) ** 3)
+    return pair(arguments).given[0].density
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
-from contactlaw.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, STIFFNESS, Quantity
+from contactlaw.quantities import ANGLE, HEIGHT, LENGTH, MASS, SHARE, SPEED, STIFFNESS, Quantity
 
 Reader = Callable[[str, Quantity], Any]
 Run = Callable[[argparse.Namespace], None]
@@ -63,8 +63,19 @@ def add_mass(command: argparse.ArgumentParser) -> None:
 
 
 def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed") -> None:
-    """Add the option of the impact speed."""
-    add_quantity(command, "--speed", SPEED, f"{what} [m/s], or with a unit", read, required=True, metavar="V")
+    """Add the options of the impact speed."""
+    group = command.add_mutually_exclusive_group(required=True)
+    add_quantity(group, "--speed", SPEED, f"{what} [m/s], or with a unit", read, metavar="V")
+    add_drop(group, read)
+
+
+def add_drop(
+    command: Any, read: Reader, then: str = "in place of --speed: that on arrival, less what the air takes"
+) -> None:
+    """Add the option of the height of a drop."""
+    add_quantity(
+        command, "--drop", HEIGHT, f"height of a fall from rest [m], or with a unit, {then}", read, metavar="Z"
+    )
 
 
 def add_wall(command: argparse.ArgumentParser) -> None:
@@ -199,7 +210,7 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
         pointed = quantities.decimal_comma(text)
         if pointed.lstrip().startswith("0.") and quantity is not ANGLE:
             said = f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
-            if quantity in (LENGTH, SPEED, SHARE):  # none of these may be 0
+            if quantity in (LENGTH, HEIGHT, SPEED, SHARE):  # none of these may be 0
                 raise argparse.ArgumentTypeError(said)
             wording.print_warning(said)
         try:

@@ -17,10 +17,11 @@ from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, own, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.fitting import Measurements
+from contactlaw.fitting.drops import is_height_or_time
 from contactlaw.fitting.measurements import INPUTS
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, find, spelled_out
-from contactlaw.quantities import FORCE, SHARE, SPEED, TIME
+from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME, Quantity
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
@@ -30,6 +31,16 @@ _KINDS = {
     "rotational_restitution": (("rotational_restitution", "beta"), SHARE),
     "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
 }
+_MOST = 20  # bounces of a drop, in a row
+# Names of heights and times, which `contactlaw.fitting.drops` turns into speeds and CORs.
+_NOTED: dict[str, tuple[tuple[str, ...], Quantity]]
+_NOTED = {f"t{n}": ((f"t{n}", f"t_{n}", f"time_{n}", f"time{n}"), TIME) for n in range(1, _MOST + 1)}
+_NOTED |= {
+    f"bounce{n}": (tuple(f"{name}{n}" for name in ("bounce", "bounce_", "h", "h_", "bounce_height_")), LENGTH)
+    for n in range(2, _MOST + 1)
+}
+_NOTED["bounce"] = (("bounce", "bounce1", "bounce_1", "bounce_height", "rebound_height", "h1", "h_1"), LENGTH)
+_DROP = ("drop", "drop_height", "fall_height", "height", "h0", "h_0")
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
@@ -37,12 +48,18 @@ _COLUMNS = {
     "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
     "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
     **columns.SIZES,
+    "drop": TextColumn(_DROP, LENGTH),
+    **{field: TextColumn(*one) for field, one in _NOTED.items()},
+    "time_error": TextColumn(("time_error", "t_error"), TIME),
+    "drop_error": TextColumn(("drop_error", "drop_height_error"), LENGTH),
+    "bounce_error": TextColumn(("bounce_error", "bounce_height_error"), LENGTH),
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
     **{
         f"{field}_error": TextColumn(tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity)
         for field, (names, quantity) in _KINDS.items()
     },
 }
+_MEASURED = _KINDS | _NOTED
 
 
 class Read(NamedTuple):
@@ -75,16 +92,16 @@ def _read(content: bytes) -> Read:
         ) from None
     found = columns.locate(names, _COLUMNS)
     listed = ", ".join(names)[:200]
-    if "speed" not in found:
+    if "speed" not in found and not any(map(is_height_or_time, found)):
         near = _nearest(names, ("speed",))
-        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s{near}")
-    if not found.keys() & _KINDS.keys():
-        near = _nearest(names, _KINDS)
+        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s, or drop_cm{near}")
+    if not found.keys() & _MEASURED.keys():
+        near = _nearest(names, _MEASURED)
         raise ValueError(
             f"nothing measured in its first line, {listed!r}: call a column COR, contact_time_us, "
-            f"peak_force_N, tangential_restitution, rotational_restitution or spin_rad/s{near}"
+            f"peak_force_N, tangential_restitution, rotational_restitution, spin_rad/s, bounce_cm or t1_ms{near}"
         )
-    if "angle" in found and "normal" in names[found["speed"].place].lower():
+    if "speed" in found and "angle" in found and "normal" in names[found["speed"].place].lower():
         raise ValueError(
             f"{names[found['speed'].place]!r}: with angles the speed is that of the bead: call it "
             "speed_m/s if it is, else give sliding_speed_m/s in place of the angle"
@@ -95,7 +112,7 @@ def _read(content: bytes) -> Read:
     lines, table = columns.numbers(rows, delimiter, names, wanted, gaps=True)
     picked = {name: values / one.per_unit for (name, one), values in zip(found.items(), table.T, strict=True)}
     columns.halve_diameters(picked)
-    measured = np.any([~np.isnan(picked[kind]) for kind in _KINDS if kind in picked], axis=0)
+    measured = np.any([~np.isnan(picked[kind]) for kind in _MEASURED if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")
     picked = {name: values[measured] for name, values in picked.items()}
@@ -131,8 +148,11 @@ def _nearest(heads: list[str], fields: Iterable[str]) -> str:
     return "".join(columns.nearest(head, of) for head in heads)
 
 
-def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
-    """Add the sizes [m] that a table does not have; None for those that are unknown."""
+def completed(found: Read, path: str | os.PathLike[str], density: float, **sizes: Any) -> Measurements:
+    """Add the sizes [m] that a table does not have; None for those that are unknown.
+
+    Heights and times are those of beads of a density [kg/m3].
+    """
     given = {name: size for name, size in sizes.items() if size is not None}
     twice = given.keys() & found.columns.keys()
     if twice:
@@ -142,7 +162,7 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
             row = int(np.argmax(np.isnan(values)))
             raise ValueError(f"{path}: line {found.lines[row]} has no {name}")
     try:
-        return Measurements(**found.columns, **given, line=found.lines)
+        return Measurements.of(found.columns | given | {"line": found.lines}, density=density)
     except ArgumentError as error:
         at = "" if error.element is None else f", line {found.lines[error.element]}"
         raise ValueError(f"{path}{at}: {error}") from None
