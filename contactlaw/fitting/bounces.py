@@ -27,6 +27,7 @@ _SHORTEST, _LONGEST = 0.02, 1.5  # [s] between two bounces
 _NEXT = 6  # impacts among which the next bounce of a bead is sought
 _FEWEST = 5  # impacts of a bead, or one more if another bounces meanwhile
 _SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
+_FADES = 0.2  # least power of the speed with which the loudness grows, which is 1 but for noise and places
 _CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
 _SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
 _OF_DROP = 0.85, 1.2  # the same for the drop's, from which the air is not taken off
@@ -259,8 +260,13 @@ def _series(t: Array, strength: Array) -> Iterator[Places]:
         free[best] = False
         gaps = np.diff(t[best])
         mixed = any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found)  # with another bead's
-        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and not _is_echo(best, t, strength):
-            found.append(best)
+        fades = np.polyfit(np.log(gaps), np.log(strength[best[1:]]), 1)[0] > _FADES
+        # Two series that take turns with the impacts of one bead each have every second of these.
+        between = t[best[:-2]] + gaps[:-1] / (1.0 + np.sqrt(gaps[1:] / gaps[:-1]))
+        halved = (np.abs(t - between[:, None]).min(axis=1) < 0.03 * gaps[:-1]).mean() > 0.7
+        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and fades and not halved:
+            if not _is_echo(best, t, strength):
+                found.append(best)
     heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
     for one in sorted(found, key=lambda one: t[one[0]]):
         others = np.flatnonzero(free & (t > t[one[0]]) & (t < t[one[-1]]) & (strength > 0.5 * strength[one].min()))
