@@ -69,7 +69,7 @@ def test_recordings(count, seed):
 
 @pytest.fixture(scope="module")
 def sound():
-    times, cors, x, drop = recordings.drops(np.random.default_rng(4), 44100, 1, 35.0)
+    times, cors, x, drop = recordings.drops(np.random.default_rng(9), 44100, 1, 35.0)
     return times, cors, x, drop
 
 
@@ -94,7 +94,7 @@ def test_recordings_that_are_refused(sound):
         (np.clip(x, -0.1, 0.1), 44100, "clipped at 0.1 of full scale"),
         (x, 8000, "must be at least 16000"),
         (x[:4000], 44100, "must last from 0.5 to 120 s"),
-        (x[:20000], 44100, "none|no 5 that follow"),
+        (x[: 2 * 22050], 44100, "no 5 that follow"),
         (x.astype(complex), 44100, "expected numbers"),
     ):
         with pytest.raises(cl.ArgumentError, match=words):
