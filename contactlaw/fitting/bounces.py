@@ -261,12 +261,9 @@ def _series(t: Array, strength: Array) -> Iterator[Places]:
         gaps = np.diff(t[best])
         mixed = any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found)  # with another bead's
         fades = np.polyfit(np.log(gaps), np.log(strength[best[1:]]), 1)[0] > _FADES
-        # Two series that take turns with the impacts of one bead each have every second of these.
-        between = t[best[:-2]] + gaps[:-1] / (1.0 + np.sqrt(gaps[1:] / gaps[:-1]))
-        halved = (np.abs(t - between[:, None]).min(axis=1) < 0.03 * gaps[:-1]).mean() > 0.7
-        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and fades and not halved:
-            if not _is_echo(best, t, strength):
-                found.append(best)
+        wrong = _is_echo(best, t, strength) or _is_part(best, t)
+        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and fades and not wrong:
+            found.append(best)
     heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
     for one in sorted(found, key=lambda one: t[one[0]]):
         others = np.flatnonzero(free & (t > t[one[0]]) & (t < t[one[-1]]) & (strength > 0.5 * strength[one].min()))
@@ -282,6 +279,17 @@ def _is_echo(one: Places, t: Array, strength: Array) -> bool:
     late[(late <= 0.0) | (late > _ECHO) | (strength[one, None] > _FAINT * strength)] = np.inf
     lags = late[np.isfinite(late)]
     return any((np.abs(late - lag) < 2.0 * _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
+
+
+def _is_part(one: Places, t: Array) -> bool:
+    """Whether a series has but every second or third of a bead's impacts, as others lie where these would."""
+    gaps = np.diff(t[one])
+    for parts in (2, 3):
+        cor = (gaps[1:] / gaps[:-1]) ** (1.0 / parts)
+        next_one = t[one[:-2]] + gaps[:-1] * (1.0 - cor) / (1.0 - cor**parts)
+        if (np.abs(t - next_one[:, None]).min(axis=1) < 0.03 * gaps[:-1]).mean() > 0.7:
+            return True
+    return False
 
 
 def _longest(t: Array, strength: Array, free: Places) -> Places:
