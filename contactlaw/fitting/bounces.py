@@ -306,12 +306,11 @@ def _longest(t: Array, strength: Array, free: Places) -> Places:
 
 def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Places:
     """Add to three impacts those that may follow; nothing if the three cannot be of a bead."""
-    first, gap = np.diff(t[chain])
-    loud = strength[chain]
+    i, j, k = chain
+    first, gap = t[j] - t[i], t[k] - t[j]
     cor, change = gap / first, None
-    if not (
-        _SHORTEST < gap < 0.99 * first and first < _LONGEST and cor > 0.1 and _fades(loud[1:], loud[:-1], cor).all()
-    ):
+    fades = _fades(strength[j], strength[i], cor) and _fades(strength[k], strength[j], cor)
+    if not (_SHORTEST < gap < 0.99 * first < _LONGEST and cor > 0.1 and fades):
         return np.empty(0, dtype=np.intp)
     while True:
         low, high = _CHANGE if change is None else (_SMOOTH[0] * change, _SMOOTH[1] * change)
