@@ -27,6 +27,7 @@ _SHORTEST, _LONGEST = 0.02, 1.5  # [s] between two bounces
 _NEXT = 6  # impacts among which the next bounce of a bead is sought
 _FEWEST = 5  # impacts of a bead, or one more if another bounces meanwhile
 _SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
+_FADES = 0.2  # least power of the speed with which the loudness grows, which is 1 but for noise and places
 _CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
 _SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
 _OF_DROP = 0.85, 1.2  # the same for the drop's, from which the air is not taken off
@@ -259,7 +260,9 @@ def _series(t: Array, strength: Array) -> Iterator[Places]:
         free[best] = False
         gaps = np.diff(t[best])
         mixed = any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found)  # with another bead's
-        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and not _is_echo(best, t, strength):
+        fades = np.polyfit(np.log(gaps), np.log(strength[best[1:]]), 1)[0] > _FADES
+        wrong = _is_echo(best, t, strength) or _is_part(best, t)
+        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and fades and not wrong:
             found.append(best)
     heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
     for one in sorted(found, key=lambda one: t[one[0]]):
@@ -278,6 +281,17 @@ def _is_echo(one: Places, t: Array, strength: Array) -> bool:
     return any((np.abs(late - lag) < 2.0 * _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
 
 
+def _is_part(one: Places, t: Array) -> bool:
+    """Whether a series has but every second or third of a bead's impacts, as others lie where these would."""
+    gaps = np.diff(t[one])
+    for parts in (2, 3):
+        cor = (gaps[1:] / gaps[:-1]) ** (1.0 / parts)
+        next_one = t[one[:-2]] + gaps[:-1] * (1.0 - cor) / (1.0 - cor**parts)
+        if (np.abs(t - next_one[:, None]).min(axis=1) < 0.03 * gaps[:-1]).mean() > 0.7:
+            return True
+    return False
+
+
 def _longest(t: Array, strength: Array, free: Places) -> Places:
     """Find the longest series of impacts, and its loudest, whose intervals shrink as a bead's."""
     best, size = np.empty(0, dtype=np.intp), (0, 0.0)
@@ -292,12 +306,11 @@ def _longest(t: Array, strength: Array, free: Places) -> Places:
 
 def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Places:
     """Add to three impacts those that may follow; nothing if the three cannot be of a bead."""
-    first, gap = np.diff(t[chain])
-    loud = strength[chain]
+    i, j, k = chain
+    first, gap = t[j] - t[i], t[k] - t[j]
     cor, change = gap / first, None
-    if not (
-        _SHORTEST < gap < 0.99 * first and first < _LONGEST and cor > 0.1 and _fades(loud[1:], loud[:-1], cor).all()
-    ):
+    fades = _fades(strength[j], strength[i], cor) and _fades(strength[k], strength[j], cor)
+    if not (_SHORTEST < gap < 0.99 * first < _LONGEST and cor > 0.1 and fades):
         return np.empty(0, dtype=np.intp)
     while True:
         low, high = _CHANGE if change is None else (_SMOOTH[0] * change, _SMOOTH[1] * change)

@@ -60,7 +60,7 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     drop_error, height_error, time_error = (given.get(name, 0.0 * radius) for name in _ERRORS)
     height = given.get("drop", none)
     fallen = flight.of_height(height, radius, density).down
-    air = [fallen / flight.of_height(height).down]
+    air = [fallen / np.sqrt(2.0 * flight.GRAVITY * height)]
     arrives, error, before = flat.pop("speed", none), 0.0 * radius, none
     if "drop" in given:
         arrives, error = np.where(np.isnan(height), arrives, fallen), 0.5 * drop_error / height
@@ -69,7 +69,7 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
         timed, size = name[0] == "t", given[name]
         fly = flight.of_time if timed else flight.of_height
         found = fly(size, radius, density)
-        air.append(found.up / fly(size).up)
+        air.append(found.up / (0.5 * flight.GRAVITY * size if timed else np.sqrt(2.0 * flight.GRAVITY * size)))
         if (wrong := found.up > arrives).any():
             row = int(np.argmax(wrong))
             reason = (

@@ -55,6 +55,8 @@ def of_time(time: ArrayLike, radius: ArrayLike = 1.0, density: ArrayLike = NO_AI
         found = of_height(height, radius, density)
         step = (found.time - t) / (1.0 / found.up + 1.0 / found.down)
         height = np.maximum(found.height - step, 0.1 * found.height)
+        if not (np.abs(step) > 1e-10 * height).any():
+            break
     return of_height(height, radius, density)
 
 

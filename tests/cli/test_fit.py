@@ -72,7 +72,7 @@ def test_tables_as_people_write_them(head, rows, table):
     path = table(head, *rows)
     found = tables.read(path)
     sizes = {} if "radius" in found.columns else {"radius": RADIUS}
-    data = tables.completed(found, path, thickness=THICKNESS, **sizes)
+    data = tables.completed(found, path, 7800.0, thickness=THICKNESS, **sizes)
     assert data.radius == pytest.approx([RADIUS] * 2) and found.unused == ()
     assert data.speed == pytest.approx([1.0, 2.0])
     assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
@@ -85,12 +85,18 @@ def test_tables_as_people_write_them(head, rows, table):
         (
             ["velocty,COR", "1,0.5"],
             "no column of speeds in its first line, 'velocty, COR': call one "
-            "speed_m/s, did you mean velocity for 'velocty'?",
+            "speed_m/s, or drop_cm, did you mean velocity for 'velocty'?",
         ),
         (["v,COR,diameter,radius", "1,0.5,1,1"], "columns of radius and of diameter"),
         (["speed,COR", "", "1,o.5"], "line 3, column 'COR': 'o.5' is no number"),
         (["speed;COR", "1;0,5", "2;1,5"], "line 3: restitution: got 1.5 (element 1)"),
         (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
+        (["drop_cm,bounce_cm", "30,12", "12,30"], "line 3: bounce: got 0.3 (element 1); a bead that arrives at 1.5"),
+        (["drop,bounce", "30,12"], "drop: got 30.0; must lie between 1e-05 and 10 metres; in cm"),
+        (["drop_mm,t1_ms,t2_ms", "300,400,400"], "line 2: t2: got 0.4 (element 0); a bead that arrives at 1.9"),
+        (["drop_cm,t1,t2", "30,400,300"], "t1: got 400.0; must lie between 0.001 and 5 seconds; in ms"),
+        (["bounce_cm", "30"], "a bounce alone has no COR: add drop, speed"),
+        (["drop_cm,bounce_cm,COR", "30,20,0.9"], "restitution: leave it out beside bounce"),
         (["speed_m/s,COR"], "it has no row after the first line"),
         (["speed_m/s,COR", "1,half"], "half"),
         (["speed [mph],COR", "1,0.5"], "'mph' is no unit of speed"),

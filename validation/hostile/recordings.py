@@ -2,7 +2,7 @@
 
 The sounds are made here, from the modes of a plate that each impact strikes; nothing of the package
 is used. Every fourth recording has one or two beads that bounce, the others have none. A bead with
-six bounces or more has to be heard where the noise is 20 dB below its first impact.
+eight bounces or more has to be heard where the noise is 20 dB below its first impact.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def faults(count: int, seed: int) -> Iterator[str]:
         try:
             found = cl.bounces(sound, rate, drop=drop if n % 3 else None)
         except ValueError as error:
-            if beads == 1 and ratio > 20.0 and times.size > 5:
+            if beads == 1 and ratio > 20.0 and times.size > 7:
                 yield f"{name}: {error}"
             continue
         for at, cor, sigma in zip(found.at, found.restitution, found["restitution_error"], strict=True):

@@ -1,0 +1,105 @@
+"""Heights, times and sounds of bounces: their speeds and CORs."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.fitting.bounces import of_times
+from contactlaw.fitting.drops import rebounds_of
+from contactlaw.physical import flight
+from validation.hostile import recordings
+
+pytestmark = pytest.mark.filterwarnings("ignore:the air changes", "ignore:the bounce at")
+
+
+def test_heights_times_and_speeds_of_one_drop_agree_in_air():
+    """A bead of light alumina, whose COR would be 8 % wrong without the air."""
+    radius, density, cor = 0.9e-3, 879.0, [0.8, 0.85, 0.9]
+    fall, drop = flight.of_height(0.5, radius, density), 0.5
+    height, time, speed = [], [], []
+    for e in cor:
+        speed.append(float(fall.down))
+        low, high = 0.0, 0.5
+        for _ in range(60):  # bisection: the height to which it rises
+            middle = 0.5 * (low + high)
+            low, high = (
+                (middle, high) if flight.of_height(middle, radius, density).up < e * speed[-1] else (low, middle)
+            )
+        fall = flight.of_height(low, radius, density)
+        height.append(low)
+        time.append(float(fall.time))
+    for noted in (
+        dict(zip(("bounce", "bounce2", "bounce3"), height, strict=True)),
+        dict(zip(("t1", "t2", "t3"), time, strict=True)),
+        {"bounce": height[0], "t2": time[1], "bounce3": height[2]},
+    ):
+        found = rebounds_of({"drop": drop, "radius": radius} | noted, density)
+        assert found["speed"] == pytest.approx(speed, rel=1e-6)
+        assert found["restitution"] == pytest.approx(cor, rel=1e-6)
+    bare = rebounds_of({"drop": drop, "radius": 1.0, "bounce": height[0]}, flight.NO_AIR)
+    assert bare["restitution"][0] < 0.93 * cor[0]
+
+
+def test_errors_of_cors_are_those_of_random_instants():
+    rng = np.random.default_rng(0)
+    instants = np.cumsum([0.0, 0.4, 0.3, 0.24]) + rng.normal(0.0, 1e-3, (4000, 4))
+    t1, t2, t3 = np.diff(instants).T
+    found = rebounds_of({"t1": t1, "t2": t2, "t3": t3, "time_error": 1e-3, "radius": 1.0}, flight.NO_AIR)
+    for n, cor in enumerate((0.75, 0.8)):
+        off = found["restitution"][n::2] - cor
+        assert off.std() == pytest.approx(found["restitution_error"][n::2].mean(), rel=0.05)
+
+
+def test_a_row_per_drop_with_gaps_and_other_columns():
+    data = {"drop": [0.3, np.nan], "t1": [0.4, 0.4], "t2": [np.nan, 0.3], "contact_time": [5e-6, np.nan], "radius": 1.0}
+    found = rebounds_of(data | {"line": [2, 3]}, flight.NO_AIR)
+    assert found["line"].tolist() == [2, 3] and found["restitution"] == pytest.approx([0.808508, 0.75], rel=1e-4)
+    assert found["contact_time"] == pytest.approx([5e-6, np.nan], nan_ok=True)
+    alone = rebounds_of({"drop": 0.3, "restitution": 0.7, "radius": 1.0}, flight.NO_AIR)
+    assert alone["speed"] == pytest.approx(np.sqrt(0.6 * flight.GRAVITY)) and alone["restitution"] == 0.7
+
+
+@pytest.mark.parametrize(("count", "seed"), [(40, 1), pytest.param(recordings.FULL, 0, marks=pytest.mark.long)])
+def test_recordings(count, seed):
+    """COR within 0.005, and no bounce where there is none."""
+    assert list(recordings.faults(count, seed)) == []
+
+
+@pytest.fixture(scope="module")
+def sound():
+    times, cors, x, drop = recordings.drops(np.random.default_rng(9), 44100, 1, 35.0)
+    return times, cors, x, drop
+
+
+def test_a_recording_in_other_formats_and_with_its_drop(sound):
+    times, cors, x, drop = sound
+    first = cl.bounces(x, 44100, drop)
+    assert first.at[0] == pytest.approx(times[0], abs=1e-3) and first.restitution == pytest.approx(
+        cors[: first.at.size], abs=0.005
+    )
+    for other in (np.int16(x * 32000), np.uint8(128 + 127 * x), np.column_stack([x, x]).astype(np.float32)):
+        assert cl.bounces(other, 44100, drop).restitution[:2] == pytest.approx(cors[:2], abs=0.005)
+    noted = of_times(times, drop)
+    assert noted.restitution == pytest.approx(cors[: times.size - 1], abs=1e-6) and noted.restitution_error is None
+    with pytest.warns(UserWarning, match="not the first after a drop from 0.1 m"):
+        assert cl.bounces(x, 44100, 0.1).at[0] > times[0] + 0.1
+
+
+def test_recordings_that_are_refused(sound):
+    x = sound[2]
+    for samples, rate, words in (
+        (0.0 * x, 44100, "silent"),
+        (np.clip(x, -0.1, 0.1), 44100, "clipped at 0.1 of full scale"),
+        (x, 8000, "must be at least 16000"),
+        (x[:4000], 44100, "must last from 0.5 to 120 s"),
+        (x[: 2 * 22050], 44100, "no 5 that follow"),
+        (x.astype(complex), 44100, "expected numbers"),
+    ):
+        with pytest.raises(cl.ArgumentError, match=words):
+            cl.bounces(samples, rate)
+    with pytest.raises(cl.ArgumentError, match="times of bounces have to rise"):
+        of_times([0.4, 0.3, 0.2], None)
+    with warnings.catch_warnings(), pytest.raises(cl.ArgumentError, match="t2: got 0.5"):
+        of_times([0.0, 0.4, 0.9], None)
