@@ -266,6 +266,7 @@ COMMANDS = [
     f"contactlaw history {BEAD} --thickness 1mm --speed 5",
     f"contactlaw history {BEAD} --thickness 1mm --speed 5 --solve",
     f"contactlaw fit rebounds.csv {BEAD} --thickness 1mm --unknown yield_strength",
+    "contactlaw bounces bounce_times.csv",
     f"contactlaw compare rebounds.csv {BEAD} --thickness 1mm",
     f"contactlaw experiment {PAIR} --thickness 1mm --drop 30cm",
     "contactlaw materials",
