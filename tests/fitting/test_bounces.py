@@ -101,5 +101,8 @@ def test_recordings_that_are_refused(sound):
             cl.bounces(samples, rate)
     with pytest.raises(cl.ArgumentError, match="times of bounces have to rise"):
         of_times([0.4, 0.3, 0.2], None)
+    assert of_times([0.0, 0.5, 0.9, 1.3 - 0.01], None).at.size == 2  # scatter that is no recording's is kept
+    with pytest.raises(cl.ArgumentError, match="drop: got -1.0"):
+        cl.bounces(x, 44100, -1.0)
     with warnings.catch_warnings(), pytest.raises(cl.ArgumentError, match="t2: got 0.5"):
         of_times([0.0, 0.4, 0.9], None)
