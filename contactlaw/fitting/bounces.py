@@ -161,7 +161,7 @@ def _measured(
     worst = np.max([error[:-2], error[1:-1], error[2:]], axis=0)
     rows = {"drop": np.full(at.size, np.nan), "t1": gaps[:-1], "t2": gaps[1:], "time_error": worst}
     if drop is not None:
-        first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
+        first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * positive("drop", drop, "m"))
         if t.size > 2 and not (first < 1.0 and _OF_DROP[0] < gaps[1] / gaps[0] / first < _OF_DROP[1]):
             said = f"the bounce at {t[0]:.3f} s is not the first after a drop from {drop:g} m, and gets no COR"
             warnings.warn(said, stacklevel=3)
@@ -175,7 +175,7 @@ def _measured(
     for n, bend in enumerate(bends):
         own = slice(n, n + (1 if n == 0 and drop is not None else 3))  # an error of the height is in one COR
         errors[own] = np.maximum(errors[own], bend)
-    sure &= errors <= max(_UNSURE, 3.0 * float(np.median([0.0, *bends])))
+    sure &= (errors <= max(_UNSURE, 3.0 * float(np.median([0.0, *bends])))) | (not error.any())
     return at[sure], speed[sure], cor[sure], errors[sure]
 
 

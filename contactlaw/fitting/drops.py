@@ -62,6 +62,8 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     fallen = flight.of_height(height, radius, density).down
     air = [fallen / np.sqrt(2.0 * flight.GRAVITY * height)]
     arrives, error, before = flat.pop("speed", none), 0.0 * radius, none
+    if (np.isfinite(arrives) & np.isfinite(height)).any():
+        raise ArgumentError("drop", None, "give speeds or drops, not both of a rebound")
     if "drop" in given:
         arrives, error = np.where(np.isnan(height), arrives, fallen), 0.5 * drop_error / height
     rows = [(arrives, none, none)] if not order else []

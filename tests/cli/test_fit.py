@@ -95,6 +95,7 @@ def test_tables_as_people_write_them(head, rows, table):
         (["drop,bounce", "30,12"], "drop: got 30.0; must lie between 1e-05 and 10 metres; in cm"),
         (["drop_mm,t1_ms,t2_ms", "300,400,400"], "line 2: t2: got 0.4 (element 0); a bead that arrives at 1.9"),
         (["drop_cm,t1,t2", "30,400,300"], "t1: got 400.0; must lie between 0.001 and 5 seconds; in ms"),
+        (["drop_cm,v,COR", "30,2.4,0.9"], "drop: give speeds or drops, not both"),
         (["bounce_cm", "30"], "a bounce alone has no COR: add drop, speed"),
         (["drop_cm,bounce_cm,COR", "30,20,0.9"], "restitution: leave it out beside bounce"),
         (["speed_m/s,COR"], "it has no row after the first line"),

@@ -52,6 +52,13 @@ def test_errors_of_cors_are_those_of_random_instants():
         assert off.std() == pytest.approx(found["restitution_error"][n::2].mean(), rel=0.05)
 
 
+def test_errors_of_heights():
+    """The COR is the root of their ratio."""
+    data = {"drop": 0.3, "drop_error": 0.003, "bounce": 0.2, "bounce_error": 0.004, "radius": 1.0}
+    found = rebounds_of(data, flight.NO_AIR)
+    assert found["restitution_error"] == pytest.approx(np.sqrt(2 / 3) * 0.5 * np.hypot(0.01, 0.02))
+
+
 def test_a_row_per_drop_with_gaps_and_other_columns():
     data = {"drop": [0.3, np.nan], "t1": [0.4, 0.4], "t2": [np.nan, 0.3], "contact_time": [5e-6, np.nan], "radius": 1.0}
     found = rebounds_of(data | {"line": [2, 3]}, flight.NO_AIR)
@@ -65,6 +72,18 @@ def test_a_row_per_drop_with_gaps_and_other_columns():
 def test_recordings(count, seed):
     """COR within 0.005, and no bounce where there is none."""
     assert list(recordings.faults(count, seed)) == []
+
+
+def test_cors_without_their_stated_errors():
+    off = []
+    for seed in range(6, 12):
+        times, cors, x, _ = recordings.drops(np.random.default_rng(seed), 44100, 1, 30.0)
+        if times.size > 6:
+            found = cl.bounces(x, 44100)
+            off += [
+                cor - cors[np.argmin(np.abs(times - at))] for at, cor in zip(found.at, found.restitution, strict=True)
+            ]
+    assert len(off) > 30 and np.abs(off).max() < 0.005 and np.median(np.abs(off)) < 5e-4
 
 
 @pytest.fixture(scope="module")
@@ -101,5 +120,8 @@ def test_recordings_that_are_refused(sound):
             cl.bounces(samples, rate)
     with pytest.raises(cl.ArgumentError, match="times of bounces have to rise"):
         of_times([0.4, 0.3, 0.2], None)
+    assert of_times([0.0, 0.5, 0.9, 1.3 - 0.01], None).at.size == 2  # scatter that is no recording's is kept
+    with pytest.raises(cl.ArgumentError, match="drop: got -1.0"):
+        cl.bounces(x, 44100, -1.0)
     with warnings.catch_warnings(), pytest.raises(cl.ArgumentError, match="t2: got 0.5"):
         of_times([0.0, 0.4, 0.9], None)
