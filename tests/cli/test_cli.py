@@ -252,11 +252,7 @@ def test_help_comes_at_once():
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     listed = re.findall(r"^    ([a-z-]+)\b", shown.stdout, re.MULTILINE)
     whole = re.findall(r"^    ([a-z-]+)\b", cli.parser().format_help(), re.MULTILINE)
-<<<<<<< HEAD
     assert sorted(listed) == sorted(whole) and len(whole) == 17
-=======
-    assert sorted(listed) == sorted(whole) and len(whole) == 15
->>>>>>> w-F
 
 
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))
