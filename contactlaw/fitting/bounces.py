@@ -176,6 +176,11 @@ def _measured(
         own = slice(n, n + (1 if n == 0 and drop is not None else 3))  # an error of the height is in one COR
         errors[own] = np.maximum(errors[own], bend)
     sure &= (errors <= max(_UNSURE, 3.0 * float(np.median([0.0, *bends])))) | (not error.any())
+    if drop is not None and not sure[0]:
+        said = (
+            f"{drop:g} m gives the bounce at {t[0]:.3f} s a COR of {cor[0]:.3f}, which the next ones do not go on from"
+        )
+        warnings.warn(f"drop: {said}; it is left out: is the height to the bead's lower side?", stacklevel=3)
     return at[sure], speed[sure], cor[sure], errors[sure]
 
 

@@ -102,6 +102,8 @@ def test_a_recording_in_other_formats_and_with_its_drop(sound):
         assert cl.bounces(other, 44100, drop).restitution[:2] == pytest.approx(cors[:2], abs=0.005)
     noted = of_times(times, drop)
     assert noted.restitution == pytest.approx(cors[: times.size - 1], abs=1e-6) and noted.restitution_error is None
+    with pytest.warns(UserWarning, match=r"gives the bounce at .* the next ones do not go on from"):
+        assert cl.bounces(x, 44100, 1.06 * drop).restitution.size == first.restitution.size - 1
     with pytest.warns(UserWarning, match="not the first after a drop from 0.1 m"):
         assert cl.bounces(x, 44100, 0.1).at[0] > times[0] + 0.1
 
