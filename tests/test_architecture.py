@@ -93,7 +93,7 @@ BUDGETS = {
     "contactlaw/stepping": 2_860,  # 550 of them are softened contacts and parcels
     "contactlaw/table": 2_908,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_596,
-    "contactlaw templates": 2_300,  # sources of other languages, and pages
+    "contactlaw templates": 2_305,  # sources of other languages, and pages
     "dem_demo": 3_240,
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns

@@ -48,7 +48,7 @@ write_dump all custom places.txt id x y z vx vy vz omegax omegay omegaz f_walls 
 """
 DRUM = """
 variable angle equal {spin}*time
-region drum cylinder y 0 0 0.0072 -0.015 0.015 side in rotate v_angle 0 0 0 0 1 0
+region drum cylinder y 0 0 0.0072 -0.015 0.015 side in rotate v_angle 0 0 0 0 2 0
 """
 DECK = "mesh {deck} scale 1e-3 thickness 0.8e-3 edges free vibrate 0 0 1e-3 50 "
 DECK += "plate -0.02 -0.02 -0.004 0.04 0 0 0 0.04 0 thickness 2e-3 edges clamped"

@@ -89,7 +89,8 @@ struct Wall {
     double thickness = HUGE_VAL;
     int plate = 0, edges = 0, frame = -1; /* number of the material, kind of the edges from 1 */
     Region *region = nullptr;
-    std::string name; /* of the region */
+    std::string name;  /* of the region */
+    double axis = 1.0; /* length of its axis of rotation */
     std::vector<Vector> corners; /* three of each triangle, or four of a rectangle [m] */
     bool mesh = false;
     double scale = 1.0;
@@ -218,7 +219,7 @@ struct FixWallContactlaw::Scene {
     void add_facets(int wall);
     void add_edges(int wall, size_t first);
     void fill_grid(int frame);
-    void follow_regions();
+    void follow_regions(bigint, double);
 };
 
 void FixWallContactlaw::Scene::add_facets(int number)
@@ -421,16 +422,18 @@ void FixWallContactlaw::Scene::fill_grid(int number)
 }
 
 /* Frames of regions have the velocity that LAMMPS moves them with. */
-void FixWallContactlaw::Scene::follow_regions()
+void FixWallContactlaw::Scene::follow_regions(bigint step, double dt)
 {
     asked.region = nullptr;
-    for (const Wall &wall : walls) {
+    for (Wall &wall : walls) {
         Region *const region = wall.region;
         if (!region)
             continue;
         region->prematch();
         if (!region->dynamic_check())
             continue;
+        const bool first = region->vel_timestep != step; /* else another fix has asked in this step */
+        const double turned = region->theta - region->prev[3];
         region->set_velocity();
         contactlaw_frame &frame = frames[wall.frame];
         frame.moves = 1;
@@ -441,7 +444,9 @@ void FixWallContactlaw::Scene::follow_regions()
             frame.rate[k] = frame.half_rate[k] = region->moveflag ? region->v[k] * length / time : 0.0;
         }
         const Vector omega = vector_of(region->omega);
-        frame.spin = region->rotateflag ? size(omega) / time : 0.0;
+        if (first && turned != 0.0 && size(omega) > 0.0) /* LAMMPS's is that times the axis as it was given */
+            wall.axis = size(omega) / time * dt / std::fabs(turned);
+        frame.spin = region->rotateflag ? size(omega) / (time * wall.axis) : 0.0;
         if (frame.spin > 0.0)
             put(frame.axis, (1.0 / size(omega)) * omega);
     }
@@ -760,7 +765,7 @@ void FixWallContactlaw::step(bool advancing)
     }
     contactlaw_wall_scene scene = s.kernels();
     contactlaw_move(scene.frames, now, dt);
-    s.follow_regions();
+    s.follow_regions(update->ntimestep, dt);
     if (looks || !advancing)
         look();
     if (update->ntimestep % 10000 == 0)
