@@ -21,20 +21,21 @@ from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import room_for
 from contactlaw.export import c_header, functions
 from contactlaw.model import ImpactModel
-from contactlaw.physical.kind import Kind
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.record.columns import IMPACT
 from contactlaw.softsphere import time_step
-from contactlaw.stepping import Bead, Clock, Trouble, interact
+from contactlaw.stepping import Bead, Clock, interact
+from contactlaw.stepping.bead import MOST_CONTACTS
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import PLATE_ROW, plate_rows
-from contactlaw.stepping.spring import FEWEST_STEPS
-from contactlaw.walls.edges import EDGE
+from contactlaw.stepping.softened import DEEPEST_OVERLAP
+from contactlaw.walls.edges import EDGE, MERGED
 from contactlaw.walls.facet import FACET, Point, Touch, on_facet
 from contactlaw.walls.frame import FRAME
-from contactlaw.walls.motion import move
+from contactlaw.walls.grid import MARGIN
+from contactlaw.walls.motion import FARTHEST, move
 from contactlaw.walls.plate import Plate
 from contactlaw.walls.profile import Bend, bending, bent
 from contactlaw.walls.surface import OVERLAP, ROOM, box, near
@@ -142,8 +143,8 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
     laws = [by_strength(one.pair, one.force_law, COARSE) for one in models]
     language = C()
     units, data = list[str](), list[str]()
+    square = Plate((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness=_THICKNESS)
     for n, (model, law) in enumerate(zip(models, laws, strict=True)):
-        square = Plate((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness=_THICKNESS)
         rows, _, _ = plate_rows([square], {1: model}, 1)
         rows["law"] = 0
         words = ", ".join(map(hex, rows.view(np.uint64).ravel().tolist()))
@@ -156,8 +157,9 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
     for name, texts in ("SPHERES", spheres), ("PLATES", plates), ("EDGES", KINDS):
         said = ", ".join(f'"{text}"' for text in texts)
         lists.append(f"static const char *const CONTACTLAW_{name}[] = {{ {said} }};")
-    numbers = {"SPHERE_COUNT": len(spheres), "PLATE_COUNT": len(plates), "ROOM": ROOM, "IMPACT": Kind.IMPACT.value}
-    numbers |= {"FEWEST_STEPS": FEWEST_STEPS} | {one.name: one.value for one in Trouble}
+    numbers = {"SPHERE_COUNT": len(spheres), "PLATE_COUNT": len(plates), "ROOM": ROOM, "MARGIN": MARGIN}
+    numbers |= {"MERGED": MERGED, "FARTHEST": FARTHEST, "MOST_CONTACTS": MOST_CONTACTS}
+    numbers |= {"DEEPEST_OVERLAP": DEEPEST_OVERLAP}  # the kernels define what they need themselves
     constants = "\n".join(f"#define CONTACTLAW_{name} {value}" for name, value in numbers.items())
     head = "typedef const double contactlaw_data;"
     written = _program(max(1, *map(room_for, laws)))

@@ -44,7 +44,7 @@ from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_fa
 Rows = NDArray[np.void]
 
 # Most contacts of a bead at once: three in a corner; in a hole one for each edge.
-_MOST_CONTACTS = 8
+MOST_CONTACTS = 8
 # Two forces count as perpendicular if the cosine of their angle is at most this.
 _PERPENDICULAR = 1e-6
 
@@ -113,7 +113,7 @@ class WallContacts:
         if crossed := crossing(facets):
             said = "walls: {} and {} cross; if that is not meant, end one where it meets the other".format(*crossed)
             warnings.warn(said, stacklevel=4)  # the caller of `attach`
-        self.places = min(len(facets), _MOST_CONTACTS)
+        self.places = min(len(facets), MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
         borne = np.zeros(len(walls), LOAD), np.zeros(len(facets))

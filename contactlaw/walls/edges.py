@@ -35,7 +35,7 @@ EDGE = np.dtype(
 SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
 # Vertices within this share of the mesh's size are one. It is no round number, because coordinates
 # that are would lie between two steps of the grid that finds such vertices.
-_MERGED = 0.8647e-6
+MERGED = 0.8647e-6
 _OUTSIDE = 0.5  # least mean cosine from which triangles lie outside of a line, all around it
 _FACETS, _EDGES = 8, 4  # facets share a list of edges if they are so few, or the edges are
 
@@ -93,7 +93,7 @@ def _sides(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
 
     Pairs are of triangles, shape (n, 2).
     """
-    step = _MERGED * max(np.ptp(vertices, axis=0).max(), 1e-300)
+    step = MERGED * max(np.ptp(vertices, axis=0).max(), 1e-300)
     _, place = np.unique(np.round(vertices / step), axis=0, return_inverse=True)
     corners = place.ravel()[triangles]
     ends = np.sort(np.stack((corners, np.roll(corners, -1, axis=1)), axis=2), axis=2)

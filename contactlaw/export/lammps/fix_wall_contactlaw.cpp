@@ -6,7 +6,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "group.h"
 #include "memory.h"
 #include "modify.h"
 #include "region.h"
@@ -42,11 +41,10 @@ struct Head {
 const int HEAD = sizeof(Head) / sizeof(double);
 const int CONTACT = sizeof(contactlaw_contact_row) / sizeof(double);
 const int FRICTION = sizeof(contactlaw_friction_row) / sizeof(double);
-const int MOST_CONTACTS = 8, EVERY = 100, NUMBERS = 7;
-const double SAME = 1e-6, SOLID = 1e-6, MARGIN = 1.1, MERGED = 0.8647e-6, FARTHEST = 1e6;
-const double SMOOTH = 0.93969262078590838; /* the cosine of 20 degrees */
-const int REGION = 0, TRIANGLE = 3, RECTANGLE = 4;
-const int TOO_FAST = 4, CHANGED = 5, CLASH = 6; /* errors of the fix, beside those of the kernels */
+const int NUMBERS = sizeof(contactlaw_load) / sizeof(double);
+const int EVERY = 100;    /* steps between looks at all beads */
+const double SAME = 1e-6; /* largest relative change of a radius or a mass that counts as rounding */
+const int TOO_FAST = -1, CHANGED = -2, CLASH = -3; /* errors of the fix; the kernels' are above 0 */
 
 Vector operator-(Vector a, Vector b) { return { a[0] - b[0], a[1] - b[1], a[2] - b[2] }; }
 Vector operator+(Vector a, Vector b) { return { a[0] + b[0], a[1] + b[1], a[2] + b[2] }; }
@@ -106,7 +104,7 @@ struct Grid {
 std::vector<Vector> corners_of(const contactlaw_facet &one)
 {
     const Vector a = vector_of(one.a), b = vector_of(one.b), here = vector_of(one.corner);
-    if (one.kind == TRIANGLE)
+    if (one.kind == contactlaw_TRIANGLE)
         return { here, here + a, here + b };
     const Vector side = one.length_a * a, other = one.length_b * b;
     return { here, here + side, here + side + other, here + other };
@@ -200,7 +198,7 @@ struct FixWallContactlaw::Scene {
     std::vector<contactlaw_load> loads;
     std::vector<double> pressed, shown, before;
     contactlaw_overlap found[CONTACTLAW_ROOM];
-    contactlaw_impact_row impacts[4 * MOST_CONTACTS];
+    contactlaw_impact_row impacts[4 * CONTACTLAW_MOST_CONTACTS];
     contactlaw_status status = {};
     double base = 0.0, tick = 0.0, last = 0.0, since = 0.0, energy = 0.0, largest = 0.0;
     long long ticks = 0, written = 0;
@@ -212,7 +210,7 @@ struct FixWallContactlaw::Scene {
         const int types = int(beads.size());
         return { { rows.data(), types, int(walls.size()) }, { frames.data(), int(frames.size()) },
                  { facets.data(), int(facets.size()) }, { found, CONTACTLAW_ROOM },
-                 { impacts, 4 * MOST_CONTACTS }, { &status, 1 }, { loads.data(), int(loads.size()) },
+                 { impacts, 4 * CONTACTLAW_MOST_CONTACTS }, { &status, 1 }, { loads.data(), int(loads.size()) },
                  pressed.data(), friction, softening, parcel };
     }
 
@@ -228,7 +226,7 @@ void FixWallContactlaw::Scene::add_facets(int number)
     const size_t first = facets.size(), step = wall.mesh ? 3 : 4;
     for (int n = 0; wall.region && n < wall.region->cmax; ++n) {
         contactlaw_facet one = {};
-        one.kind = REGION, one.triangle = n, one.edges = (long long)(size_t) wall.region;
+        one.kind = contactlaw_REGION, one.triangle = n, one.edges = (long long)(size_t) wall.region;
         one.length_a = length;
         one.plate_row = one.wall = number, one.frame = wall.frame;
         facets.push_back(one);
@@ -242,7 +240,7 @@ void FixWallContactlaw::Scene::add_facets(int number)
         const Vector b = wall.corners[n + step - 1] - here, normal = cross(a, b);
         if (!(size(normal) > 0.0) || !seen.insert(corners).second)
             continue;
-        one.kind = wall.mesh ? TRIANGLE : RECTANGLE;
+        one.kind = wall.mesh ? contactlaw_TRIANGLE : contactlaw_RECTANGLE;
         one.triangle = wall.mesh ? (long long)(n / step) : -1;
         put(one.corner, here), put(one.normal, (1.0 / size(normal)) * normal);
         one.length_a = size(a), one.length_b = size(b), one.between = dot(a, b);
@@ -265,7 +263,7 @@ void FixWallContactlaw::Scene::add_edges(int number, size_t first)
         std::for_each(all.back().begin(), all.back().end(), [&](Vector one) { whole.add(one); });
     }
     const Vector wide = whole.size();
-    const double step = MERGED * std::max({ wide[0], wide[1], wide[2], 1e-300 });
+    const double step = CONTACTLAW_MERGED * std::max({ wide[0], wide[1], wide[2], 1e-300 });
     std::map<std::array<long long, 3>, int> vertices;
     std::map<std::pair<int, int>, std::vector<std::pair<int, int>>> sides; /* facet and corner */
     for (size_t n = 0; n < all.size(); ++n)
@@ -286,7 +284,7 @@ void FixWallContactlaw::Scene::add_edges(int number, size_t first)
     for (const auto &[ends, of] : sides) {
         for (size_t n = 1; n < of.size(); ++n) {
             const auto &one = facets[first + of[n - 1].first], &other = facets[first + of[n].first];
-            if (std::fabs(dot(vector_of(one.normal), vector_of(other.normal))) > SMOOTH)
+            if (std::fabs(dot(vector_of(one.normal), vector_of(other.normal))) > contactlaw_SMOOTH)
                 smooth.join(of[n - 1].first, of[n].first);
         }
         if (of.size() == 1)
@@ -359,7 +357,7 @@ void FixWallContactlaw::Scene::fill_grid(int number)
         if (facets[n].frame != number)
             continue;
         Box box = { { -1e30, -1e30, -1e30 }, { 1e30, 1e30, 1e30 } };
-        if (facets[n].kind != REGION) {
+        if (facets[n].kind != contactlaw_REGION) {
             box = Box();
             for (const Vector &one : corners_of(facets[n]))
                 box.add(one);
@@ -367,9 +365,9 @@ void FixWallContactlaw::Scene::fill_grid(int number)
         whole.add(box.low), whole.add(box.high);
         own.push_back(int(n)), boxes.push_back(box), extents.push_back(size(box.size()));
     }
-    const bool region = facets[own[0]].kind == REGION;
+    const bool region = facets[own[0]].kind == contactlaw_REGION;
     std::nth_element(extents.begin(), extents.begin() + extents.size() / 2, extents.end());
-    frame.reach = MARGIN * (largest > 0.0 ? largest : 0.5 * extents[extents.size() / 2]);
+    frame.reach = CONTACTLAW_MARGIN * (largest > 0.0 ? largest : 0.5 * extents[extents.size() / 2]);
     put(frame.low, whole.low), put(frame.high, whole.high);
     const Vector more = { frame.reach, frame.reach, frame.reach }, origin = whole.low - more;
     const Vector wide = whole.high + more - origin;
@@ -604,8 +602,8 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         Wall &wall = s.walls[n];
         for (Vector &one : wall.corners) {
             one = wall.mesh ? wall.scale * one : one;
-            if (!(size(one) <= FARTHEST))
-                error->all(FLERR, "Fix wall/contactlaw: wall {} reaches beyond {:g} m", n + 1, FARTHEST);
+            if (!(size(one) <= CONTACTLAW_FARTHEST))
+                error->all(FLERR, "Fix wall/contactlaw: wall {} reaches beyond {:g} m", n + 1, CONTACTLAW_FARTHEST);
         }
         for (int type = 0; type < types; ++type) {
             contactlaw_plate_row &row = s.rows[type * count + n];
@@ -633,12 +631,12 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
                            all - kept, all);
     }
     for (contactlaw_facet &one : s.facets)
-        if (one.kind != REGION)
+        if (one.kind != contactlaw_REGION)
             one.edges = (long long)(size_t) (s.edges.data() + one.edges);
     s.grids.resize(s.frames.size());
     s.loads.resize(s.walls.size()), s.pressed.resize(s.facets.size());
     s.shown.assign(NUMBERS * s.walls.size(), 0.0), s.before = s.shown;
-    s.places = std::min(int(s.facets.size()), MOST_CONTACTS);
+    s.places = std::min(int(s.facets.size()), CONTACTLAW_MOST_CONTACTS);
     s.base = (update->atime + double(update->ntimestep - update->atimestep) * update->dt) * s.time;
     s.since = s.base, s.tick = update->dt * s.time;
     columns_ = HEAD + s.places * CONTACT + (s.friction > 0.0 ? s.places * FRICTION : 0);
@@ -733,8 +731,8 @@ void FixWallContactlaw::look()
             refuse(TOO_FAST, atom->tag[i], -1, speed, r);
         const double mass = atom->rmass[i] * s.mass;
         const double solid = s.rows[(atom->type[i] - 1) * s.walls.size()].mass * r * r * r;
-        if (std::fabs(mass - solid) > SOLID * solid)
-            refuse(CONTACTLAW_WRONG_MASS, atom->tag[i], -1, mass, solid);
+        if (std::fabs(mass - solid) > contactlaw_SOLID * solid)
+            refuse(contactlaw_WRONG_MASS, atom->tag[i], -1, mass, solid);
     }
 }
 
@@ -782,7 +780,7 @@ void FixWallContactlaw::step(bool advancing)
                 set_arrays(i);
             continue;
         }
-        const double r = atom->radius[i] * s.length, reach = MARGIN * r;
+        const double r = atom->radius[i] * s.length, reach = CONTACTLAW_MARGIN * r;
         const contactlaw_vector at = { x[i][0] * s.length, x[i][1] * s.length, x[i][2] * s.length };
         if (!(around.f2 - reach <= at.f2 && at.f2 <= around.f5 + reach && around.f0 - reach <= at.f0
               && at.f0 <= around.f3 + reach && around.f1 - reach <= at.f1 && at.f1 <= around.f4 + reach
@@ -804,8 +802,8 @@ void FixWallContactlaw::step(bool advancing)
             if (row.facet == 0.0 || row.overlap < 0.5 * r)
                 continue;
             const contactlaw_facet &facet = s.facets[size_t(std::fabs(row.facet)) - 1];
-            if (facet.kind == REGION && !region_of(facet)->match(x[i][0], x[i][1], x[i][2]))
-                refuse(CONTACTLAW_CROSSED, atom->tag[i], int(facet.wall), size(vector_of(v[i])) * speed, 0.0);
+            if (facet.kind == contactlaw_REGION && !region_of(facet)->match(x[i][0], x[i][1], x[i][2]))
+                refuse(contactlaw_CROSSED, atom->tag[i], int(facet.wall), size(vector_of(v[i])) * speed, 0.0);
         }
         double sums[2][3] = { { 0.0 }, { 0.0 } };
         double *const rows = history_[i] + HEAD;
@@ -819,7 +817,7 @@ void FixWallContactlaw::step(bool advancing)
         if (s.status.trouble != 0)
             refuse(int(s.status.trouble), atom->tag[i], int(s.status.wall), s.status.value, s.status.limit);
         for (int n = 0; n < s.status.impacts; ++n)
-            if (s.impacts[n].kind == CONTACTLAW_IMPACT)
+            if (s.impacts[n].kind == contactlaw_IMPACT)
                 vector_atom[i] = head.restitution = s.impacts[n].restitution;
         if (s.record && s.status.impacts > 0)
             s.written += (long long) std::fwrite(s.impacts, sizeof *s.impacts, size_t(s.status.impacts), s.record);
@@ -849,24 +847,24 @@ void FixWallContactlaw::step(bool advancing)
 void FixWallContactlaw::refuse(int code, tagint tag, int wall, double value, double limit)
 {
     static const std::map<int, const char *> messages = {
-        { CONTACTLAW_STEP_TOO_LARGE,
+        { contactlaw_STEP_TOO_LARGE,
           "timestep: too large for an impact at {0:.4g} m/s, which needs {3} steps; take {1:.2g} s or less" },
-        { CONTACTLAW_NO_MODEL, "beads: there are no materials for atom type {0:.0f}" },
-        { CONTACTLAW_STARTS_INSIDE,
+        { contactlaw_NO_MODEL, "beads: there are no materials for atom type {0:.0f}" },
+        { contactlaw_STARTS_INSIDE,
           "the first touch finds it {0:.4g} m deep in the wall, more than its speed explains; place it outside, or "
           "at most {1:.2g} m deep" },
-        { CONTACTLAW_CROSSED,
+        { contactlaw_CROSSED,
           "its centre went through the wall at {0:.4g} m/s: take a shorter timestep, less softening or less load" },
-        { CONTACTLAW_WRONG_MASS,
+        { contactlaw_WRONG_MASS,
           "density: its mass is {0:.6g} kg, a solid sphere of its material has {1:.6g} kg; set its density to that "
           "of the material, which README.txt has" },
-        { CONTACTLAW_TOO_THIN,
+        { contactlaw_TOO_THIN,
           "thickness: the wall is too thin for the bead: its inelasticity lambda = {0:.4g} is above {1:.4g}; take a "
           "thicker wall or smaller beads" },
-        { CONTACTLAW_FOIL,
+        { contactlaw_FOIL,
           "thickness: the wall is a foil beside the bead, R/H = {0:.4g} is above {1:.4g}; take a thicker wall" },
-        { CONTACTLAW_NO_FORCE, "no finite force at {0:.4g} m/s and a radius of {1:.4g} m" },
-        { CONTACTLAW_TOO_WIDE, "radius: inside a round wall of {1:.8g} m, which a bead of {0:.8g} m does not fit into" },
+        { contactlaw_NO_FORCE, "no finite force at {0:.4g} m/s and a radius of {1:.4g} m" },
+        { contactlaw_TOO_WIDE, "radius: inside a round wall of {1:.8g} m, which a bead of {0:.8g} m does not fit into" },
         { TOO_FAST,
           "timestep: at {0:.4g} m/s it flies further than its radius of {1:.4g} m in a step, and could jump through "
           "a wall; take {2:.2g} s at most" },
@@ -878,7 +876,7 @@ void FixWallContactlaw::refuse(int code, tagint tag, int wall, double value, dou
     };
     count_rows();
     const std::string what = fmt::format(fmt::runtime(messages.at(code)), value, limit, value > 0.0 ? limit / value : 0.0,
-                                         CONTACTLAW_FEWEST_STEPS);
+                                         contactlaw_FEWEST_STEPS);
     error->one(FLERR, "Fix wall/contactlaw: bead {}{} at step {}: {}", tag,
                wall >= 0 ? fmt::format(" on wall {}", wall + 1) : "", update->ntimestep, what);
 }
@@ -886,7 +884,7 @@ void FixWallContactlaw::refuse(int code, tagint tag, int wall, double value, dou
 void FixWallContactlaw::post_run()
 {
     Scene &s = *scene_;
-    if (s.status.overlap > 0.02)
+    if (s.status.overlap > CONTACTLAW_DEEPEST_OVERLAP)
         error->warning(FLERR, "Fix wall/contactlaw: an impact at {:.3g} m/s had an overlap of {:.2g} of the radius; take "
                        "less softening", s.status.speed, s.status.overlap);
     s.status.overlap = 0.0;
