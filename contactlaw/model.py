@@ -33,7 +33,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.plates import SHEETS, Thickness
+from contactlaw.physical.plates import SHEETS, Thickness, sheet_of
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
@@ -443,6 +443,5 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> rows.speed.round(2), rows.restitution.round(3)
         (array([ 0.1 ,  0.15,  1.24, 10.  ]), array([0.952, 0.948, 0.922, 0.871]))
         """
-        flat: Any = getattr(thickness, "thickness", thickness)
-        scalars(radius=radius, thickness=flat)
+        scalars(radius=radius, thickness=sheet_of(thickness))
         return speed_table(lambda v: self.lookup(v, radius, thickness), error, (slowest, fastest))

@@ -15,7 +15,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.cli.parts import chosen, columns, options, own, wording
 from contactlaw.cli.parts.plots import save
-from contactlaw.fitting.bounces import Bounces, bounces, of_times
+from contactlaw.fitting.bounces import Bounces, bounces, from_scipy, of_times
 from contactlaw.quantities import TIME
 
 _LARGEST = 1e8  # [bytes] of a recording, our choice; two minutes of two channels have 2e7
@@ -66,10 +66,7 @@ def _heard(arguments: argparse.Namespace) -> tuple[Bounces, float, Array]:
             return of_times(table[:, 0] / place.per_unit, arguments.drop, **known), 1.0, np.empty(0)
         if path.suffix.lower() != ".wav":
             raise ValueError(f"takes .wav, or .csv of times: ffmpeg -i {path.name} {path.stem}.wav")
-        try:
-            from scipy.io import wavfile
-        except ImportError as error:
-            raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from error
+        wavfile = from_scipy("io.wavfile")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # of chunks about the telephone
             rate, samples = wavfile.read(io.BytesIO(content_of(path, _LARGEST)))

@@ -112,7 +112,7 @@ def _moved(model: ImpactModel) -> ImpactModel:
         strength = "yield_strength" if body.yield_strength is not None else "hardness"
         names = [strength] * (body.strength is not None) + ["loss_factor"] * (body.loss_factor is not None)
         bodies.append(dataclasses.replace(body, uncertainty=dict.fromkeys(names, _PRECISION)))
-    return ImpactModel(Pair(*bodies), model.force_law if not model.force_law.from_pair else model.force_law.family)
+    return ImpactModel(Pair(*bodies), model.force_law)
 
 
 def _run(arguments: argparse.Namespace) -> None:

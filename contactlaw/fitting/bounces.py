@@ -1,5 +1,6 @@
 """Speeds and CORs of beads that bounce, from the sound of their impacts or from noted times."""
 
+import importlib
 import math
 import warnings
 from collections.abc import Iterator, Sequence
@@ -184,6 +185,14 @@ def _measured(
     return at[sure], speed[sure], cor[sure], errors[sure]
 
 
+def from_scipy(part: str) -> Any:
+    """Import a part of scipy, which only the extra ``fit`` installs."""
+    try:
+        return importlib.import_module(f"scipy.{part}")
+    except ImportError as error:
+        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from error
+
+
 def _checked(samples: ArrayLike, rate: float) -> Array:
     """One channel of a recording, between -1 and 1."""
     given = np.asarray(samples)
@@ -209,10 +218,7 @@ def _checked(samples: ArrayLike, rate: float) -> Array:
 
 def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
     """Instants of impacts [s], their errors [s], and how loud they are beside the noise."""
-    try:
-        from scipy import linalg, ndimage, signal
-    except ImportError as error:
-        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from error
+    linalg, ndimage, signal = map(from_scipy, ("linalg", "ndimage", "signal"))
     step = round(_FRAME * rate)
     f, _, power = signal.spectrogram(x, rate, "hann", 4 * step, 3 * step, detrend=False, scaling="spectrum")
     power = power[(f > _BAND[0]) & (f < _BAND[1])]

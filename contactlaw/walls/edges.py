@@ -110,6 +110,12 @@ def smooth_parts(vertices: Floats, triangles: Integers, normals: Floats) -> Inte
     return _joined(len(triangles), pairs[smooth])
 
 
+def members(part: Integers) -> list[Integers]:
+    """Places of the things that have the same number, for each number."""
+    order = np.argsort(part, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(part[order])) + 1)
+
+
 def _joined(count: int, pairs: Integers) -> Integers:
     """Give things that pairs join, directly or through others, the same number."""
     (one, other), part = pairs.T, np.arange(count)
@@ -141,9 +147,7 @@ def fill_edges(facets: Rows, corners: Floats, edges: Rows, part: Integers) -> Ro
 def _lists(corners: Floats, edges: Rows, part: Integers) -> Iterator[tuple[Integers, Integers, float]]:
     """Divide facets into groups; find edges nearest to a point of each, and the least distance."""
     mine, low, high = part[edges["facet"]], corners.min(axis=1), corners.max(axis=1)
-    order = np.argsort(part, kind="stable")
-    groups = np.split(order, np.flatnonzero(np.diff(part[order])) + 1)
-    todo = [(some, np.flatnonzero(mine == part[some[0]])) for some in groups if len(edges)]
+    todo = [(some, np.flatnonzero(mine == part[some[0]])) for some in members(part) if len(edges)]
     while todo:
         some, near = todo.pop()
         first, last = low[some].min(axis=0), high[some].max(axis=0)

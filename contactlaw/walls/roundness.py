@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from contactlaw._arrays import Array, Integers
-from contactlaw.walls.edges import smooth_parts
+from contactlaw.walls.edges import members, smooth_parts
 
 _FEWEST = 18  # triangles of a part; fewer around an axis meet at more than 20 degrees
 _OFF = 1e-3  # [radius] of a vertex; files in single precision, far from the origin, are within it
@@ -19,9 +19,8 @@ def round_parts(vertices: Array, triangles: Integers) -> list[str]:
     corners = vertices[triangles]
     areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(areas, axis=1)
-    part = smooth_parts(vertices, triangles, areas / area[:, None])
-    order, found = np.argsort(part, kind="stable"), []
-    for some in np.split(order, np.flatnonzero(np.diff(part[order])) + 1):
+    found = []
+    for some in members(smooth_parts(vertices, triangles, areas / area[:, None])):
         if len(some) < _FEWEST:
             continue
         whole, points = area[some].sum(), corners[some].reshape(-1, 3)

@@ -87,11 +87,12 @@ def _run(arguments: argparse.Namespace) -> None:
             print(*bands.explained(known.restitution, model.pair), sep="\n")
     else:
         first = ""
-        if errors is not None:
-            why, stated = bands.assumed(model.pair)
-            plate_given = chosen.wall(arguments, stated.given[1], thickness)
-            guess = ImpactModel(stated, law=arguments.law)
-            ask = guess.uncertainty(speed, radius, plate_given, **errors, mass=mass)
+        if known is not None and errors is not None:
+            (why, stated), ask = bands.assumed(model.pair), known
+            if why:
+                plate_given = chosen.wall(arguments, stated.given[1], thickness)
+                guess = ImpactModel(stated, law=arguments.law)
+                ask = guess.uncertainty(speed, radius, plate_given, **errors, mass=mass)
             first = bands.measure_first(ask.restitution, why)
         _print_one(found, known, model.pair, first)
 
