@@ -20,12 +20,12 @@ MODEL_ERRORS = {
     "stronge": ((0.0410, 0.0962, 0.152), (0.320, 0.135, 0.185)),
     "thornton": ((0.261, 0.140, 0.263), (0.440, 0.637, 0.466)),
 }
-# The same of law fem for 40 impacts of metals with hardening and rate: the target "metals" of
-# `validation.accuracy.acceptance`.
-HARDENING_ERRORS = 0.0105, 0.0095, 0.0243
+# The same of law fem for 72 impacts with hardening and rate, without a flag: the targets "metals"
+# and "bodies" of `validation.accuracy.acceptance`.
+HARDENING_ERRORS = 0.0099, 0.0096, 0.0206
 # The same for 24 impacts of polymers, the target "polymers". The force is over tan delta: it is too
 # high, in proportion to that.
-LOSS_ERRORS = 0.0079, 0.0265, 0.45
+LOSS_ERRORS = 0.0068, 0.0258, 0.45
 _LEAST_COR = 0.3
 _THIN = 1.4  # R/H from which on relative errors are larger, even where absolute ones of COR are not
 

@@ -18,6 +18,7 @@ from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.rate import rates
 from contactlaw.physical.strengths import USUAL
 
 # Step of central differences of ln e. They err by 2e-9 times the third derivative, which is up to
@@ -84,7 +85,7 @@ def sensitivity(tabulated: TableLookup, impacts: Impacts) -> Sensitivity:
                 else:
                     numbers[one] = factor * getattr(getattr(pair, one[0]), one[1], 1.0)
             other = with_numbers(materials, numbers)
-            made = solver(other, law, sizes["speed"] / sizes["radius"], _RTOL, USUAL)
+            made = solver(other, law, rates(sizes["speed"], sizes["radius"]), _RTOL, USUAL)
             given = Impacts(**sizes, shape=impacts.speed.shape)
             if impacts.mass is not None:
                 share = bodies.impact(impacts).mass

@@ -39,7 +39,7 @@ def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> Non
     if beyond.any():
         n = int(np.argmax(beyond))
         rate = impacts.speed[n] / impacts.radius[n]
-        reason = "the strength of a pair with a rate of strain is known up to 1e9 per second"
+        reason = "the strength of a pair with a rate of strain is known up to (V0/R)(V_Y/V0)^0.3 = 1e9 per second"
         raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
 
 

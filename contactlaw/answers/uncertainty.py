@@ -32,6 +32,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import rates
 from contactlaw.physical.rebound import Rebound
 
 _FIELDS = "restitution", "contact_time", "peak_force", "overload"
@@ -118,7 +119,7 @@ class Variants:
         self.solver = functools.cache(self._solver)
 
     def _solver(self, moved: tuple[tuple[Change, float], ...], *decades: float) -> Solver:
-        """Solver for two decades of V0/R or more, so that other impacts often find it."""
+        """Solver for two decades of rates or more, so that other impacts often find it."""
         bodies = self.given.copy()
         for change, z in moved:
             for role in change.roles:
@@ -131,8 +132,8 @@ class Variants:
         for change, z in moved:
             if not change.roles:
                 sizes[change.name] = sizes[change.name] * math.exp(z * change.error)
-        rates = 0.5 * np.log10(sizes["speed"] / sizes["radius"])
-        ends = 2.0 * math.floor(rates.min(initial=4.0)), 2.0 * math.ceil(rates.max(initial=0.0))
+        decades = 0.5 * np.log10(rates(sizes["speed"], sizes["radius"]))
+        ends = 2.0 * math.floor(decades.min(initial=4.0)), 2.0 * math.ceil(decades.max(initial=0.0))
         found = self.solver(tuple(one for one in moved if one[0].roles), *ends)
         shape = (impacts.speed.size,)
         return found.rebounds(dataclasses.replace(impacts, **sizes, shape=shape))

@@ -13,7 +13,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import REACH, flow_with_rate, scaled
+from contactlaw.physical.rate import REACH, flow_with_rate, per_rate, scaled
 from contactlaw.physical.strengths import Fineness, by_strength, without_curves
 from contactlaw.physical.validity import alone
 
@@ -21,7 +21,7 @@ Number = tuple[str, str]  # body, "sphere" or "plate", and field of its Material
 
 # The COR of a pair with a rate of strain is within 1e-6 of that with laws of any strength.
 FINE = Fineness(5, 1e-8, 3.0, 0.15, REACH, 1e-4)
-_MARGIN = 1.001  # of V0/R beyond that of the impacts
+_MARGIN = 1.001  # of the rate beyond that of the impacts
 
 
 def with_number(body: Material, name: str, value: float) -> Material:
@@ -64,11 +64,13 @@ class _Varied(SphereOnPlate):
 
 
 def solver(pair: Pair, law: Law, rates: Array, rtol: float, fineness: Fineness = FINE) -> Solver:
-    """Solver of a pair, with its own numbers in the law, for impacts at rates V0/R [1/s].
+    """Solver of a pair, with its own numbers in the law, for impacts at `contactlaw.physical.rate.rates`.
 
     Answers are right but for the flags of pairs with a rate of strain.
     """
-    low, high = rates.min(initial=REACH).item() / _MARGIN, rates.max(initial=0.0).item() * _MARGIN
-    own = without_curves if flow_with_rate(pair, law) else law_for_pair
+    if not flow_with_rate(pair, law):
+        return Solver(_Varied(pair, law_for_pair(pair, law), fineness), rtol)
+    scale = per_rate(pair)
+    low, high = scale * rates.min(initial=REACH).item() / _MARGIN, scale * rates.max(initial=0.0).item() * _MARGIN
     fineness = fineness._replace(slowest=low, fastest=high)
-    return Solver(_Varied(pair, own(pair, law), fineness), rtol)
+    return Solver(_Varied(pair, without_curves(pair, law), fineness), rtol)

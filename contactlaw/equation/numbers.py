@@ -50,8 +50,11 @@ class RateOfStrain(NamedTuple):
     """How a pair's strength k grows with the rate of an impact: k = 1 + slope ln(rate/rate0)."""
 
     slope: float
-    per_speed: float  # rate/rate0 at one d_Y per second
+    per_speed: float  # rate/rate0 at 1 m/s, times d_Y [m]
 
+
+RATE_POWER = 0.7
+"""Power of the speed with which the representative rate grows, see `contactlaw.physical.rate`."""
 
 NO_RATE = RateOfStrain(0.0, 0.0)
 """Bodies whose strength is the same at any rate."""
@@ -153,7 +156,7 @@ def relaxed(plate: PlateConstants, root: float, log_time: float) -> tuple[PlateC
 @kernel(inline=True)
 def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> float:
     """Logarithm of a pair's strength in an impact, over that of a slow test."""
-    relative = rate.per_speed * speed / yield_compression
+    relative = rate.per_speed * speed**RATE_POWER / yield_compression
     return math.log(1.0 + rate.slope * math.log(relative)) if relative > 1.0 else 0.0
 
 

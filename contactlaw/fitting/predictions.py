@@ -28,7 +28,7 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import REACH
+from contactlaw.physical.rate import REACH, rates
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.strengths import Fineness
 
@@ -106,7 +106,7 @@ class Predictor:
         return self._trial(self.setting(values), np.array(self.data.speed))
 
     def _trial(self, at: Setting, speed: Array) -> Rebound:
-        found = solver(at.pair, self.law, speed / at.radius, _RTOL, self.fineness)
+        found = solver(at.pair, self.law, rates(speed, at.radius), _RTOL, self.fineness)
         return _integrated(found, at, speed)
 
     def predicted(self, values: Array) -> Array:

@@ -70,6 +70,7 @@ _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest con
 _USUAL = 0.3  # Poisson's ratio of the yield compression from which strains are counted
 _LATEST = 0.995  # greatest share of the sqrt(d/R) of yield, before any strain, where strain begins
 _TYPICAL = 0.1  # sqrt(d/R) at which bodies that harden are compared with each other
+_RATIO, _EXPONENT = 300.0, 0.4  # E*/sigma there, and n, of usual ones
 _WIDEST = 1.0  # sqrt(d/R) below which every body that yields has yielded
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
 _EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
@@ -157,11 +158,11 @@ class Given(NamedTuple):
         """Exponent a = 2 delta/pi with which the modulus grows with frequency."""
         return 2.0 / math.pi * math.atan(self.loss_factor)
 
-    def ratios(self, strain: Any) -> tuple[Any, Any]:
-        """E*/sigma of sphere and plate at a representative strain, or at an array of them."""
+    def ratios(self, sphere_strain: Any, plate_strain: Any) -> tuple[Any, Any]:
+        """E*/sigma of sphere and plate at their representative strains, or at arrays of them."""
         return (
-            self.sphere_ratio / (1.0 + self.sphere_hardening * strain**self.sphere_exponent),
-            self.plate_ratio / (1.0 + self.plate_hardening * strain**self.plate_exponent),
+            self.sphere_ratio / (1.0 + self.sphere_hardening * sphere_strain**self.sphere_exponent),
+            self.plate_ratio / (1.0 + self.plate_hardening * plate_strain**self.plate_exponent),
         )
 
     @property
@@ -379,14 +380,16 @@ class Curves:
 
 
 class Strains(NamedTuple):
-    """Representative strain of the flow stress: slope (w - start), with w = sqrt(d/R)."""
+    """Representative strains of the flow stresses: slope (w - start), with w = sqrt(d/R)."""
 
-    slope: float
+    sphere: float  # slope
+    plate: float
     start: float
 
     def ratios(self, given: Given, w: Any) -> tuple[Any, Any]:
         """E*/sigma of sphere and plate at a depth, or at an array of them."""
-        return given.ratios(self.slope * max(w - self.start, 0.0))
+        beyond = max(w - self.start, 0.0)
+        return given.ratios(self.sphere * beyond, self.plate * beyond)
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
@@ -395,11 +398,19 @@ class Strains(NamedTuple):
 
 
 def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
-    """Strains of bodies that flow alone, and of these, which may share the flow and flow less."""
-    slope, late, both = found["strain"]
-    alone = Strains(slope, late * math.sqrt(yield_scale(given.ratio, _USUAL)))
-    share = alone.typical(given).share_both(float(found["blend"]))
-    return alone, alone._replace(slope=slope * (1.0 - both * share))
+    """Strains of usual bodies, by which these are compared, and of these.
+
+    Bodies flow less where they share the flow, and more where E*/sigma is large and the flow has
+    spread. The larger n is, the more the largest strains count.
+    """
+    slope, late, both, by_exponent, by_ratio = found["strain"]
+    usual = Strains(slope, slope, late * math.sqrt(yield_scale(given.ratio, _USUAL)))
+    typical = usual.typical(given)
+    slope *= (1.0 - both * typical.share_both(float(found["blend"]))) * (typical.ratio / _RATIO) ** by_ratio
+    sphere, plate = (
+        slope * math.exp(by_exponent * (n - _EXPONENT)) for n in (given.sphere_exponent, given.plate_exponent)
+    )
+    return usual, usual._replace(sphere=sphere, plate=plate)
 
 
 def flow_of_losses(given: Given, found: dict[str, Any] | None = None) -> float:
@@ -450,8 +461,8 @@ class HardeningCurves(Curves):
         self._hardening = []
         hardening = (given.sphere_hardening, given.plate_hardening)
         exponents = (given.sphere_exponent, given.plate_exponent)
-        for share, times, n in zip(flow, hardening, exponents, strict=True):
-            part = times * (taken.slope * (first - taken.start)) ** n
+        for share, times, n, slope in zip(flow, hardening, exponents, taken[:2], strict=True):
+            part = times * (slope * (first - taken.start)) ** n
             self._hardening.append((share, part / (1.0 + part), n))
 
     def _log_own(self, q: Array) -> Array:

@@ -1,7 +1,8 @@
 """How much stronger a pair is at the rate of an impact than in a slow test: one factor per impact.
 
-A flowing contact's strength is that at a representative rate, a share of V0/R: at the deepest
-point, which decides about the rebound, the flow has nearly come to rest. Both the yield strength
+A flowing contact's strength is that at a representative rate, a share of (V0/R)(V_Y/V0)^0.3, with
+V_Y the speed from which a slow pair yields on a half-space: at the deepest point, which decides
+about the rebound, the flow has nearly come to rest, the more so the farther it has spread. Both the yield strength
 and the hardening of a body grow by its factor 1 + C ln(rate/rate0). Where both bodies have one, the
 pair's factor is that of the larger C and the lower rate0, so that it stands for one rate wherever
 one of the bodies grows stronger, and each has its own factor at that rate.
@@ -13,15 +14,17 @@ import math
 import numpy as np
 
 from contactlaw._arrays import Array
+from contactlaw.equation.numbers import RATE_POWER
 from contactlaw.laws import Law
 from contactlaw.laws.fem import fitted
 from contactlaw.physical.flow import Flow
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
-SHARE: float = fitted()["rate"]  # representative rate over V0/R
-# V0/R [1/s] up to which tables reach, 100 m/s at 10 micrometres, and up to which laws do.
-FASTEST, REACH = 1e7, 1e9
+SHARE: float = fitted()["rate"]  # representative rate over (V0/R)(V_Y/V0)^0.3
+# Values of (V0/R)(V_Y/V0)^0.3 [1/s] up to which tables reach, 100 m/s at 10 micrometres of a pair
+# that yields from 0.14 m/s on, and up to which laws do.
+FASTEST, REACH = 1.4e6, 1e9
 
 
 def flow_with_rate(pair: Pair, law: Law) -> Flow | None:
@@ -29,14 +32,27 @@ def flow_with_rate(pair: Pair, law: Law) -> Flow | None:
     return leading(pair) if "sphere_ratio" in law.from_pair else None
 
 
-def factors(flow: Flow, speed: Array, radius: Array) -> Array:
-    """Strength at the rates of impacts over that of a slow test [-]."""
-    found: Array = 1.0 + flow.rate * np.log(np.maximum(SHARE / flow.rate0 * speed / radius, 1.0))
-    return found
+def rates(speed: Array, radius: Array) -> Array:
+    """Rates (V0/R) V0^-0.3 of impacts, which times V_Y^0.3 of a pair are in 1/s."""
+    return np.asarray(speed**RATE_POWER / radius)
+
+
+def per_rate(pair: Pair) -> float:
+    """V_Y^0.3 of a pair, which takes `rates` to 1/s."""
+    return float(pair.yield_speed ** (1.0 - RATE_POWER))
+
+
+def factors(pair: Pair, speed: Array, radius: Array) -> Array:
+    """Strength of a pair at the rates of impacts over that of a slow test [-]."""
+    flow = leading(pair)
+    if flow is None:
+        return np.ones_like(speed)
+    relative = SHARE / flow.rate0 * per_rate(pair) * rates(speed, radius)
+    return np.asarray(1.0 + flow.rate * np.log(np.maximum(relative, 1.0)))
 
 
 def largest_factor(flow: Flow, fastest: float = FASTEST) -> float:
-    """Largest factor of a pair for V0/R up to a value [1/s], by default that of tables."""
+    """Largest factor of a pair at rates up to a value [1/s], by default that of tables."""
     return flow.factor(SHARE * fastest)
 
 

@@ -25,7 +25,7 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Wall
-from contactlaw.physical.rate import SHARE, flow_with_rate
+from contactlaw.physical.rate import SHARE, flow_with_rate, per_rate
 from contactlaw.physical.responses import response_of
 from contactlaw.table.lookup import R_MIN
 
@@ -140,7 +140,7 @@ def rate_of_strain(pair: Pair, law: Law) -> RateOfStrain:
     flow = flow_with_rate(pair, law)
     if flow is None or law.scale is None:
         return numbers.NO_RATE
-    return RateOfStrain(flow.rate, SHARE / flow.rate0 * law.scale)
+    return RateOfStrain(flow.rate, SHARE / flow.rate0 * per_rate(pair) * law.scale)
 
 
 def modulus_growth(pair: Pair, law: Law) -> ModulusGrowth:

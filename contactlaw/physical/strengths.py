@@ -38,9 +38,9 @@ class Fineness(NamedTuple):
     vanished: float  # terms of a law that count as zero, relatively
     widest: float  # pieces of a law: ratio of their ends
     piece: float  # of ln k, at most
-    fastest: float  # V0/R [1/s] up to which they reach
+    fastest: float  # (V0/R)(V_Y/V0)^0.3 [1/s] up to which they reach
     near: float  # in ln k: nearer to each other, corners count as one
-    slowest: float = 0.0  # V0/R [1/s] from which on they are asked for
+    slowest: float = 0.0  # the same from which on they are asked for
 
 
 # The COR is within 1e-7 of that of a law made for its strength.

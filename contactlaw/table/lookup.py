@@ -56,6 +56,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
     NO_RATE,
+    RATE_POWER,
     ModulusGrowth,
     PairConstants,
     PlateConstants,
@@ -603,7 +604,7 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
     log_speed, root = log_and_root(speed)
     plate, strength = plate_of(table), 0.0
     if table[LAYERS] > 0.0:
-        log_rate = table[LOG_RATE] + log_speed - log_and_root(radius)[0]
+        log_rate = table[LOG_RATE] + RATE_POWER * log_speed - log_and_root(radius)[0]
         strength = log_strength(table[RATE], log_rate)
     at = at_strength(table, strength)
     if table[LAYERS] > 0.0:
@@ -743,7 +744,7 @@ def _coordinates(
     if rated:
         rate, log_rate = table[RATE], table[LOG_RATE]
         for i in range(x.size):
-            later[i] = log_chi[i] - log_and_root(radius[i])[0]
+            later[i] = RATE_POWER * log_chi[i] - log_and_root(radius[i])[0]
         for i in range(x.size):
             strength[i] = log_strength(rate, log_rate + later[i])
         _grow(table, strength, later)

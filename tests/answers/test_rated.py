@@ -46,7 +46,8 @@ def test_two_bodies_with_rates_of_their_own(seed):
     assert np.abs(one.restitution(v, r, 4.0 * r) - exact).max() < 1e-5
     assert np.abs(one.lookup(v, r, 4.0 * r).restitution - exact).max() < 1e-5
     for n in range(3):  # each body is as strong as at the rate of the impact
-        at = [rate.scaled(b, b.flow.factor(rate.SHARE * v[n] / r[n])) for b in bodies]
+        at_rate = rate.SHARE * v[n] / r[n] * (cl.Pair(*bodies).yield_speed / v[n]) ** 0.3
+        at = [rate.scaled(b, b.flow.factor(at_rate)) for b in bodies]
         alone = cl.ImpactModel(cl.Pair(*(dataclasses.replace(b, rate=None) for b in at)))
         assert alone.solve(v[n], r[n], 4.0 * r[n]).restitution == pytest.approx(exact[n], abs=5e-6)
 
@@ -73,8 +74,7 @@ def test_beads(other):
     """The rate goes with the reduced radius."""
     v, r, o = 3.0, R, 3.0 * R
     beads = cl.Pair(kinds.COPPER, other or kinds.COPPER)
-    flow = rate.flow_with_rate(beads, MODEL.force_law)
-    pair = rate.strengthened(beads, float(rate.factors(flow, v, r * o / (r + o))))
+    pair = rate.strengthened(beads, float(rate.factors(beads, v, r * o / (r + o))))
     alone = cl.ImpactModel(pair).lookup_sphere_sphere(v, r, o, pair.plate)
     found = MODEL.lookup_sphere_sphere(v, r, o, other)
     assert found.restitution == pytest.approx(alone.restitution, abs=1e-5)
@@ -95,11 +95,12 @@ def test_histories_are_those_of_the_solver():
 
 
 def test_oblique_impacts():
-    """Within 5e-3 of mu V, as the docs say."""
+    """Within 2e-3 of mu V, and 7e-3 at overloads above 50, as the docs say."""
     v, r, h = (values[:40] for values in kinds.impacts("rate of the sphere"))
     slide = 0.3 * v * np.random.default_rng(2).uniform(0.0, 6.0, v.size)
     ours, exact = (MODEL.oblique(v, slide, r, h, 0.3, method=how) for how in ("table", "solve"))
-    assert (np.abs(ours.sliding_speed - exact.sliding_speed) / (0.3 * v)).max() < 5e-3
+    off = np.abs(ours.sliding_speed - exact.sliding_speed) / (0.3 * v)
+    assert (off < np.where(MODEL.solve(v, r, h).overload > 50.0, 7e-3, 2e-3)).all()
 
 
 def test_sensitivities_move_the_rate():
@@ -175,7 +176,7 @@ def test_other_laws_know_no_rate():
 
 
 def test_a_rate0_that_no_impact_reaches_is_no_rate():
-    slow = dataclasses.replace(kinds.STEEL, rate=(0.05, 5.9e5))
+    slow = dataclasses.replace(kinds.STEEL, rate=(0.05, 6e5))
     one = cl.ImpactModel(cl.Pair(slow, "glass"))
     plain = cl.ImpactModel(cl.Pair(dataclasses.replace(kinds.STEEL, rate=None), "glass"))
     assert one.restitution(3.0, R, 5 * R) == plain.restitution(3.0, R, 5 * R) > 0.5

@@ -11,7 +11,7 @@ from contactlaw.laws import fem, law
 
 IDEAL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6)
 PLATE = cl.Material("plate", 70e9, 0.22, 2500)
-SHARE, LATE, _ = fem.fitted()["strain"]
+SHARE, LATE, BOTH, BY_EXPONENT, BY_RATIO = fem.fitted()["strain"]
 
 
 def model(sphere, plate=PLATE):
@@ -38,11 +38,11 @@ def test_without_any_rise_the_answers_are_those_of_an_ideal_body(speed):
 @pytest.mark.parametrize("role", ["sphere", "plate"])
 @pytest.mark.parametrize("depth", [1e-3, 1e-2, 5e-2])
 def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
-    """Force and residual compression, by the flow stress at c (w - b w_Y).
+    """Force and residual compression, by the flow stress at c (w - b w_Y), for n 0.3 and E*/sigma.
 
-    The strain of the plate, whose Poisson's ratio is 0.22, begins with 0.995 of its own w_Y.
+    That of the plate, whose Poisson's ratio is 0.22, begins with 0.995 of its own w_Y.
     """
-    ratio, times, n = 400.0, 2.0, 0.4
+    ratio, times, n = 400.0, 2.0, 0.3
     numbers = {"modulus_share": 0.4, "poissons_ratio": 0.3, "plate_poissons_ratio": 0.22}
     none = {"sphere_ratio": 0.0, "plate_ratio": 0.0}
     hard = law(
@@ -54,7 +54,10 @@ def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
         "sphere": LATE * math.sqrt(fem.yield_scale(ratio, 0.3)),
         "plate": 0.995 * math.sqrt(fem.yield_scale(ratio, 0.22)),
     }
-    strain = SHARE * (math.sqrt(depth) - begins[role])
+    usual = SHARE * (0.1 - LATE * math.sqrt(fem.yield_scale(ratio, 0.3)))
+    typical = ratio / (1.0 + times * usual**n)
+    slope = SHARE * math.exp(-0.1 * BY_EXPONENT) * (typical / 300.0) ** BY_RATIO
+    strain = slope * (math.sqrt(depth) - begins[role])
     there = {**none, f"{role}_ratio": ratio / (1.0 + times * strain**n)}
     ideal = fem.law(*{**there, **numbers}.values())
     for one in (hard, ideal):

@@ -55,7 +55,7 @@ SOFT = metal(11e9, 0.45, 7310, hardness=9e6, hardening=0.5, rate=(0.02, 1.0))
 POM = cl.Material("POM", 2.9e9, 0.37, 1410, 41e6, kind="polymer", rate=(0.05, 1.0), loss_factor=(0.5, 1e4))
 LATE = metal(70e9, 0.33, 2700, 150e6, rate=(0.2, 1e6))
 STEEL = metal(200e9, 0.3, 7800, 350e6, rate=(0.06, 1.0))
-BRITTLE = cl.Material("glass", 70e9, 0.21, 2500, kind="glass", hardness=4e9)
+BRITTLE = cl.Material("glass", 70e9, 0.21, 2500, kind="glass", hardness=3.9e9)
 # just below E*/sigma_Y = 2000, above which the law is not known
 WEAK = metal(200e9, 0.3, 7800, 27.2e6 * math.exp(-4e-3), rate=(0.05, 1.0))
 STEEP = metal(3e9, 0.4, 1200, 50e6, hardening=(1e9, 0.5), rate=(0.1, 1e-3))
@@ -77,7 +77,7 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
     v, r = (np.exp(rng.uniform(*np.log(ends), 8)) for ends in ((0.05, 60.0), (5e-6, 5e-3)))
     v[0], r[0] = 1e-4, 1e-2
     found = model.solve(v, r, 2.0 * r)
-    factors = rate.factors(rate.flow_with_rate(pair, model.force_law), v, r)
+    factors = rate.factors(pair, v, r)
     for n, factor in enumerate(factors.tolist()):
         exact = cl.ImpactModel(rate.strengthened(pair, factor)).solve(v[n], r[n], 2.0 * r[n])
         assert found.restitution[n] == pytest.approx(exact.restitution, abs=2e-6)
@@ -85,8 +85,8 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
 
 
 def test_a_rate_beyond_the_laws_is_refused():
-    with pytest.raises(RuntimeError, match=r"V0/R = 1e.10 /s \(element 1\)"):
-        cl.ImpactModel(PAIRS[0]).solve([1.0, 100.0], [1e-3, 1e-8], 1e-2)
+    with pytest.raises(RuntimeError, match=r"V0/R = 1e.13 /s \(element 1\)"):
+        cl.ImpactModel(PAIRS[0]).solve([1.0, 1e4], [1e-3, 1e-9], 1e-2)
 
 
 def test_a_pair_without_a_rate_has_its_own_law():

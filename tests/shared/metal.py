@@ -19,5 +19,4 @@ DROPS = [(r, h, v) for r, h in ((1e-3, 5e-3), (0.2e-3, 1e-3)) for v in (0.1, 2.0
 
 def at_strength(speed, radius):
     """Model of the pair without a rate that is as strong as this impact makes it."""
-    flow = rate.flow_with_rate(PAIR, MODEL.force_law)
-    return cl.ImpactModel(rate.strengthened(PAIR, float(rate.factors(flow, speed, radius))))
+    return cl.ImpactModel(rate.strengthened(PAIR, float(rate.factors(PAIR, speed, radius))))

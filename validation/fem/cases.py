@@ -102,7 +102,13 @@ def material(name: str) -> cl.Material:
     name, flowing, numbers = name.partition(", flow ")
     if flowing:
         a, b, n, c, rate0 = map(float, numbers.split())
-        return replace(cl.material(name), yield_strength=a, hardening=(b, n), rate=(c, rate0), hardness=None)
+        return replace(material(name), yield_strength=a, hardening=(b, n), rate=(c, rate0), hardness=None)
+    name, elastic, numbers = name.partition(", elastic ")
+    if elastic:
+        e, nu, rho = map(float, numbers.split())
+        return cl.Material(
+            name=f"{name}{elastic}{numbers}", youngs_modulus=e, poissons_ratio=nu, density=rho, kind="metal"
+        )
     name, weaker, factor = name.partition(", yield strength x ")
     found = cl.material(name)
     if not weaker:

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import laws
 from contactlaw.laws import fem
 from contactlaw.physical import rate as rates
-from contactlaw.physical.law import pair_numbers
 from validation.fem import fit, journal, store
 from validation.fem.cases import Case
 from validation.fem.impact import TYPICAL
@@ -28,6 +26,7 @@ Array = NDArray[np.float64]
 # then, to judge it.
 SEEDS = {"metals": 20261128, "metals_alike": 20261130, "metals_kept_out": 20261129, "metals_kept_out_2": 20261201}
 FITTED = {"metals": 56, "metals_alike": 14}
+FIT = (*FITTED, "bodies")  # the sets of the fit, see `validation.fem.bodies`
 # The catalogue's metal of like modulus and density, and A [Pa], B [Pa], n, C, rate0 [1/s].
 PUBLISHED = {
     "OFHC copper": "copper-c11000, flow 90e6 292e6 0.31 0.025 1",
@@ -58,20 +57,21 @@ def draw(name: str) -> list[Case]:
         while len(listed) < FITTED[name]:
             with_rate, alike = len(listed) % 2 == 1, name == "metals_alike"
             case = _of_fit(generator, with_rate=with_rate, alike=alike)
-            if _fits(case):
+            if fits(case):
                 listed.append(case)
         return listed
     return [_published(generator) for _ in range(40)]
 
 
-def _log_uniform(generator: np.random.Generator, limits: tuple[float, float]) -> float:
+def log_uniform(generator: np.random.Generator, limits: tuple[float, float]) -> float:
+    """Draw a number evenly in its logarithm, and round it to four digits."""
     return float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}")
 
 
 def _sizes(generator: np.random.Generator, speeds: tuple[float, float]) -> tuple[float, float, float]:
     """Speed, thickness and radius, in the order of `Case`."""
-    speed, radius = _log_uniform(generator, speeds), _log_uniform(generator, _RADII)
-    thickness = float(f"{radius / _log_uniform(generator, _SLENDERNESS):.4g}")
+    speed, radius = log_uniform(generator, speeds), log_uniform(generator, _RADII)
+    thickness = float(f"{radius / log_uniform(generator, _SLENDERNESS):.4g}")
     return speed, thickness, radius
 
 
@@ -81,7 +81,7 @@ def _of_fit(generator: np.random.Generator, *, with_rate: bool, alike: bool) -> 
     modulus = cl.Pair(*bodies).effective_modulus
     kinds = ((True, False), (False, True), (True, True))
     yields, plate_yields = kinds[2 if alike else generator.integers(3)]
-    strength = modulus / _log_uniform(generator, _RATIOS)
+    strength = modulus / log_uniform(generator, _RATIOS)
     hardening = generator.uniform(0.0, 4.0)
     exponent = generator.uniform(0.2, 0.7)
     rate = generator.uniform(0.01, 0.08) if with_rate else 0.0
@@ -109,7 +109,7 @@ def ideal(case: Case) -> cl.Pair:
     return cl.Pair(sphere, pair.plate)
 
 
-def _fits(case: Case) -> bool:
+def fits(case: Case) -> bool:
     """Whether a body flows, and no deeper than elements bear, by a half-space of its strength."""
     pair = ideal(case)
     strength = pair.sphere.require_yield_strength("fem")
@@ -133,36 +133,38 @@ def _published(generator: np.random.Generator) -> Case:
 
 
 class Constants(NamedTuple):
-    """Constants that are fitted to the impacts of `FITTED`."""
+    """Constants that are fitted to the impacts of `FIT`."""
 
     strain: float  # representative strain over sqrt(d/R) ...
-    both: float  # ... less by this share where both bodies flow alike
-    rate: float  # representative rate over V0/R
+    both: float  # ... less by this share where both bodies flow alike, ...
+    by_exponent: float  # ... larger with the exponent n, by this slope of the logarithm, ...
+    by_ratio: float  # ... and with this power of E*/sigma
+    rate: float  # representative rate over (V0/R)(V_Y/V0)^0.3
 
 
 def shipped() -> Constants:
     """Constants of the law."""
-    strain, _, both = fem.fitted()["strain"]
-    return Constants(strain, both, fem.fitted()["rate"])
+    strain, _, *others = fem.fitted()["strain"]
+    return Constants(strain, *others, fem.fitted()["rate"])
 
 
 def at_rate(pair: cl.Pair, case: Case, share: float = rates.SHARE) -> cl.Pair:
-    """Pair without rate, as strong as an impact makes it whose rate is this share of V0/R."""
-    flow = rates.flow_with_rate(pair, laws.law("fem", **pair_numbers(pair, "fem")))
-    if flow is None:
+    """Pair without rate, as strong as an impact makes it, with another representative rate."""
+    if rates.leading(pair) is None:
         return pair
-    flow = flow._replace(rate0=flow.rate0 * rates.SHARE / share)
-    factor = rates.factors(flow, np.array(case.speed), np.array(case.radius)).item()
-    return rates.strengthened(pair, factor)
+    size = np.array(case.radius * rates.SHARE / share)  # rates go with share/radius
+    return rates.strengthened(pair, rates.factors(pair, np.array(case.speed), size).item())
 
 
 def errors(name: str, constants: Constants) -> Array:
     """Errors in COR of the law with other constants; below 0.3 over 0.3, 0 where it is flagged."""
     data = store.read(name).data
+    keys = [field.name for field in dataclasses.fields(Case) if field.name in data]
     late = fem.fitted()["strain"][1]
-    found = {**fem.fitted(), "strain": [constants.strain, late, constants.both]}
+    found = {**fem.fitted(), "strain": [constants.strain, late, *constants[1:-1]]}
     off = np.zeros(data["speed"].size)
-    for n, case in enumerate(draw(name)):
+    for n, row in enumerate(zip(*(data[key].tolist() for key in keys), strict=True)):
+        case = Case(**dict(zip(keys, row, strict=True)))
         pair = at_rate(fit.pair_of(dataclasses.asdict(case)), case, constants.rate)
         law = fem.law_of(fit.numbers_of(pair), found)
         hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
@@ -174,11 +176,11 @@ def errors(name: str, constants: Constants) -> Array:
 
 def step(constants: Constants) -> Constants:
     """Step of the fit from some constants, by Gauss and Newton; zeros at the optimum."""
-    here = np.concatenate([errors(name, constants) for name in FITTED])
+    here = np.concatenate([errors(name, constants) for name in FIT])
     slopes = []
     for n, value in enumerate(constants):
         moved = constants._replace(**{Constants._fields[n]: (1.0 + _STEP) * value})
-        there = np.concatenate([errors(name, moved) for name in FITTED])
+        there = np.concatenate([errors(name, moved) for name in FIT])
         slopes.append((there - here) / (_STEP * value))
     return Constants(*np.linalg.lstsq(np.stack(slopes, axis=1), -here, rcond=None)[0].tolist())
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from validation.fem import calculix, campaign, cases, census, hollow, metals, polymers, store
+from validation.fem import bodies, calculix, campaign, cases, census, hollow, metals, polymers, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, Indentation, indent
@@ -373,6 +373,7 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "campaign_impact": campaign.blows,
     **{name: functools.partial(census.compute, name) for name in (*census.SEEDS, census.THIN)},
     **{name: functools.partial(metals.compute, name) for name in metals.SEEDS},
+    **{name: functools.partial(bodies.compute, name) for name in bodies.SETS},
     **{name: functools.partial(polymers.compute, name) for name in polymers.SEEDS},
     hollow.NAME: hollow.compute,
 }

@@ -17,11 +17,12 @@ from validation.fem.__main__ import main as command
 MEASURED = {
     "paper": (112, 14, 0, (0.973, 0.991, 0.991, 0.982), 0.00995),
     "kept out": (80, 0, 0, (1.0, 1.0, 1.0, 1.0), 0.00442),
-    "thin plates": (40, 5, 0, (0.975, 0.975, 0.95, 0.925), 0.0045),
-    # the one impact beyond a bound has a peak force 6.003 % too high, for 6 %
-    "metals": (40, 1, 1, (1.0, 1.0, 0.975, 1.0), 0.01047),
+    "thin plates": (40, 7, 0, (0.975, 0.975, 0.95, 0.925), 0.0045),
+    "metals": (40, 1, 0, (1.0, 1.0, 1.0, 1.0), 0.00904),
+    # the two impacts beyond a bound flow deeply, or on a plate that bends
+    "bodies": (40, 7, 0, (0.95, 0.975, 0.975, 1.0), 0.02697),
     # the one impact beyond a bound has a contact time 11 % too long, for 5 %, at a COR of 0.17
-    "polymers": (24, 1, 1, (1.0, 0.958, 1.0, 1.0), 0.00783),
+    "polymers": (24, 1, 1, (1.0, 0.958, 1.0, 1.0), 0.00684),
 }
 # Where `explain` says how wrong the COR is: law, flag, flags beside it, impacts, ends of its error.
 WRONG = [
@@ -32,7 +33,7 @@ WRONG = [
     ("myc", Validity.SOFT_PLATE, 38, 105, -0.155, 0.476),
     ("myc", Validity.OTHER_LAW, 6, 280, -0.237, 0.146),
     ("fem", Validity.DEEP_CONTACT, 2, 4, -0.067, 0.046),
-    ("fem", Validity.BENT_PLATE, 0, 8, 0.001, 0.031),
+    ("fem", Validity.BENT_PLATE, 0, 12, 0.001, 0.031),
     ("fem", Validity.UNTRIED_STRENGTH, 0, 7, -0.039, -0.002),
     ("myc", Validity.THIN_PLATE, 2, 9, 0.008, 0.028),
 ]
@@ -71,6 +72,7 @@ def test_bounds_are_those_that_were_agreed():
     assert (TARGETS["kept out"].rms, TARGETS["kept out"].least) == (0.008, 0.3)
     assert TARGETS["metals"].bounds == (0.03, 0.04, 0.06, math.inf)
     assert (TARGETS["metals"].rms, TARGETS["metals"].least) == (0.015, 0.3)
+    assert TARGETS["bodies"][2:] == TARGETS["metals"]._replace(rms=math.inf)[2:]
     assert TARGETS["polymers"].bounds == (0.02, 0.05, 0.2, math.inf)
     assert (TARGETS["polymers"].rms, TARGETS["polymers"].least) == (0.01, 0.3)
     assert TARGETS["thin plates"].bounds == (0.01, 0.05, 0.05, 0.03)
