@@ -20,6 +20,7 @@ from contactlaw.physical.pair import Pair
 _NEEDED = "radius", "thickness", "restitution", "restitution_error"
 _LENGTH = 1.0  # correlation length of the law's errors in ln(speed) and ln(R/H), as in a fit
 _THICK = 1e-3  # R/H that stands for that of a half-space
+_LEAST_ERROR = 1e-6  # of a COR; rebounds that are alike to more digits have no covariance to invert
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +102,8 @@ def compare(
     data = Measurements.of(data, (), pair.sphere.density)
     for name in _NEEDED:
         if getattr(data, name) is None:
-            raise ArgumentError(name, None, "has to be given for each rebound, to compare it with the model")
+            hint = "; of heights or times their own, as bounce_error" * (name == "restitution_error")
+            raise ArgumentError(name, None, f"has to be given for each rebound, to compare it with the model{hint}")
     has_one = np.isfinite(np.asarray(data.restitution))
     given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
     data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
@@ -114,10 +116,11 @@ def compare(
     known = {cause: np.asarray(size) for cause, size in band.causes.items() if np.isfinite(size).all()}
     slenderness = np.log(np.maximum(radius / thickness, _THICK))
     apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
-    covariance = np.diag(error**2)
+    covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)
     for cause, size in known.items():
         alike = np.exp(-apart / _LENGTH) if cause == "model" else 1.0
-        covariance += np.outer(size, size) * alike
+        signed = band.signs.get(cause, 1.0) * size
+        covariance += np.outer(signed, signed) * alike
     chi_squared = float(off @ np.linalg.solve(covariance, off))
     chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
     unknown = tuple(band.causes.keys() - known.keys())
@@ -126,6 +129,7 @@ def compare(
 
 
 def _by_chance(chi_squared: float, count: int) -> float:
-    """Probability of a larger sum of squares of so many normal deviates (Wilson & Hilferty 1931)."""
-    spread = 2.0 / (9.0 * count)
-    return 0.5 * math.erfc(((chi_squared / count) ** (1.0 / 3.0) - 1.0 + spread) / math.sqrt(2.0 * spread))
+    """Probability of a larger sum of squares of so many normal deviates, by its finite series."""
+    half, odd = max(0.5 * chi_squared, 1e-300), 0.5 * (count % 2)
+    terms = (math.exp(n * math.log(half) - half - math.lgamma(n + 1.0)) for n in np.arange(odd, 0.5 * count))
+    return min(math.fsum(terms) + bool(odd) * math.erfc(math.sqrt(half)), 1.0)

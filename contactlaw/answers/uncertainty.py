@@ -66,11 +66,14 @@ class Band:
         Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
         ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf of a law
         of your own and of a specified minimum that matters.
+    signs : dict of str to float or ndarray
+        1 where more of a number raises the answer, -1 where it lowers it; not of the law.
     """
 
     low: float | Array
     high: float | Array
     causes: dict[str, float | Array]
+    signs: dict[str, float | Array]
 
 
 @dataclass(frozen=True)
@@ -337,6 +340,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
 
     low, high = map(shifted, curves.quantiles())
     causes = {one.cause: width(ends) for one, ends in zip(changes, curves.ends, strict=True)}
+    signs = {one.cause: np.sign(ends[1] - ends[0]) for one, ends in zip(changes, curves.ends, strict=True)}
     if curves.by_law is not None:
         causes["model"] = width(np.array([-curves.by_law, curves.by_law]))
         causes["model"][0] = curves.cor_by_law
@@ -355,7 +359,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
         Band(
             shaped(low[n], impacts.shape),
             shaped(high[n], impacts.shape),
-            {cause: shaped(size[n], impacts.shape) for cause, size in causes.items()},
+            *({cause: shaped(size[n], impacts.shape) for cause, size in of.items()} for of in (causes, signs)),
         )
         for n in range(3)
     )

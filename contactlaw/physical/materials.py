@@ -558,7 +558,8 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
     relative = {number: error for number, (error, _) in errors.items()}
     if "{bias}" in source.get("yield_strength", ""):
         relative.setdefault("yield_strength", math.inf)
-    body = Material(name, **values, kind=table.get("kind"), uncertainty=relative)
+    of = str(table.get("like", name)) if values.get("loss_factor") == "handbook" else name
+    body = Material(of, **values, kind=table.get("kind"), uncertainty=relative)
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -570,7 +571,7 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
         if number in errors:
             error, reason = errors[number][0], _cited(errors[number][1], references)
             parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
-    return replace(body, source="; ".join(parts))
+    return replace(body, name=name, source="; ".join(parts))
 
 
 def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:

@@ -1,5 +1,8 @@
 """Drops that tell the model from one COR, beside a fit to as many drops."""
 
+import csv
+import json
+
 import numpy as np
 import pytest
 from command_line import refused
@@ -74,3 +77,46 @@ def test_the_command_says_what_to_do(capsys):
         (["--thickness", "1um"], "thickness"),
     ):
         refused([*ARGUMENTS, *options], words, capsys=capsys)
+
+
+def test_a_half_space_has_no_side_and_an_elastic_bead_no_endless_bounces(capsys):
+    asked = ["experiment", "--sphere", "glass", "--plate", "glass", "--law", "hertz", "--drop", "30cm"]
+    assert main([*asked, "--thickness", "inf,5mm", "--timing-error", "1us"]) == 0
+    said = capsys.readouterr().out
+    assert "inf cm" not in said and "nan" not in said and said.count(" 20  ") == 2
+    assert main([*ARGUMENTS, "--thickness", "inf"]) == 0
+    assert "onto half-space find it to 5 %" in capsys.readouterr().out
+
+
+def test_other_programs_read_the_drops(made, capsys):
+    asked = ["experiment", "--sphere", "soda-lime-glass", "--plate", "E=70GPa nu=0.33 rho=2700 yield=250MPa kind=metal"]
+    asked += ["--thickness", "1mm,2mm,5mm", "--drop", "10cm,50cm"]
+    assert main([*asked, "--json"]) == 0
+    records = json.loads(capsys.readouterr().out)
+    assert main([*asked, "--csv"]) == 0
+    rows = [*csv.DictReader(capsys.readouterr().out.splitlines())]
+    cause = "yield_strength_of_the_plate"
+    for n, (record, row) in enumerate(zip(records, rows, strict=True)):
+        assert record["restitution"] == pytest.approx(made.restitution[n])
+        assert float(row["sheet_m"]) == pytest.approx(made.sheet[n])
+        counts = made.found[cause.replace("_", " ")][n]
+        assert record[f"{cause}_by"] == (None if np.isnan(counts) else counts)
+        assert row[f"{cause}_by_drops"] == ("" if np.isnan(counts) else f"{counts}")
+    assert {record[f"{cause}_by"] is None for record in records} == {True, False}
+
+
+def test_drops_that_are_drawn_find_the_thickness_as_said(made):
+    """Heights, times, scatter and the law's error at random; then the thickness by interpolation."""
+    random, g, model, cause = np.random.default_rng(5), 9.80665, cl.ImpactModel(STEEL), "thickness"
+    at = int(np.flatnonzero(made.found[cause] > 3.0)[0])
+    v, h, counts = made.speed[at], made.thickness[at], int(made.found[cause][at])
+    trial = h * np.exp(np.linspace(-0.3, 0.3, 61))
+    by_law = model.uncertainty(v, RADIUS, h).restitution.causes["model"]
+    deviates = random.standard_normal((4, 4000, counts))
+    cor = made.restitution[at] + USUAL["scatter"] * deviates[0] + by_law * deviates[1][:, :1]
+    speed = np.sqrt(2.0 * g * (made.drop[at] + USUAL["height_error"] * deviates[2]))
+    times = 2.0 * cor * speed / g + np.sqrt(2.0) * USUAL["timing_error"] * deviates[3]
+    seen = (0.5 * g * times / np.sqrt(2.0 * g * made.drop[at])).mean(axis=1)
+    off = np.interp(seen, model.solve(v, RADIUS, trial).restitution, np.log(trial / h))
+    assert 0.05 * np.sqrt(1.0 - 1.0 / counts) < np.std(off) < 0.053
+    assert np.mean(np.abs(off) < 0.05) == pytest.approx(0.683, abs=0.04)

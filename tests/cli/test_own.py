@@ -27,6 +27,10 @@ uncertainty = {yield_strength = 0.1}
 like = "stainless-steel-304"
 hardness = "32 HRC"
 source = {hardness = "measured"}
+
+[soft]
+like = "pmma"
+loss_factor = "handbook"
 """
 IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".split()
 
@@ -67,6 +71,7 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     )
     assert mine["hard-304"].density == cl.material("304").density
     assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
+    assert mine["soft"].loss_factor == material_of("sphere", "pmma loss_factor=handbook", {}).loss_factor
     assert main(["cor", "--materials", str(path), "--sphere", "Delrin", *IMPACT]) == 0
     row = json.loads(capsys.readouterr().out)
     model = cl.ImpactModel(cl.Pair(mine["my-pom"], "steel-dc01"))
@@ -74,7 +79,7 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     assert (row["sphere"], row["radius"]) == ("my-pom", 1e-3)
     assert main(["materials", "--materials", str(path)]) == 0
     _, *rows = capsys.readouterr().out.splitlines()
-    assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"]]
+    assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"], ["soft", "2.700"]]
 
 
 def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):

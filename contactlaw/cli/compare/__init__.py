@@ -1,9 +1,11 @@
 """``contactlaw compare``: measured CORs beside the model, to which they were not fitted."""
 
 import argparse
+import json
+import sys
 import textwrap
 from collections.abc import Iterator
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,8 @@ from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
+_RARE = 1e-4  # probability below which its size says nothing
+_TOLD = 2.0  # standard errors of the data by which a law is told from another
 _WIDTH = 110  # of a line of text
 
 
@@ -38,6 +42,9 @@ def add(commands: Any) -> None:
     what = f"thickness of all plates [m], or with a unit; inf: a half-space{of_file}"
     options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
     options.add_name_of_law(command)
+    add = command.add_mutually_exclusive_group().add_argument
+    add("--csv", action="store_true", help="print the rebounds as rows in SI units, every digit")
+    add("--json", action="store_true", help="print chi-squared, all laws and the rebounds; inf is null")
     add("--plot", metavar="FILE", help="draw the model's band and the data into FILE (PNG, SVG, PDF)")
     command.epilog = options.UNITS
 
@@ -56,21 +63,30 @@ def _run(arguments: argparse.Namespace) -> None:
             bodies = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
             about = f"{known.title}: {bodies}" if known.title else bodies
             figure.save(found, pair, arguments.law, known.errors, about, arguments.plot)
-        else:
-            print(*filter(None, (known.title, known.reference)), *_rows(found, pair, arguments.law), "", sep="\n")
-            print(*_judged(found), "", *_by_law(pair, found, known.errors), sep="\n")
+            return
+    table, columns = _rows(found, pair, arguments.law)
+    if arguments.csv:
+        impacts.write_csv(table, sys.stdout, columns)
+    elif arguments.json:
+        by_law = {name: _numbers(one) for name, one in _by_law(pair, found, known.errors).items()}
+        said = {"title": known.title, "reference": known.reference, **_numbers(found), "unknown": found.unknown}
+        print(json.dumps(said | {"laws": by_law, "rebounds": impacts.records(table)}, indent=2))
+    else:
+        print(*filter(None, (known.title, known.reference)), *impacts.text(table, columns), "", sep="\n")
+        print(*_judged(found), "", *_nearest(pair, found, _by_law(pair, found, known.errors)), sep="\n")
 
 
-def _rows(found: Comparison, pair: Pair, law: str) -> Iterator[str]:
-    """Lines of the rebounds: measured COR, its error, COR of the model, its range, and flags."""
+def _rows(found: Comparison, pair: Pair, law: str) -> tuple[ImpactTable, tuple[Column, ...]]:
+    """Table of the rebounds: measured COR, its error, COR of the model, its range, and flags."""
     by_name, data = {column.name: column for column in COLUMNS}, found.data
     values = {name: getattr(data, name) for name in ("speed", "radius", "thickness")}
     values |= {"measured": data.restitution, "error": data.restitution_error, "restitution": found.restitution}
     ends = np.array([found.band.low, found.band.high])
     low, high = np.where(np.isfinite(ends), ends, np.nan)
-    columns = *(by_name.get(name, Column(name, "", name)) for name in values), Column("low", "", "68 %", to="high")
+    columns = tuple(by_name.get(name, Column(name, "", name)) for name in values)
     asked = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": law}
-    return impacts.text(ImpactTable(values | {"low": low, "high": high}, found.flags, asked), columns)
+    table = ImpactTable(values | {"low": low, "high": high}, found.flags, asked)
+    return table, (*columns, Column("low", "", "68 %", to="high"), Column("high", ""))
 
 
 def _judged(found: Comparison) -> list[str]:
@@ -79,26 +95,41 @@ def _judged(found: Comparison) -> list[str]:
     verdict = "agrees within" if found.probability >= _UNLIKELY else "differs by more than"
     said = (
         f"chi-squared {found.chi_squared:.3g} of {many}, as large or larger by chance in "
-        f"{100.0 * found.probability:.2g} % of cases: the model {verdict} the known errors."
+        f"{_percent(found.probability)} % of cases: the model {verdict} the known errors."
     )
     if found.unknown:
         said += f" Not in it, as nobody knows the error: {', '.join(found.unknown)}."
     return textwrap.wrap(said, _WIDTH)
 
 
-def _by_law(pair: Pair, found: Comparison, errors: dict[str, float]) -> Iterator[str]:
-    """Lines of all laws, the one nearest to the data first."""
-    compared, without = list[tuple[str, Comparison]](), list[str]()
+def _percent(probability: float) -> str:
+    return f"{100.0 * probability:.3g}" if probability >= _RARE else f"<{100.0 * _RARE:g}"
+
+
+def _numbers(one: Comparison) -> dict[str, float]:
+    return {name: getattr(one, name) for name in ("rms", "chi_squared", "probability")}
+
+
+def _by_law(pair: Pair, found: Comparison, errors: dict[str, float]) -> dict[str, Comparison]:
+    """Comparisons with all laws that have an answer, the one nearest to the data first."""
+    compared = dict[str, Comparison]()
     for name in laws.names():
-        try:
-            compared.append((name, compare(pair, found.data, name, **errors)))
-        except NoYieldStrengthError:
-            without.append(name)
-    compared.sort(key=lambda one: one[1].rms)
+        with suppress(NoYieldStrengthError):
+            compared[name] = compare(pair, found.data, name, **errors)
+    return dict(sorted(compared.items(), key=lambda one: one[1].rms))
+
+
+def _nearest(pair: Pair, found: Comparison, by_law: dict[str, Comparison]) -> Iterator[str]:
+    """Lines of the laws, with those that the errors of the data do not tell from the nearest one."""
+    (first, best), *others = by_law.items()
+    weight = float(np.sum(np.asarray(found.data.restitution_error) ** -2.0))
+    alike = [name for name, one in others if weight * (one.rms**2 - best.rms**2) < _TOLD**2]
+    also = f", which the errors of the data do not tell from {', '.join(alike)}" if alike else ""
+    said = f"Nearest to the data is law {first}{also}. A law with large errors of its own has a small chi-squared."
+    yield from textwrap.wrap(said, _WIDTH)
     rows = [("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")]
-    for name, one in compared:
-        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", f"{100.0 * one.probability:.0f}", ""))
-    yield f"Nearest to the data is law {compared[0][0]}. A law with large errors of its own has a small chi-squared."
+    for name, one in by_law.items():
+        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", _percent(one.probability), ""))
     yield from impacts.aligned([*zip(*rows, strict=True)])
-    if without:
+    if without := [name for name in laws.names() if name not in by_law]:
         yield f"without an answer, as {pair.sphere.name} has no yield strength: {', '.join(without)}"

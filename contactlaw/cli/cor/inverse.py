@@ -78,9 +78,9 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     rows = dict(zip(("restitution", *known), np.repeat(asked, counts, axis=1), strict=True))
     for name, field in ((unknown, "value"), (f"{unknown}_low", "low"), (f"{unknown}_high", "high")):
         rows[name] = np.concatenate([getattr(one, field) for one in found])
-    unsure = np.isinf(rows[f"{unknown}_low"])
-    for end in ("low", "high"):
-        rows[f"{unknown}_{end}"][unsure] = np.nan
+    low, high = (rows[f"{unknown}_{end}"] for end in ("low", "high"))
+    low[np.isinf(low)] = np.nan
+    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
     flags = np.concatenate([one.flags for one in found])
     table, columns = ImpactTable(rows, flags, impacts.asked(model) | named), _columns(unknown)
     if arguments.csv:
