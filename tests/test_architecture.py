@@ -56,9 +56,8 @@ FILES = {
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
-    "cli/parts": "wording columns impacts options plots own rebounds chosen layout figure",
+    "cli/parts": "wording columns impacts bands options plots own rebounds chosen layout figure",
     "cli/constant": "records walls lines",
-    "cli/cor": "bands inverse",
     "cli/fit": "printed figure",
     "physical": (
         "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "

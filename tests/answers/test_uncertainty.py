@@ -10,7 +10,7 @@ from scipy.stats import norm, qmc
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
-from contactlaw.cli.cor import bands
+from contactlaw.cli.parts import bands
 from validation.accuracy import acceptance
 
 INF = math.inf

@@ -10,8 +10,7 @@ import numpy as np
 from contactlaw import style
 from contactlaw._arrays import Array
 from contactlaw._readable import in_unit
-from contactlaw.cli.cor import bands
-from contactlaw.cli.parts import plots
+from contactlaw.cli.parts import bands, plots
 from contactlaw.comparison import Comparison
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair

@@ -17,8 +17,8 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import bands, inverse
-from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
+from contactlaw.cli.cor import inverse
+from contactlaw.cli.parts import bands, chosen, figure, impacts, layout, options, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain

@@ -13,8 +13,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.inverse import Solutions
-from contactlaw.cli.cor import bands
-from contactlaw.cli.parts import chosen, impacts, options, wording
+from contactlaw.cli.parts import bands, chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.quantities import HEIGHT, SHARE
