@@ -46,7 +46,7 @@ class Comparison:
     rms : float
         Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
     unknown : tuple of str
-        Causes whose error is not known, as a specified minimum; `chi_squared` is without them.
+        Causes that `chi_squared` is without: specified minima, and a law whose error is not known.
     """
 
     data: Measurements
@@ -113,7 +113,8 @@ def compare(
     errors = {"speed_error": speed_error, "radius_error": radius_error, "thickness_error": thickness_error}
     band = model.uncertainty(speed, radius, thickness, **errors).restitution
     off = measured - hit.restitution
-    known = {cause: np.asarray(size) for cause, size in band.causes.items() if np.isfinite(size).all()}
+    normal = {"model", *band.signs}  # a minimum is no normal deviate, even if its range is known
+    known = {cause: np.asarray(band.causes[cause]) for cause in normal if np.isfinite(band.causes[cause]).all()}
     slenderness = np.log(np.maximum(radius / thickness, _THICK))
     apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
     covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)

@@ -103,6 +103,9 @@ def test_rebounds_that_are_alike_with_hardly_an_error_have_a_chi_squared():
 def test_what_is_not_known_is_named():
     found = cl.compare(cl.Pair("stainless-steel-304", "glass"), data(0.5 * np.ones(9), 0.01))
     assert found.unknown == ("yield strength of the bead",) and np.isfinite(found.chi_squared)
+    minimum = dataclasses.replace(cl.material("stainless-steel-304"), uncertainty={"yield_strength": np.inf})
+    other = cl.compare(cl.Pair(minimum, "glass"), data(0.5 * np.ones(9), 0.01))
+    assert other.unknown == found.unknown and np.isinf(other.band.high).all() and np.isfinite(found.band.high).all()
     with pytest.raises(cl.ArgumentError, match="restitution_error: has to be given"):
         cl.compare(PAIR, {**data(0.5, 0.1), "restitution_error": None})
 

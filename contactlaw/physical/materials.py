@@ -38,6 +38,7 @@ _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 _LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
 _FREQUENCIES = 1e-3, 1e9  # [Hz]; from slow tests to ultrasound and beads of micrometres
 _LARGEST_ERROR = 1.0  # relative standard error; beyond, nothing is known
+_LARGEST_EXCESS = 9.0  # of a strength over its specified minimum
 # Least and largest loss factor that handbooks of acoustics print for audible sound, without a frequency:
 # Mechel, Formulas of Acoustics (2008), Table 3; Bies, Hansen & Howard, Engineering Noise Control,
 # 5th ed. (2017), Table C.1, which has a range from the material to a mounted panel.
@@ -182,8 +183,9 @@ class Material:
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
-        knows it: of answers that depend on it one end is known.
+        lacks are left out. That of a strength that is a specified minimum is ``inf``, if nobody
+        knows it: of answers that depend on it one end is known; or -0.4, if real ones are up to
+        40 % above it.
 
     Raises
     ------
@@ -570,7 +572,8 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
         parts.append(f"{label}{shown}: {_cited(source[number], references)}")
         if number in errors:
             error, reason = errors[number][0], _cited(errors[number][1], references)
-            parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
+            size = f"standard error of it {100.0 * error:g} %" if error > 0.0 else f"up to {-100.0 * error:g} % more"
+            parts.append(f"{size}: {reason}")
     return replace(body, name=name, source="; ".join(parts))
 
 
@@ -713,8 +716,8 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
-        minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
-        error = math.inf if minimum else _finite(f"uncertainty[{name!r}]", value, "-")
+        error = math.inf if str(value) == "inf" else _finite(f"uncertainty[{name!r}]", value, "-")
+        minimum = name in ("yield_strength", "hardness") and (error == math.inf or -_LARGEST_EXCESS <= error < 0.0)
         if not (0.0 <= error <= _LARGEST_ERROR or minimum):
             limits = f"a relative standard error from 0 to {_LARGEST_ERROR:g}"
             raise refused(value, f"{name} must be {limits}")

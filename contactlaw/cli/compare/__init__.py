@@ -98,7 +98,7 @@ def _judged(found: Comparison) -> list[str]:
         f"{_percent(found.probability)} % of cases: the model {verdict} the known errors."
     )
     if found.unknown:
-        said += f" Not in it, as nobody knows the error: {', '.join(found.unknown)}."
+        said += f" Not in it, as a minimum and a law of your own have no standard error: {', '.join(found.unknown)}."
     return textwrap.wrap(said, _WIDTH)
 
 

@@ -108,11 +108,13 @@ def explained(band: Band, pair: Pair, first: str) -> Iterator[str]:
 
 
 def left_out(band: Band, pair: Pair) -> str:
-    """Name what is not in the band and often matters most: unknown errors, viscosity."""
+    """Name what is not in the band and often matters most, unknown errors and viscosity, and ranges."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
     known = {"yield_strength", "hardness"}
     names = [role for role, body in roles.items() if body.strength is not None and not body.uncertainty.keys() & known]
     parts = list(filter(None, [unknown(band)]))
+    if ranges := [role for role, body in roles.items() if min(body.uncertainty.values(), default=0.0) < 0.0]:
+        parts.append(f"strength of {' and '.join(ranges)} from the specified minimum to the most that is known")
     if names and meaning(band) is _OF_ALL:
         subject = "strength" if len(names) == 1 else "strengths"
         parts.append(f"errors of the {subject} of {' and '.join(names)} are not")
