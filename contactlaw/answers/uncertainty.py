@@ -353,8 +353,8 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
     if variants.ranges:  # from the answers at the minima to those at the most, all together
         gain = shifted(curves.moved(*variants.ranges)) - shifted(0.0 * logs)
         low, high = low + np.minimum(gain, 0.0), np.minimum(high + np.maximum(gain, 0.0), np.exp(most))
-        for one in variants.ranges:
-            causes[one[0].cause] = 0.5 * np.abs(shifted(curves.moved(one)) - shifted(0.0 * logs))
+        for top in variants.ranges:
+            causes[top[0].cause] = 0.5 * np.abs(shifted(curves.moved(top)) - shifted(0.0 * logs))
     for one in variants.minima:
         moved = np.array([curves.moved((one._replace(error=1.0), z)) for z in _STRONGER])
         higher, lower = moved.max(axis=0) > _MATTERS, moved.min(axis=0) < -_MATTERS

@@ -9,13 +9,13 @@ import json
 import math
 import sys
 import textwrap
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
 from contactlaw import quantities
-from contactlaw._arrays import Array, Integers
+from contactlaw._arrays import Array
 from contactlaw._readable import drawn, in_unit
 from contactlaw.cli.parts import chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
@@ -38,6 +38,16 @@ _BOUNCES = 20  # of one drop, the most that a row of a table of measurements has
 _STUCK = 1e-6  # least COR, and least loss, that count for the number of bounces
 _MOST = 100  # drops of one kind; more are not worth while, and errors that drops share dominate
 _WIDTH = 110  # of a line of text
+_COLUMNS = (
+    Column("thickness", "m", "thickness", "mm", 1e3),
+    Column("drop", "m", "drop", "cm", 1e2),
+    Column("speed", "m/s", "speed", "m/s"),
+    Column("restitution", "", "COR"),
+    Column("error", "", "one drop", "+-"),
+    Column("bounces", "", "bounces"),
+    Column("sheet", "m", "sheet", "cm", 1e2),
+    Column("told_by", "drops", "told by", "drops"),
+)
 
 
 def add(commands: Any) -> None:
@@ -63,26 +73,14 @@ def add(commands: Any) -> None:
     command.epilog = f"{options.UNITS} Several are a list, 1mm,2mm, or a range start:stop:count."
 
 
-class Plan(NamedTuple):
-    """Drops, in arrays of one length, and how many of each are needed; NaN: no number helps."""
-
-    thickness: Array
-    drop: Array
-    speed: Array
-    restitution: Array
-    error: Array  # of the COR of one drop
-    bounces: Array  # of one drop, whose COR the timing finds as well as the scatter allows
-    sheet: Array  # least side [m]
-    told: Array  # drops that tell the COR from the mean of all
-    found: dict[str, Array]  # drops that find an unknown
-    flags: Integers
-
-
-def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, errors: dict[str, float]) -> Plan:
+def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, errors: dict[str, float]) -> ImpactTable:
     """Count the drops that are needed, for every combination of thicknesses and heights.
 
     The COR of a drop is half of g times the time to the next bounce over the speed. The errors of
     single drops become smaller with their number; those of the law and of the other inputs do not.
+    Columns are the COR's `error` of one drop, `bounces` of one drop that the timing finds as well as
+    the scatter allows, the least side of a `sheet`, drops that tell the COR from the mean of all,
+    and behind these drops that find each unknown; NaN: no number helps.
     """
     timing_error, height_error, scatter = (errors[name] for name in _ERRORS)
     h, fall = (one.ravel() for one in np.meshgrid(thickness, drop, indexing="ij"))
@@ -95,24 +93,24 @@ def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, error
     by_time, by_height = math.sqrt(2.0) * timing_error * flight.GRAVITY / (2.0 * v), 0.5 * cor * height_error / fall
     error = np.sqrt(scatter**2 + by_time**2 + by_height**2)
 
-    def drops(shift: Array, others: Array) -> Array:
-        """Count the drops whose mean has, with the errors of `others`, an error as small as a shift."""
+    def drops(shift: Array, others: Iterable[str]) -> Array:
+        """Count the drops whose mean has, with the errors of other causes, an error as small as a shift."""
+        left = shift**2 - sum(np.square(causes[other]) for other in others)
         with np.errstate(divide="ignore"):
-            counts = np.ceil(error**2 / np.maximum(shift**2 - others, 0.0))
+            counts = np.ceil(error**2 / np.maximum(left, 0.0))
         return np.where(counts <= _MOST, np.maximum(counts, 1.0), math.nan)
 
-    squares = {cause: np.asarray(size) ** 2 for cause, size in causes.items()}
     # Each bounce is slower by the COR, and its time shorter.
     bounces = 1.0 + np.log(np.minimum(by_time / scatter, 1.0)) / np.log(np.clip(cor, _STUCK, 1.0 - _STUCK))
-    found = {
-        cause: drops(np.asarray(size), np.sum([one for of, one in squares.items() if of != cause], axis=0))
-        for cause, size in moved.items()
-        if cause != "model"
-    }
+    moved.pop("model")
+    sizes = {cause: (np.asarray(size), causes.keys() - {cause}) for cause, size in moved.items()}
+    found = {f"{cause.replace(' ', '_')}_by": drops(*size) for cause, size in sizes.items()}
     distance = np.asarray(edge_distance(model.pair.plate, h, hit.contact_time))
-    told = drops(np.abs(cor - cor.mean()) / _TOLD, squares["model"])
+    told = drops(np.abs(cor - cor.mean()) / _TOLD, ["model"])
     sheet = np.where(np.isinf(distance), math.nan, 2.0 * distance)
-    return Plan(h, fall, v, cor, error, np.minimum(bounces // 1.0, _BOUNCES), sheet, told, found, np.asarray(hit.flags))
+    values = h, fall, v, cor, error, np.minimum(bounces // 1.0, _BOUNCES), sheet, told
+    named = {column.name: one for column, one in zip(_COLUMNS, values, strict=True)}
+    return ImpactTable(named | found, np.asarray(hit.flags), impacts.asked(model, radius=radius))
 
 
 def _moved(model: ImpactModel) -> ImpactModel:
@@ -134,53 +132,38 @@ def _run(arguments: argparse.Namespace) -> None:
         within(name, np.array([size]), *_ERRORS[name][3:], "")
     model = chosen.model(arguments)
     made = plan(model, radius, np.array(arguments.thickness), np.array(arguments.drop), errors)
-    table, columns = _table(made, impacts.asked(model, radius=radius))
+    causes = {name: name.removesuffix("_by").replace("_", " ") for name in [*made.columns][len(_COLUMNS) :]}
+    titles = (cause.replace("yield ", "").replace(" of the ", ", ") for cause in causes.values())
+    columns = *_COLUMNS, *(Column(name, "drops", title, "drops") for name, title in zip(causes, titles, strict=True))
     if arguments.csv:
-        impacts.write_csv(table, sys.stdout, columns)
+        impacts.write_csv(made, sys.stdout, columns)
     elif arguments.json:
-        print(json.dumps(impacts.records(table), indent=2))
+        print(json.dumps(impacts.records(made), indent=2))
     else:
-        print(*impacts.text(table, columns), "", sep="\n")
-        for said in _said(made):
+        print(*impacts.text(made, columns), "", sep="\n")
+        for said in _said(made.columns, causes):
             print(*textwrap.wrap(said, _WIDTH), sep="\n")
 
 
-def _table(made: Plan, asked: dict[str, Any]) -> tuple[ImpactTable, list[Column]]:
-    """Table of the drops, as `contactlaw cor` has them."""
-    shown = {
-        Column("thickness", "m", "thickness", "mm", 1e3): made.thickness,
-        Column("drop", "m", "drop", "cm", 1e2): made.drop,
-        Column("speed", "m/s", "speed", "m/s"): made.speed,
-        Column("restitution", "", "COR"): made.restitution,
-        Column("error", "", "one drop", "+-"): made.error,
-        Column("bounces", "", "bounces"): made.bounces,
-        Column("sheet", "m", "sheet", "cm", 1e2): made.sheet,
-        Column("told_by", "drops", "told by", "drops"): made.told,
-    }
-    for cause, counts in made.found.items():
-        title = cause.replace("yield ", "").replace(" of the ", ", ")
-        shown[Column(f"{cause.replace(' ', '_')}_by", "drops", title, "drops")] = counts
-    return ImpactTable({one.name: values for one, values in shown.items()}, made.flags, asked), [*shown]
-
-
-def _said(made: Plan) -> Iterator[str]:
+def _said(made: dict[str, Array], causes: dict[str, str]) -> Iterator[str]:
     """Say what the columns mean, and which drops are the best."""
-    mean, share = made.restitution.mean(), f"{100.0 * _PRECISION:g} %"
+    mean, share = made["restitution"].mean(), f"{100.0 * _PRECISION:g} %"
     yield (
         f"told by: drops whose mean is {_TOLD:g} standard errors from one COR for all of them, {mean:.3f}. The last "
         f"columns: drops that find a number with a standard error of {share}, if all others are known as stated. -: "
         f"more than {_MOST}, or the errors of law and materials hide it. bounces: those of one drop that are worth "
         f"timing, {_BOUNCES} at most. sheet: least side, if the bead hits its middle. An error that is not known "
-        "counts as none, and that of a specified minimum as endless: give it with --sphere-error or --plate-error."
+        "counts as none, and an unknown excess over a specified minimum as endless: give --sphere-error, --plate-error."
     )
-    for cause, counts in made.found.items():
-        n = np.lexsort((made.sheet, counts))[0]
+    for name, cause in causes.items():
+        counts = made[name]
+        n = np.lexsort((made["sheet"], counts))[0]
         if np.isnan(counts[n]):
             yield f"{cause}: no drops of these find it to {share}."
             continue
-        many, side = f"{counts[n]:.0f} drop{'s' * bool(counts[n] > 1)}", made.sheet[n]
-        where = f"from {in_unit(made.drop[n], 'm')} onto {drawn(made.thickness[n])}"
+        many, side = f"{counts[n]:.0f} drop{'s' * bool(counts[n] > 1)}", made["sheet"][n]
+        where = f"from {in_unit(made['drop'][n], 'm')} onto {drawn(made['thickness'][n])}"
         wide = "" if np.isnan(side) else f" (a sheet of {100.0 * side:.2g} cm)"
         yield f"{cause}: {many} {where}{wide} find it to {share}."
-    if (tells := np.isfinite(made.found["thickness"])).any():
-        yield f"The thickest sheet that tells its thickness: {in_unit(made.thickness[tells].max(), 'm')}."
+    if (tells := np.isfinite(made["thickness_by"])).any():
+        yield f"The thickest sheet that tells its thickness: {in_unit(made['thickness'][tells].max(), 'm')}."

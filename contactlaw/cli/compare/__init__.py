@@ -60,17 +60,16 @@ def _run(arguments: argparse.Namespace) -> None:
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:
-            bodies = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
-            about = f"{known.title}: {bodies}" if known.title else bodies
+            about = f"{known.title or 'rebounds'}: {pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
             figure.save(found, pair, arguments.law, known.errors, about, arguments.plot)
             return
     table, columns = _rows(found, pair, arguments.law)
     if arguments.csv:
         impacts.write_csv(table, sys.stdout, columns)
     elif arguments.json:
-        by_law = {name: _numbers(one) for name, one in _by_law(pair, found, known.errors).items()}
         said = {"title": known.title, "reference": known.reference, **_numbers(found), "unknown": found.unknown}
-        print(json.dumps(said | {"laws": by_law, "rebounds": impacts.records(table)}, indent=2))
+        said |= {"laws": {name: _numbers(one) for name, one in _by_law(pair, found, known.errors).items()}}
+        print(json.dumps(said | {"rebounds": impacts.records(table)}, indent=2))
     else:
         print(*filter(None, (known.title, known.reference)), *impacts.text(table, columns), "", sep="\n")
         print(*_judged(found), "", *_nearest(pair, found, _by_law(pair, found, known.errors)), sep="\n")
@@ -81,12 +80,11 @@ def _rows(found: Comparison, pair: Pair, law: str) -> tuple[ImpactTable, tuple[C
     by_name, data = {column.name: column for column in COLUMNS}, found.data
     values = {name: getattr(data, name) for name in ("speed", "radius", "thickness")}
     values |= {"measured": data.restitution, "error": data.restitution_error, "restitution": found.restitution}
-    ends = np.array([found.band.low, found.band.high])
-    low, high = np.where(np.isfinite(ends), ends, np.nan)
+    low, high = (np.where(np.isfinite(end), end, np.nan) for end in (found.band.low, found.band.high))
     columns = tuple(by_name.get(name, Column(name, "", name)) for name in values)
+    columns += Column("low", "", "68 %", to="high"), Column("high", "")
     asked = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": law}
-    table = ImpactTable(values | {"low": low, "high": high}, found.flags, asked)
-    return table, (*columns, Column("low", "", "68 %", to="high"), Column("high", ""))
+    return ImpactTable(values | {"low": low, "high": high}, found.flags, asked), columns
 
 
 def _judged(found: Comparison) -> list[str]:
@@ -124,7 +122,7 @@ def _nearest(pair: Pair, found: Comparison, by_law: dict[str, Comparison]) -> It
     (first, best), *others = by_law.items()
     weight = float(np.sum(np.asarray(found.data.restitution_error) ** -2.0))
     alike = [name for name, one in others if weight * (one.rms**2 - best.rms**2) < _TOLD**2]
-    also = f", which the errors of the data do not tell from {', '.join(alike)}" if alike else ""
+    also = ", which the errors of the data do not tell from " * bool(alike) + ", ".join(alike)
     said = f"Nearest to the data is law {first}{also}. A law with large errors of its own has a small chi-squared."
     yield from textwrap.wrap(said, _WIDTH)
     rows = [("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")]
