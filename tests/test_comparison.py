@@ -186,10 +186,10 @@ def test_times_of_bounces_and_of_contacts_have_errors_by_one_name(tmp_path):
     assert rebounds.completed(rebounds.read(path), path, 7800.0).contact_time_error == pytest.approx(0.5e-6)
 
 
-def test_a_head_of_windows_keeps_its_letters(tmp_path):
+def test_a_head_of_windows_keeps_its_letters_and_no_head_moves_the_cursor(tmp_path):
     path = tmp_path / "mine.csv"
-    path.write_bytes('# title = "Gl\u00e4tte"\nspeed_m/s,COR\n1,0.5\n'.encode("cp1252"))
-    assert rebounds.conditions(rebounds.read(path), {}).title == "Gl\u00e4tte"
+    path.write_bytes('# title = "Gl\u00e4tte\\u001b[2J"\nspeed_m/s,COR\n1,0.5\n'.encode("cp1252"))
+    assert rebounds.conditions(rebounds.read(path), {}).title == "Gl\u00e4tte [2J"
 
 
 def test_a_law_that_the_data_do_not_tell_from_the_nearest_is_named_with_it(capsys, tmp_path):

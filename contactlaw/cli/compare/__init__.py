@@ -20,7 +20,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
-_RARE = 1e-4  # probability below which its size says nothing
 _TOLD = 2.0  # standard errors of the data by which a law is told from another
 _WIDTH = 110  # of a line of text
 
@@ -93,15 +92,11 @@ def _judged(found: Comparison) -> list[str]:
     verdict = "agrees within" if found.probability >= _UNLIKELY else "differs by more than"
     said = (
         f"chi-squared {found.chi_squared:.3g} of {many}, as large or larger by chance in "
-        f"{_percent(found.probability)} % of cases: the model {verdict} the known errors."
+        f"{100.0 * found.probability:.2f} % of cases: the model {verdict} the known errors."
     )
     if found.unknown:
         said += f" Not in it, as a minimum and a law of your own have no standard error: {', '.join(found.unknown)}."
     return textwrap.wrap(said, _WIDTH)
-
-
-def _percent(probability: float) -> str:
-    return f"{100.0 * probability:.3g}" if probability >= _RARE else f"<{100.0 * _RARE:g}"
 
 
 def _numbers(one: Comparison) -> dict[str, float]:
@@ -127,7 +122,7 @@ def _nearest(pair: Pair, found: Comparison, by_law: dict[str, Comparison]) -> It
     yield from textwrap.wrap(said, _WIDTH)
     rows = [("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")]
     for name, one in by_law.items():
-        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", _percent(one.probability), ""))
+        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", f"{100.0 * one.probability:.2f}", ""))
     yield from impacts.aligned([*zip(*rows, strict=True)])
     if without := [name for name in laws.names() if name not in by_law]:
         yield f"without an answer, as {pair.sphere.name} has no yield strength: {', '.join(without)}"

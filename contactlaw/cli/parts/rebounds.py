@@ -14,6 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
+from contactlaw._escaped import line
 from contactlaw.cli.parts import columns, own, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.fitting import Measurements
@@ -192,7 +193,8 @@ def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
         role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
     }
     errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
-    return Conditions(str(given.get("title", "")), str(given.get("reference", "")), bodies, errors)
+    title, reference = (line(str(given.get(name, ""))) for name in _TEXTS[:2])
+    return Conditions(title, reference, bodies, errors)
 
 
 def _check_keys(given: Mapping[str, Any], known: tuple[str, ...]) -> None:
