@@ -717,10 +717,11 @@ def _uncertainty(body: Material) -> dict[str, float]:
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
         error = math.inf if str(value) == "inf" else _finite(f"uncertainty[{name!r}]", value, "-")
-        minimum = name in ("yield_strength", "hardness") and (error == math.inf or -_LARGEST_EXCESS <= error < 0.0)
+        strength = name in ("yield_strength", "hardness")
+        minimum = strength and (error == math.inf or -_LARGEST_EXCESS <= error < 0.0)
         if not (0.0 <= error <= _LARGEST_ERROR or minimum):
-            limits = f"a relative standard error from 0 to {_LARGEST_ERROR:g}"
-            raise refused(value, f"{name} must be {limits}")
+            limits = f"from 0 to {_LARGEST_ERROR:g}" + f", of a minimum {-_LARGEST_EXCESS:g} to 0 or inf" * strength
+            raise refused(value, f"{name} must be a relative standard error {limits}")
         if getattr(body, name) is not None:
             found[name] = error
     return found

@@ -220,6 +220,15 @@ def test_a_specified_minimum_has_a_lower_end_alone_where_a_stronger_body_rebound
     assert 0.0 < min(ends) < max(ends) <= 1.0
 
 
+@pytest.mark.parametrize(
+    ("number", "error", "said"),
+    [("density", -0.1, "from 0 to 1$"), ("density", INF, "from 0 to 1$"), ("yield_strength", -20.0, "-9 to 0 or inf")],
+)
+def test_what_is_no_error_is_refused(number, error, said):
+    with pytest.raises(cl.ArgumentError, match=said.replace("$", r" \(material")):
+        dataclasses.replace(cl.material("steel-s235"), uncertainty={number: error})
+
+
 def test_a_minimum_whose_excess_is_known_has_the_ends_of_the_weakest_and_the_strongest():
     """Also of two bodies at once, the strongest of both: one alone yields no more beside a weak one."""
     law = range_of("soda-lime-glass", known_to("steel-s235", yield_strength=0.0), [1.0, 3.0])
