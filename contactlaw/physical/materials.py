@@ -581,8 +581,8 @@ def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict
     """Add what an entry takes from the one that it is `like`; sources are by number."""
     source = _sources(table)
     if "like" in table:
-        if (other := tables.get(_key(str(table["like"])))) is None:
-            raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
+        if (other := tables.get(_key(str(table["like"])))) is None or other is table:
+            raise ValueError(f"[{name}]: like = {table['like']!r} is no {'other ' * bool(other)}entry")
         other = _with_like(table["like"], other, tables)
         table = {field: other[field] for field in _ALIKE if field in other} | table
         theirs = other["source"]

@@ -115,6 +115,7 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ("density", "densty", r"mine.toml: \[my-pom\]: unknown 'densty'; did you mean 'density'"),
         ("density = 1410", "", r"\[my-pom\]: give density, in SI units"),
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
+        ('"stainless-steel-304"', '"hard-304"', r"\[hard-304\]: like = 'hard-304' is no other entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
         ("= 2.8e9", "= " + "[" * 3000, "mine.toml: .*recursion"),
         ("[my-pom]", "", "mine.toml: "),

@@ -95,7 +95,7 @@ def _judged(found: Comparison) -> list[str]:
         f"{100.0 * found.probability:.2f} % of cases: the model {verdict} the known errors."
     )
     if found.unknown:
-        said += f" Not in it, as a minimum and a law of your own have no standard error: {', '.join(found.unknown)}."
+        said += f" A specified minimum is not in it, and may be a cause of differences: {', '.join(found.unknown)}."
     return textwrap.wrap(said, _WIDTH)
 
 
