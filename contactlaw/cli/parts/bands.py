@@ -99,12 +99,10 @@ def measure_first(band: Band, assumed: dict[str, str]) -> str:
 def explained(band: Band, pair: Pair, first: str) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
-    said = f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."
-    yield from textwrap.wrap(said, WIDTH)
+    said = [f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."]
     if meaning(band) is _OF_ALL and np.isfinite(band.low).any():
-        yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", WIDTH)
-    if first:
-        yield from textwrap.wrap(f"Measure this first: {first}", WIDTH)
+        said.append(f"Half its width by cause: {_causes(band)}.")
+    yield from textwrap.wrap(" ".join([*said, *[f"Measure this first: {first}."] * bool(first)]), WIDTH)
 
 
 def left_out(band: Band, pair: Pair) -> str:
