@@ -43,6 +43,8 @@ class Comparison:
     probability : float
         Share of cases in which chance alone makes `chi_squared` as large; small if the model
         differs by more than the errors explain.
+    if_exact : float
+        `chi_squared` if the law had no error of its own: by this laws are told from each other.
     rms : float
         Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
     unknown : tuple of str
@@ -55,6 +57,7 @@ class Comparison:
     flags: Integers
     chi_squared: float
     probability: float
+    if_exact: float
     rms: float
     unknown: tuple[str, ...]
 
@@ -118,15 +121,16 @@ def compare(
     slenderness = np.log(np.maximum(radius / thickness, _THICK))
     apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
     covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)
+    by_law = known.pop("model", 0.0 * off)
     for cause, size in known.items():
-        alike = np.exp(-apart / _LENGTH) if cause == "model" else 1.0
-        signed = band.signs.get(cause, 1.0) * size
-        covariance += np.outer(signed, signed) * alike
+        covariance += np.outer(band.signs[cause] * size, band.signs[cause] * size)
+    if_exact = float(off @ np.linalg.solve(covariance, off))
+    covariance += np.outer(by_law, by_law) * np.exp(-apart / _LENGTH)
     chi_squared = float(off @ np.linalg.solve(covariance, off))
     chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
-    unknown = tuple(band.causes.keys() - known.keys())
+    unknown = tuple(cause for cause, size in band.causes.items() if cause not in normal or np.isinf(size).any())
     cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
-    return Comparison(data, cor, band, flags, chi_squared, chance, rms, unknown)
+    return Comparison(data, cor, band, flags, chi_squared, chance, if_exact, rms, unknown)
 
 
 def _by_chance(chi_squared: float, count: int) -> float:

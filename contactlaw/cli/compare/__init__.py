@@ -20,7 +20,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
-_TOLD = 2.0  # standard errors of the data by which a law is told from another
+_TOLD = 2.0  # standard errors by which a law is told from another
 _WIDTH = 110  # of a line of text
 
 
@@ -100,7 +100,7 @@ def _judged(found: Comparison) -> list[str]:
 
 
 def _numbers(one: Comparison) -> dict[str, float]:
-    return {name: getattr(one, name) for name in ("rms", "chi_squared", "probability")}
+    return {name: getattr(one, name) for name in ("rms", "if_exact", "chi_squared", "probability")}
 
 
 def _by_law(pair: Pair, found: Comparison, errors: dict[str, float]) -> dict[str, Comparison]:
@@ -109,20 +109,19 @@ def _by_law(pair: Pair, found: Comparison, errors: dict[str, float]) -> dict[str
     for name in laws.names():
         with suppress(NoYieldStrengthError):
             compared[name] = compare(pair, found.data, name, **errors)
-    return dict(sorted(compared.items(), key=lambda one: one[1].rms))
+    return dict(sorted(compared.items(), key=lambda one: one[1].if_exact))
 
 
 def _nearest(pair: Pair, found: Comparison, by_law: dict[str, Comparison]) -> Iterator[str]:
-    """Lines of the laws, with those that the errors of the data do not tell from the nearest one."""
+    """Lines of the laws, with those that the errors of data and materials do not tell from the nearest one."""
     (first, best), *others = by_law.items()
-    weight = float(np.sum(np.asarray(found.data.restitution_error) ** -2.0))
-    alike = [name for name, one in others if weight * (one.rms**2 - best.rms**2) < _TOLD**2]
-    also = ", which the errors of the data do not tell from " * bool(alike) + ", ".join(alike)
-    said = f"Nearest to the data is law {first}{also}. A law with large errors of its own has a small chi-squared."
+    alike = [name for name, one in others if one.if_exact - best.if_exact < _TOLD**2]
+    also = ", which the errors of data and materials do not tell from " * bool(alike) + ", ".join(alike)
+    said = f"Nearest to the data is law {first}{also}. If exact: chi-squared without the law's own errors."
     yield from textwrap.wrap(said, _WIDTH)
-    rows = [("law", "rms off", "chi-squared", "by chance", ""), ("", "[-]", "[-]", "[%]", "")]
-    for name, one in by_law.items():
-        rows.append((name, f"{one.rms:.4f}", f"{one.chi_squared:.3g}", f"{100.0 * one.probability:.2f}", ""))
+    rows = [["law", "rms off", "if exact", "chi-squared", "by chance", ""], ["", "[-]", "[-]", "[-]", "[%]", ""]]
+    for n, one in by_law.items():
+        rows.append([n, *(f"{x:.3g}" for x in (one.rms, one.if_exact, one.chi_squared, 100.0 * one.probability)), ""])
     yield from impacts.aligned([*zip(*rows, strict=True)])
     if without := [name for name in laws.names() if name not in by_law]:
         yield f"without an answer, as {pair.sphere.name} has no yield strength: {', '.join(without)}"
