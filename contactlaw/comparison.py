@@ -20,6 +20,7 @@ from contactlaw.physical.pair import Pair
 _NEEDED = "radius", "thickness", "restitution", "restitution_error"
 _LENGTH = 1.0  # correlation length of the law's errors in ln(speed) and ln(R/H), as in a fit
 _THICK = 1e-3  # R/H that stands for that of a half-space
+_MOST = 2000  # rebounds, whose covariance is a square of them: 32 MB
 _LEAST_ERROR = 1e-6  # of a COR; rebounds that are alike to more digits have no covariance to invert
 
 
@@ -110,6 +111,8 @@ def compare(
     has_one = np.isfinite(np.asarray(data.restitution))
     given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
     data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
+    if len(data) > _MOST:
+        raise ArgumentError("data", len(data), f"compare at most {_MOST} rebounds: take means of those that are alike")
     speed, radius, thickness, measured, error = (np.array(getattr(data, name)) for name in ("speed", *_NEEDED))
     model = ImpactModel(pair, law)
     hit = model.solve(speed, radius, thickness)

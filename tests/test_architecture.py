@@ -77,9 +77,9 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 37_721,
+    "contactlaw": 37_722,
     "contactlaw/answers": 2_778,
-    "contactlaw/cli": 4_484,
+    "contactlaw/cli": 4_482,
     "contactlaw/emit": 836,
     "contactlaw/engines": 4_105,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
@@ -98,7 +98,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_646,
-    "tests": 26_973,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 26_975,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

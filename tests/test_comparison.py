@@ -107,6 +107,8 @@ def test_what_is_not_known_is_named():
     minimum = dataclasses.replace(cl.material("stainless-steel-304"), uncertainty={"yield_strength": np.inf})
     other = cl.compare(cl.Pair(minimum, "glass"), data(0.5 * np.ones(9), 0.01))
     assert other.unknown == found.unknown and np.isinf(other.band.high).all() and np.isfinite(found.band.high).all()
+    with pytest.raises(cl.ArgumentError, match="data: got 2001; compare at most 2000 rebounds"):
+        cl.compare(PAIR, {**data(0.5, 0.1), "speed": np.ones(2001)})
     with pytest.raises(cl.ArgumentError, match="restitution_error: has to be given"):
         cl.compare(PAIR, {**data(0.5, 0.1), "restitution_error": None})
 

@@ -28,8 +28,7 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "measured CORs beside the model, to which they were not fitted"
     command = options.command(commands, "compare", about, _run)
-    add = command.add_argument
-    add(
+    command.add_argument(
         "data",
         metavar="FILE",
         help="CSV with a row per rebound, as of `contactlaw fit`, with columns of COR and COR_error; its "

@@ -52,8 +52,7 @@ def save(
                 here = {one: float(sizes[one][of == n].mean()) for one in rest}
                 name = ", ".join(f"{one} {in_unit(value, _UNITS[one], 3)}" for one, value in here.items())
                 curve(axes, scale * x, model, here | {along: x}, errors, colour, name)
-            face = colour if many > 1 else style.ORANGE
-            at = scale * np.minimum(sizes[along][of == n], x[-1])
+            at, face = scale * np.minimum(sizes[along][of == n], x[-1]), colour if many > 1 else style.ORANGE
             points(axes, at, measured[of == n], error[of == n], face, "_" if n else "measured")
         axes.set(xlabel=label, ylabel="coefficient of restitution [-]", xscale="log")
         style.decades(axes.xaxis, (1.0, 2.0, 5.0))
