@@ -20,6 +20,8 @@ from contactlaw.physical.pair import Pair
 _NEEDED = "radius", "thickness", "restitution", "restitution_error"
 _LENGTH = 1.0  # correlation length of the law's errors in ln(speed) and ln(R/H), as in a fit
 _THICK = 1e-3  # R/H that stands for that of a half-space
+_MOST = 2000  # rebounds, whose covariance is a square of them: 32 MB
+_LEAST_ERROR = 1e-6  # of a COR; rebounds that are alike to more digits have no covariance to invert
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +44,12 @@ class Comparison:
     probability : float
         Share of cases in which chance alone makes `chi_squared` as large; small if the model
         differs by more than the errors explain.
+    if_exact : float
+        `chi_squared` if the law had no error of its own: by this laws are told from each other.
     rms : float
         Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
     unknown : tuple of str
-        Causes whose error is not known, as a specified minimum; `chi_squared` is without them.
+        Causes that `chi_squared` is without: specified minima, and a law whose error is not known.
     """
 
     data: Measurements
@@ -54,6 +58,7 @@ class Comparison:
     flags: Integers
     chi_squared: float
     probability: float
+    if_exact: float
     rms: float
     unknown: tuple[str, ...]
 
@@ -101,31 +106,38 @@ def compare(
     data = Measurements.of(data, (), pair.sphere.density)
     for name in _NEEDED:
         if getattr(data, name) is None:
-            raise ArgumentError(name, None, "has to be given for each rebound, to compare it with the model")
+            hint = "; of heights or times their own, as bounce_error" * (name == "restitution_error")
+            raise ArgumentError(name, None, f"has to be given for each rebound, to compare it with the model{hint}")
     has_one = np.isfinite(np.asarray(data.restitution))
     given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
     data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
+    if len(data) > _MOST:
+        raise ArgumentError("data", len(data), f"compare at most {_MOST} rebounds: take means of those that are alike")
     speed, radius, thickness, measured, error = (np.array(getattr(data, name)) for name in ("speed", *_NEEDED))
     model = ImpactModel(pair, law)
     hit = model.solve(speed, radius, thickness)
     errors = {"speed_error": speed_error, "radius_error": radius_error, "thickness_error": thickness_error}
     band = model.uncertainty(speed, radius, thickness, **errors).restitution
     off = measured - hit.restitution
-    known = {cause: np.asarray(size) for cause, size in band.causes.items() if np.isfinite(size).all()}
+    normal = {"model", *band.signs}  # a minimum is no normal deviate, even if its range is known
+    known = {cause: np.asarray(band.causes[cause]) for cause in normal if np.isfinite(band.causes[cause]).all()}
     slenderness = np.log(np.maximum(radius / thickness, _THICK))
     apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
-    covariance = np.diag(error**2)
+    covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)
+    by_law = known.pop("model", 0.0 * off)
     for cause, size in known.items():
-        alike = np.exp(-apart / _LENGTH) if cause == "model" else 1.0
-        covariance += np.outer(size, size) * alike
+        covariance += np.outer(band.signs[cause] * size, band.signs[cause] * size)
+    if_exact = float(off @ np.linalg.solve(covariance, off))
+    covariance += np.outer(by_law, by_law) * np.exp(-apart / _LENGTH)
     chi_squared = float(off @ np.linalg.solve(covariance, off))
     chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
-    unknown = tuple(band.causes.keys() - known.keys())
+    unknown = tuple(cause for cause, size in band.causes.items() if cause not in normal or np.isinf(size).any())
     cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
-    return Comparison(data, cor, band, flags, chi_squared, chance, rms, unknown)
+    return Comparison(data, cor, band, flags, chi_squared, chance, if_exact, rms, unknown)
 
 
 def _by_chance(chi_squared: float, count: int) -> float:
-    """Probability of a larger sum of squares of so many normal deviates (Wilson & Hilferty 1931)."""
-    spread = 2.0 / (9.0 * count)
-    return 0.5 * math.erfc(((chi_squared / count) ** (1.0 / 3.0) - 1.0 + spread) / math.sqrt(2.0 * spread))
+    """Probability of a larger sum of squares of so many normal deviates, by its finite series."""
+    half, odd = max(0.5 * chi_squared, 1e-300), 0.5 * (count % 2)
+    terms = (math.exp(n * math.log(half) - half - math.lgamma(n + 1.0)) for n in np.arange(odd, 0.5 * count))
+    return min(math.fsum(terms) + bool(odd) * math.erfc(math.sqrt(half)), 1.0)

@@ -49,7 +49,8 @@ class Solutions:
         Solutions, rising; none if no value gives the COR; a thickness of ``inf`` is a half-space.
     low, high : ndarray, shape (n,)
         Ends of the range about each solution in which the COR that was asked for lies within the
-        band of `ImpactModel.uncertainty`, that of two of three impacts; or -inf and inf.
+        band of `ImpactModel.uncertainty`, that of two of three impacts; -inf or inf where the band
+        has no end.
     flags : ndarray of int64, shape (n,)
         `Validity` limits that the impact exceeds.
     attainable, attained_at : (float, float)
@@ -140,7 +141,8 @@ class _Curve:
         e = np.append(wanted, self.e[side][::order])
         out = np.flatnonzero((e < least) | (e > most))
         if not out.size:
-            return float(x[-1])
+            known = math.isfinite(most - least)
+            return float(x[-1]) if known else math.copysign(0.0, 1.0 if up else -1.0)  # of inf, -inf
         n = int(out[0])
         share = ((least if e[n] < least else most) - e[n - 1]) / (e[n] - e[n - 1])
         return float(x[n - 1] + share * (x[n] - x[n - 1]))
@@ -267,7 +269,6 @@ class Inverse(Uncertain):
             most = np.maximum(2.0 * wanted - band.low, wanted)
             for n, one in enumerate(zip(x, least, most, strict=True)):
                 ends[:, n] = [curve.leaves(wanted, *one, up=up) for up in (False, True)]
-            ends[:, np.isinf(band.low) | np.isinf(band.high)] = [[-0.0], [0.0]]  # reciprocals of -inf and inf
         last = [int(curve.e.argmin()), int(curve.e.argmax())]
         with np.errstate(divide="ignore"):
             value, low, high, at = 1.0 / x, *(1.0 / ends), 1.0 / curve.x[last]

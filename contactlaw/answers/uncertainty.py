@@ -62,16 +62,20 @@ class Band:
     low, high
         Quantiles of 16 and 84 %: of three real impacts two are between them. An end is -inf or
         inf where it is not known: that towards which a strength above a specified minimum moves
-        the answer, mostly the high one of the COR, and both of a law of your own.
+        the answer, mostly the high one of the COR, and both of a law of your own. If it is known
+        how far the minimum is exceeded, the end is that of the strongest.
     causes : dict of str to float or ndarray
         Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
         ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf of a law
         of your own and of a specified minimum that matters.
+    signs : dict of str to float or ndarray
+        1 where more of a number raises the answer, -1 where it lowers it; not of law and minima.
     """
 
     low: float | Array
     high: float | Array
     causes: dict[str, float | Array]
+    signs: dict[str, float | Array]
 
 
 @dataclass(frozen=True)
@@ -114,8 +118,10 @@ class Variants:
             for name, error in self.given[roles[0]].uncertainty.items()
             if error
         ]
-        self.changes = [one for one in changes if one.error < math.inf]
-        self.minima = [one._replace(error=1.0) for one in changes if one.error == math.inf]
+        self.changes = [one for one in changes if 0.0 < one.error < math.inf]
+        self.minima = [one for one in changes if one.error == math.inf]
+        # Minima whose excess is known, each with the number that makes it the most.
+        self.ranges = [(one._replace(error=1.0), math.log1p(-one.error)) for one in changes if one.error < 0.0]
         self.solver = functools.cache(self._solver)
 
     def _solver(self, moved: tuple[tuple[Change, float], ...], *decades: float) -> Solver:
@@ -338,14 +344,20 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
 
     low, high = map(shifted, curves.quantiles())
     causes = {one.cause: width(ends) for one, ends in zip(changes, curves.ends, strict=True)}
+    signs = {one.cause: np.sign(ends[1] - ends[0]) for one, ends in zip(changes, curves.ends, strict=True)}
     if curves.by_law is not None:
         causes["model"] = width(np.array([-curves.by_law, curves.by_law]))
         causes["model"][0] = curves.cor_by_law
     else:
         causes["model"] = np.full_like(low, math.inf)
     up, down = np.zeros(low.shape, dtype=bool), np.zeros(low.shape, dtype=bool)
+    if variants.ranges:  # from the answers at the minima to those at the most, all together
+        gain = shifted(curves.moved(*variants.ranges)) - shifted(0.0 * logs)
+        low, high = low + np.minimum(gain, 0.0), np.minimum(high + np.maximum(gain, 0.0), np.exp(most))
+        for top in variants.ranges:
+            causes[top[0].cause] = 0.5 * np.abs(shifted(curves.moved(top)) - shifted(0.0 * logs))
     for one in variants.minima:
-        moved = np.array([curves.moved((one, z)) for z in _STRONGER])
+        moved = np.array([curves.moved((one._replace(error=1.0), z)) for z in _STRONGER])
         higher, lower = moved.max(axis=0) > _MATTERS, moved.min(axis=0) < -_MATTERS
         if np.any((higher | lower)[:3]):
             causes[one.cause] = np.where(higher | lower, math.inf, 0.0)
@@ -356,7 +368,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
         Band(
             shaped(low[n], impacts.shape),
             shaped(high[n], impacts.shape),
-            {cause: shaped(size[n], impacts.shape) for cause, size in causes.items()},
+            *({cause: shaped(size[n], impacts.shape) for cause, size in of.items()} for of in (causes, signs)),
         )
         for n in range(3)
     )

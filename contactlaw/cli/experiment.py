@@ -5,22 +5,25 @@
 
 import argparse
 import dataclasses
+import json
 import math
+import sys
 import textwrap
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
 from contactlaw import quantities
-from contactlaw._arrays import Array, Integers
-from contactlaw._readable import in_unit
+from contactlaw._arrays import Array
+from contactlaw._readable import drawn, in_unit
 from contactlaw.cli.parts import chosen, impacts, options, wording
+from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.model import ImpactModel
 from contactlaw.physical import flight
 from contactlaw.physical.arguments import within
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.validity import count_flags, edge_distance
+from contactlaw.physical.validity import edge_distance
 from contactlaw.quantities import LENGTH, SHARE, TIME
 
 _RADIUS = 2e-3  # [m] of a bead, where none is given
@@ -31,8 +34,20 @@ _ERRORS = {  # quantity, help, default, least and largest
     "height_error": (LENGTH, "standard error of the height of a drop [m] (default: 2 mm)", 2e-3, 1e-6, 1.0),
     "scatter": (SHARE, "standard deviation of the COR from drop to drop (default: 0.02)", 0.02, 1e-4, 0.5),
 }
+_BOUNCES = 20  # of one drop, the most that a row of a table of measurements has
+_STUCK = 1e-6  # least COR, and least loss, that count for the number of bounces
 _MOST = 100  # drops of one kind; more are not worth while, and errors that drops share dominate
 _WIDTH = 110  # of a line of text
+_COLUMNS = (
+    Column("thickness", "m", "thickness", "mm", 1e3),
+    Column("drop", "m", "drop", "cm", 1e2),
+    Column("speed", "m/s", "speed", "m/s"),
+    Column("restitution", "", "COR"),
+    Column("error", "", "one drop", "+-"),
+    Column("bounces", "", "bounces"),
+    Column("sheet", "m", "sheet", "cm", 1e2),
+    Column("told_by", "drops", "told by", "drops"),
+)
 
 
 def add(commands: Any) -> None:
@@ -51,30 +66,21 @@ def add(commands: Any) -> None:
         options.add_quantity(command, f"--{name.replace('_', '-')}", quantity, what, default=default, metavar="E")
     options.add_errors(command, ())
     options.add_name_of_law(command)
+    add = command.add_mutually_exclusive_group().add_argument
+    add("--csv", action="store_true", help="print rows in SI units, every digit")
+    add("--json", action="store_true", help="print rows in SI units; what no number of drops finds is null")
     command.set_defaults(outside="solve")
     command.epilog = f"{options.UNITS} Several are a list, 1mm,2mm, or a range start:stop:count."
 
 
-class Plan(NamedTuple):
-    """Drops, in arrays of one length, and how many of each are needed; inf: no number helps."""
-
-    thickness: Array
-    drop: Array
-    speed: Array
-    restitution: Array
-    error: Array  # of the COR of one drop
-    bounces: Array  # of one drop, whose COR the timing finds as well as the scatter allows
-    sheet: Array  # least side [m]
-    told: Array  # drops that tell the COR from the mean of all
-    found: dict[str, Array]  # drops that find an unknown
-    flags: Integers
-
-
-def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, errors: dict[str, float]) -> Plan:
+def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, errors: dict[str, float]) -> ImpactTable:
     """Count the drops that are needed, for every combination of thicknesses and heights.
 
     The COR of a drop is half of g times the time to the next bounce over the speed. The errors of
     single drops become smaller with their number; those of the law and of the other inputs do not.
+    Columns are the COR's `error` of one drop, `bounces` of one drop that the timing finds as well as
+    the scatter allows, the least side of a `sheet`, drops that tell the COR from the mean of all,
+    and behind these drops that find each unknown; NaN: no number helps.
     """
     timing_error, height_error, scatter = (errors[name] for name in _ERRORS)
     h, fall = (one.ravel() for one in np.meshgrid(thickness, drop, indexing="ij"))
@@ -87,22 +93,24 @@ def plan(model: ImpactModel, radius: float, thickness: Array, drop: Array, error
     by_time, by_height = math.sqrt(2.0) * timing_error * flight.GRAVITY / (2.0 * v), 0.5 * cor * height_error / fall
     error = np.sqrt(scatter**2 + by_time**2 + by_height**2)
 
-    def drops(shift: Array, others: Array) -> Array:
-        """Count the drops whose mean has, with the errors of `others`, an error as small as a shift."""
-        left = shift**2 - others
-        return np.where(left > 0.0, np.maximum(np.ceil(error**2 / np.where(left > 0.0, left, 1.0)), 1.0), math.inf)
+    def drops(shift: Array, others: Iterable[str]) -> Array:
+        """Count the drops whose mean has, with the errors of other causes, an error as small as a shift."""
+        left = shift**2 - sum(np.square(causes[other]) for other in others)
+        with np.errstate(divide="ignore"):
+            counts = np.ceil(error**2 / np.maximum(left, 0.0))
+        return np.where(counts <= _MOST, np.maximum(counts, 1.0), math.nan)
 
-    squares = {cause: np.asarray(size) ** 2 for cause, size in causes.items()}
-    with np.errstate(divide="ignore"):  # each bounce is slower by the COR, and its time shorter
-        bounces = 1.0 + np.floor(np.log(np.minimum(by_time / scatter, 1.0)) / np.log(cor))
-    found = {
-        cause: drops(np.asarray(size), np.sum([one for of, one in squares.items() if of != cause], axis=0))
-        for cause, size in moved.items()
-        if cause != "model"
-    }
+    # Each bounce is slower by the COR, and its time shorter.
+    bounces = 1.0 + np.log(np.minimum(by_time / scatter, 1.0)) / np.log(np.clip(cor, _STUCK, 1.0 - _STUCK))
+    moved.pop("model")
+    sizes = {cause: (np.asarray(size), causes.keys() - {cause}) for cause, size in moved.items()}
+    found = {f"{cause.replace(' ', '_')}_by": drops(*size) for cause, size in sizes.items()}
     distance = np.asarray(edge_distance(model.pair.plate, h, hit.contact_time))
-    told = drops(np.abs(cor - cor.mean()) / _TOLD, squares["model"])
-    return Plan(h, fall, v, cor, error, bounces, 2.0 * distance, told, found, np.asarray(hit.flags))
+    told = drops(np.abs(cor - cor.mean()) / _TOLD, ["model"])
+    sheet = np.where(np.isinf(distance), math.nan, 2.0 * distance)
+    values = h, fall, v, cor, error, np.minimum(bounces // 1.0, _BOUNCES), sheet, told
+    named = {column.name: one for column, one in zip(_COLUMNS, values, strict=True)}
+    return ImpactTable(named | found, np.asarray(hit.flags), impacts.asked(model, radius=radius))
 
 
 def _moved(model: ImpactModel) -> ImpactModel:
@@ -124,51 +132,38 @@ def _run(arguments: argparse.Namespace) -> None:
         within(name, np.array([size]), *_ERRORS[name][3:], "")
     model = chosen.model(arguments)
     made = plan(model, radius, np.array(arguments.thickness), np.array(arguments.drop), errors)
-    print(impacts.in_words(impacts.asked(model, radius=radius)), *_rows(made), "", sep="\n")
-    for said in _said(made):
-        print(*textwrap.wrap(said, _WIDTH), sep="\n")
+    causes = {name: name.removesuffix("_by").replace("_", " ") for name in [*made.columns][len(_COLUMNS) :]}
+    titles = (cause.replace("yield ", "").replace(" of the ", ", ") for cause in causes.values())
+    columns = *_COLUMNS, *(Column(name, "drops", title, "drops") for name, title in zip(causes, titles, strict=True))
+    if arguments.csv:
+        impacts.write_csv(made, sys.stdout, columns)
+    elif arguments.json:
+        print(json.dumps(impacts.records(made), indent=2))
+    else:
+        print(*impacts.text(made, columns), "", sep="\n")
+        for said in _said(made.columns, causes):
+            print(*textwrap.wrap(said, _WIDTH), sep="\n")
 
 
-def _rows(made: Plan) -> Iterator[str]:
-    def needed(counts: Array) -> Iterator[str]:
-        return (f"{one:.0f}" if one <= _MOST else "-" for one in counts.tolist())
-
-    shown = {
-        ("thickness", "[mm]"): (f"{1e3 * one:.4g}" for one in made.thickness),
-        ("drop", "[cm]"): (f"{1e2 * one:.4g}" for one in made.drop),
-        ("speed", "[m/s]"): (f"{one:.3g}" for one in made.speed),
-        ("COR", "[-]"): (f"{one:.3f}" for one in made.restitution),
-        ("one drop", "[+-]"): (f"{one:.3f}" for one in made.error),
-        ("bounces", ""): (f"{one:.0f}" for one in made.bounces),
-        ("sheet", "[cm]"): (f"{100.0 * one:.2g}" for one in made.sheet),
-        ("told by", "[drops]"): needed(made.told),
-    }
-    for cause, counts in made.found.items():
-        shown[cause.replace("yield ", "").replace(" of the ", ", "), "[drops]"] = needed(counts)
-    cells = [[*heads, *column] for heads, column in shown.items()]
-    cells.append(["flags", "", *(", ".join(impacts.flag_names(flags)) for flags in made.flags)])
-    yield from impacts.aligned(cells)
-    yield from impacts.explained(count_flags(made.flags), made.flags.size)
-
-
-def _said(made: Plan) -> Iterator[str]:
+def _said(made: dict[str, Array], causes: dict[str, str]) -> Iterator[str]:
     """Say what the columns mean, and which drops are the best."""
-    mean, share = made.restitution.mean(), f"{100.0 * _PRECISION:g} %"
+    mean, share = made["restitution"].mean(), f"{100.0 * _PRECISION:g} %"
     yield (
         f"told by: drops whose mean is {_TOLD:g} standard errors from one COR for all of them, {mean:.3f}. The last "
-        f"columns: drops that find a number within {share}, if all others are known as stated. -: more than {_MOST}, "
-        "or the errors of law and materials hide it. bounces: those of one drop that are worth timing. sheet: "
-        "least side, if the bead hits its middle. An error that is not known counts as none: give it with "
-        "--sphere-error or --plate-error."
+        f"columns: drops that find a number with a standard error of {share}, if all others are known as stated. -: "
+        f"more than {_MOST}, or the errors of law and materials hide it. bounces: those of one drop that are worth "
+        f"timing, {_BOUNCES} at most. sheet: least side, if the bead hits its middle. An error that is not known "
+        "counts as none, and an unknown excess over a specified minimum as endless: give --sphere-error, --plate-error."
     )
-    for cause, counts in made.found.items():
-        n = np.lexsort((made.sheet, counts))[0]
-        if counts[n] <= _MOST:
-            many = f"{counts[n]:.0f} drop{'s' * bool(counts[n] > 1)}"
-            where = f"from {in_unit(made.drop[n], 'm')} onto {in_unit(made.thickness[n], 'm')}"
-            yield f"{cause}: {many} {where} (a sheet of {100.0 * made.sheet[n]:.2g} cm) find it within {share}."
-        else:
-            yield f"{cause}: no drops of these find it within {share}."
-    tells = made.found.get("thickness", np.full(made.sheet.shape, math.inf)) <= _MOST
-    if tells.any():
-        yield f"The thickest sheet that tells its thickness: {in_unit(made.thickness[tells].max(), 'm')}."
+    for name, cause in causes.items():
+        counts = made[name]
+        n = np.lexsort((made["sheet"], counts))[0]
+        if np.isnan(counts[n]):
+            yield f"{cause}: no drops of these find it to {share}."
+            continue
+        many, side = f"{counts[n]:.0f} drop{'s' * bool(counts[n] > 1)}", made["sheet"][n]
+        where = f"from {in_unit(made['drop'][n], 'm')} onto {drawn(made['thickness'][n])}"
+        wide = "" if np.isnan(side) else f" (a sheet of {100.0 * side:.2g} cm)"
+        yield f"{cause}: {many} {where}{wide} find it to {share}."
+    if (tells := np.isfinite(made["thickness_by"])).any():
+        yield f"The thickest sheet that tells its thickness: {in_unit(made['thickness'][tells].max(), 'm')}."

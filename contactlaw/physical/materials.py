@@ -38,6 +38,7 @@ _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 _LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
 _FREQUENCIES = 1e-3, 1e9  # [Hz]; from slow tests to ultrasound and beads of micrometres
 _LARGEST_ERROR = 1.0  # relative standard error; beyond, nothing is known
+_LARGEST_EXCESS = 9.0  # of a strength over its specified minimum
 # Least and largest loss factor that handbooks of acoustics print for audible sound, without a frequency:
 # Mechel, Formulas of Acoustics (2008), Table 3; Bies, Hansen & Howard, Engineering Noise Control,
 # 5th ed. (2017), Table C.1, which has a range from the material to a mounted panel.
@@ -182,8 +183,9 @@ class Material:
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
-        knows it: of answers that depend on it one end is known.
+        lacks are left out. That of a strength that is a specified minimum is ``inf``, if nobody
+        knows it: of answers that depend on it one end is known; or -0.4, if real ones are up to
+        40 % above it.
 
     Raises
     ------
@@ -558,7 +560,8 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
     relative = {number: error for number, (error, _) in errors.items()}
     if "{bias}" in source.get("yield_strength", ""):
         relative.setdefault("yield_strength", math.inf)
-    body = Material(name, **values, kind=table.get("kind"), uncertainty=relative)
+    of = str(table.get("like", name)) if values.get("loss_factor") == "handbook" else name
+    body = Material(of, **values, kind=table.get("kind"), uncertainty=relative)
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -569,16 +572,17 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
         parts.append(f"{label}{shown}: {_cited(source[number], references)}")
         if number in errors:
             error, reason = errors[number][0], _cited(errors[number][1], references)
-            parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
-    return replace(body, source="; ".join(parts))
+            size = f"standard error of it {100.0 * error:g} %" if error > 0.0 else f"up to {-100.0 * error:g} % more"
+            parts.append(f"{size}: {reason}")
+    return replace(body, name=name, source="; ".join(parts))
 
 
 def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
     """Add what an entry takes from the one that it is `like`; sources are by number."""
     source = _sources(table)
     if "like" in table:
-        if (other := tables.get(_key(str(table["like"])))) is None:
-            raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
+        if (other := tables.get(_key(str(table["like"])))) is None or other is table:
+            raise ValueError(f"[{name}]: like = {table['like']!r} is no {'other ' * bool(other)}entry")
         other = _with_like(table["like"], other, tables)
         table = {field: other[field] for field in _ALIKE if field in other} | table
         theirs = other["source"]
@@ -712,11 +716,12 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
-        minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
-        error = math.inf if minimum else _finite(f"uncertainty[{name!r}]", value, "-")
+        error = math.inf if str(value) == "inf" else _finite(f"uncertainty[{name!r}]", value, "-")
+        strength = name in ("yield_strength", "hardness")
+        minimum = strength and (error == math.inf or -_LARGEST_EXCESS <= error < 0.0)
         if not (0.0 <= error <= _LARGEST_ERROR or minimum):
-            limits = f"a relative standard error from 0 to {_LARGEST_ERROR:g}"
-            raise refused(value, f"{name} must be {limits}")
+            limits = f"from 0 to {_LARGEST_ERROR:g}" + f", of a minimum {-_LARGEST_EXCESS:g} to 0 or inf" * strength
+            raise refused(value, f"{name} must be a relative standard error {limits}")
         if getattr(body, name) is not None:
             found[name] = error
     return found

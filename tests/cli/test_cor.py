@@ -5,6 +5,7 @@ import dataclasses
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -166,7 +167,7 @@ GIVEN = "--sphere-error yield_strength=20% --thickness-error 5%"
 
 
 def printed(command, capsys):
-    assert main(command.split()) == 0, capsys.readouterr().err
+    assert main(shlex.split(command)) == 0, capsys.readouterr().err
     return capsys.readouterr().out
 
 
@@ -204,22 +205,22 @@ def test_strengths_without_an_error_are_named(capsys):
 
 
 def test_no_upper_end_is_printed_where_a_specified_minimum_matters(capsys):
-    asked = "--sphere soda-lime-glass --plate steel-s235 --radius 1.5mm --speed 2.43"
+    asked = "--sphere soda-lime-glass --plate aluminium-6082-t6 --radius 1.5mm --speed 2.43"
     why = "(no upper end: the yield strength of the plate is a specified minimum"
     for command in (f"cor {asked} --thickness 5mm", f"thickness {asked} --cor 0.4"):
         assert why in " ".join(printed(command, capsys).split())
         (row,) = csv.DictReader(printed(f"{command} --csv", capsys).splitlines())
         ends = [cell for name, cell in row.items() if "_low" in name or "_high" in name]
-        assert len(ends) > 1 and ends[1] == "" and ends[0] == row.get("restitution_low", "")
+        assert len(ends) > 1 and (ends[0] == "") == (ends[1] != "") == command.startswith("thickness")
     record = json.loads(printed(f"{command} --json", capsys))[0]
-    assert record["thickness_low"] is record["thickness_high"] is None
-    assert re.search(r" 0.6408 +>0.638  6.951", printed(f"cor {asked},1e-3 --thickness 5mm", capsys))
+    assert record["thickness_low"] is None and record["thickness_high"] == float(ends[1])
+    assert re.search(r" 0.7179 +>0.714  8.089", printed(f"cor {asked},1e-3 --thickness 5mm", capsys))
 
 
 @pytest.mark.parametrize(
     ("asked", "size", "said"),
     [
-        ("soda-lime-glass --plate steel-s235", 0.1, "hardness of the plate: a specified minimum, and"),
+        ("soda-lime-glass --plate aluminium-6082-t6", 0.1, "hardness of the plate: a specified minimum, and"),
         ("soda-lime-glass --plate aluminium-6061-t6", 0.1, "plate: its error is not known, and each"),
         ("bearing-steel-52100-ball --plate steel-dc01", 0.19, "plate, 0.041 of half the width; all"),
         ("glass --plate glass", 0.0, ""),
@@ -239,6 +240,44 @@ def test_it_asks_for_what_narrows_the_band_most(asked, size, said, capsys):
         ]
         low, high = (cl.ImpactModel(cl.Pair(sphere, end)).restitution(2.43, 1.5e-3, 5e-3) for end in ends)
         assert f"{0.5 * (high - low):.2g} of" in first
+
+
+@pytest.mark.parametrize("sphere", ["pmma loss_factor=handbook", "hdpe", "alumina"])
+def test_without_the_error_of_what_to_measure_first_the_band_is_as_narrow_as_said(sphere, capsys):
+    asked = [
+        "cor",
+        "--sphere",
+        sphere,
+        "--plate",
+        "steel-dc01",
+        "--speed",
+        "2",
+        "--radius",
+        "1mm",
+        "--thickness",
+        "2cm",
+    ]
+    said = printed(shlex.join(asked), capsys)
+    name, body, rest = re.findall(r"measure this first +the (.*) of the (\w+), .*all else is (.*)", said)[0]
+    if guessed := re.findall(", with 10 % for the yield strength of the bead", rest):
+        asked += ["--sphere-error", "yield_strength=10%"]
+        rest, said = rest.removesuffix(guessed[0]), printed(shlex.join(asked), capsys)
+    assert bool(guessed) == (sphere == "hdpe")
+    number = name.partition(" or ")[0].lower().replace("'", "").replace(" ", "_")
+    option = "--sphere-error" if body == "bead" else "--plate-error"
+    assert main([*asked, option, f"{number}=0%", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    half = 0.5 * (found["restitution_high"] - found["restitution_low"])
+    assert float(rest) == pytest.approx(half, rel=0.1)
+    ends = [float(end) for end in re.findall(r"restitution .*\((.*) to (.*?);", said)[0]]
+    assert half < 0.83 * 0.5 * (ends[1] - ends[0])
+
+
+def test_it_asks_for_what_narrows_the_bands_of_several_impacts_most(capsys):
+    asked = "cor --sphere soda-lime-glass --plate steel-s235 --radius 1.5mm --speed 2.43{} --thickness 5mm"
+    (one,) = re.findall("measure this first +(.*)", printed(asked.format(""), capsys))
+    both = " ".join(printed(asked.format(",2.43"), capsys).split())
+    assert f"Measure this first: {one}" in both
 
 
 def test_without_errors_of_materials_it_says_so(capsys):

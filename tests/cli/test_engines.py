@@ -170,7 +170,7 @@ def test_a_speed_table(model, capsys):
         ([*SWEEP, "--out", "nowhere/cor.h5"], "--out: there is no folder nowhere"),
         ([*SWEEP, "--speed", "1e4", "--out", "cor.h5"], "10000 m/s, radius 0.5 mm, thickness 0.5 "),
         ([*SWEEP, "--speed", "0", "--out", "cor.h5"], "--speed: got 0.0; must lie"),
-        (["constant", *SIZES, "--speed", "1"], "--sphere: has to be given, no record says it"),
+        (["constant", *SIZES, "--speed", "1"], "--sphere: has to be given, no record or file says it"),
         (["constant", *PAIR, "--speed", "1", *SIZES[:2]], "--thickness: has to be given"),
         ([*CONSTANT, "--speed", "1,1e4"], "10000 m/s, radius 0.9 mm, thickness 0.5 mm: outside"),
         (["constant", *PAIR, "--record", "no.csv"], "no.csv: No such file or directory"),

@@ -27,6 +27,10 @@ uncertainty = {yield_strength = 0.1}
 like = "stainless-steel-304"
 hardness = "32 HRC"
 source = {hardness = "measured"}
+
+[soft]
+like = "pmma"
+loss_factor = "handbook"
 """
 IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".split()
 
@@ -67,6 +71,7 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     )
     assert mine["hard-304"].density == cl.material("304").density
     assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
+    assert mine["soft"].loss_factor == material_of("sphere", "pmma loss_factor=handbook", {}).loss_factor
     assert main(["cor", "--materials", str(path), "--sphere", "Delrin", *IMPACT]) == 0
     row = json.loads(capsys.readouterr().out)
     model = cl.ImpactModel(cl.Pair(mine["my-pom"], "steel-dc01"))
@@ -74,7 +79,7 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     assert (row["sphere"], row["radius"]) == ("my-pom", 1e-3)
     assert main(["materials", "--materials", str(path)]) == 0
     _, *rows = capsys.readouterr().out.splitlines()
-    assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"]]
+    assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"], ["soft", "2.700"]]
 
 
 def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):
@@ -110,6 +115,7 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ("density", "densty", r"mine.toml: \[my-pom\]: unknown 'densty'; did you mean 'density'"),
         ("density = 1410", "", r"\[my-pom\]: give density, in SI units"),
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
+        ('"stainless-steel-304"', '"hard-304"', r"\[hard-304\]: like = 'hard-304' is no other entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
         ("= 2.8e9", "= " + "[" * 3000, "mine.toml: .*recursion"),
         ("[my-pom]", "", "mine.toml: "),

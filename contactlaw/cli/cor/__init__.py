@@ -17,8 +17,8 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import bands, inverse
-from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
+from contactlaw.cli.cor import inverse
+from contactlaw.cli.parts import bands, chosen, figure, impacts, layout, options, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
@@ -81,10 +81,6 @@ def _run(arguments: argparse.Namespace) -> None:
     elif arguments.json:
         rows = impacts.records(found)
         print(json.dumps(rows if len(rows) > 1 else rows[0], indent=2))
-    elif len(found) > 1:
-        print(*impacts.text(found, columns), sep="\n")
-        if known:
-            print(*bands.explained(known.restitution, model.pair), sep="\n")
     else:
         first = ""
         if known is not None and errors is not None:
@@ -94,7 +90,12 @@ def _run(arguments: argparse.Namespace) -> None:
                 guess = ImpactModel(stated, law=arguments.law)
                 ask = guess.uncertainty(speed, radius, plate_given, **errors, mass=mass)
             first = bands.measure_first(ask.restitution, why)
-        _print_one(found, known, model.pair, first)
+        if len(found) == 1:
+            _print_one(found, known, model.pair, first)
+            return
+        print(*impacts.text(found, columns), sep="\n")
+        if known:
+            print(*bands.explained(known.restitution, model.pair, first), sep="\n")
 
 
 def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair, first: str) -> None:

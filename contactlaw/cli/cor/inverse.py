@@ -13,8 +13,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.inverse import Solutions
-from contactlaw.cli.cor import bands
-from contactlaw.cli.parts import chosen, impacts, options, wording
+from contactlaw.cli.parts import bands, chosen, impacts, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.quantities import HEIGHT, SHARE
@@ -78,9 +77,9 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     rows = dict(zip(("restitution", *known), np.repeat(asked, counts, axis=1), strict=True))
     for name, field in ((unknown, "value"), (f"{unknown}_low", "low"), (f"{unknown}_high", "high")):
         rows[name] = np.concatenate([getattr(one, field) for one in found])
-    unsure = np.isinf(rows[f"{unknown}_low"])
-    for end in ("low", "high"):
-        rows[f"{unknown}_{end}"][unsure] = np.nan
+    low, high = (rows[f"{unknown}_{end}"] for end in ("low", "high"))
+    low[np.isinf(low)] = np.nan
+    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
     flags = np.concatenate([one.flags for one in found])
     table, columns = ImpactTable(rows, flags, impacts.asked(model) | named), _columns(unknown)
     if arguments.csv:

@@ -57,7 +57,7 @@ def body(arguments: argparse.Namespace, role: str, known: Material | None = None
     chosen = getattr(arguments, role)
     if chosen is None:
         if known is None:
-            raise ArgumentError(role, None, "has to be given, no record says it")
+            raise ArgumentError(role, None, "has to be given, no record or file says it")
         return known
     return own.material_of(role, chosen, arguments.materials)
 

@@ -42,6 +42,16 @@ class Located(NamedTuple):
     per_unit: float  # values are divided by this, which rounds only once
 
 
+def lines_of(content: bytes) -> list[str]:
+    """Lines of a text in UTF-8, or in the characters of Windows, for µ."""
+    try:
+        return content.decode("utf-8-sig").splitlines() or [""]
+    except UnicodeDecodeError:
+        if b"\0" in content:
+            raise ValueError("neither text in UTF-8") from None
+        return content.decode("cp1252", "replace").splitlines()
+
+
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     r"""Split a table into the names of its columns, its rows, and the delimiter of columns.
 
@@ -53,12 +63,7 @@ def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     >>> split_table(b"# in May\nspeed,COR\n0.5,0.9\n")
     (['speed', 'COR'], ['', '0.5,0.9'], ',')
     """
-    try:
-        lines = content.decode("utf-8-sig").splitlines() or [""]
-    except UnicodeDecodeError:
-        if b"\0" in content:
-            raise ValueError("neither text in UTF-8") from None
-        lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
+    lines = lines_of(content)
     below = next((n for n, line in enumerate(lines) if not line.startswith("#")), 0)
     words = re.sub(r"\d[eE][-+]?\d|nan|inf", "", lines[below])
     head = below if re.search(r"[^\W\d]", words) else 0  # numpy's names are a comment

@@ -54,8 +54,8 @@ COLUMNS = (
 class ImpactTable:
     """Impacts and their results in SI units; all columns have the same length.
 
-    The yield speed is inf if nothing yields or an impact at yield is outside the table. Ends of a
-    range that is not known are NaN: "-", an empty cell or null.
+    The yield speed is inf if nothing yields or an impact at yield is outside the table. What is not
+    known, as an end of a range, is NaN: "-", an empty cell or null.
     """
 
     columns: dict[str, Array]
@@ -147,7 +147,7 @@ def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[st
 def _cells(table: ImpactTable, column: Column) -> Iterator[str]:
     values = table.columns[column.name] * column.scale
     if not column.to:
-        return (f"{value:.4g}" for value in values)
+        return ("-" if math.isnan(value) else f"{value:.4g}" for value in values)
     ends = zip(values, table.columns[column.to] * column.scale, strict=True)
     return (_range(low, high) for low, high in ends)
 

@@ -4,6 +4,7 @@ import dataclasses
 import difflib
 import re
 from collections.abc import Mapping
+from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
@@ -45,7 +46,10 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             if isinstance(found, float) and found < least and _BARE.fullmatch(word):
                 wording.print_warning(f"{key}={word} is {word} {likely}?")
         if first:
-            return _changed(first, given, own)
+            try:
+                return changed(find(first, own), given)
+            except UnknownMaterialError:
+                raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}") from None
         if missing := [key for key in ("E", "nu", "rho") if _FIELDS[key] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
@@ -53,13 +57,9 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
         raise ArgumentError(option, None, wording.sentence(error, ())) from error
 
 
-def _changed(name: str, given: dict[str, object], own: Mapping[str, Material]) -> Material:
-    """Body with other numbers, whose errors are not known; a hardness replaces its yield strength."""
-    try:
-        body = find(name, own)
-    except UnknownMaterialError:
-        raise ValueError(f"{name!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}") from None
+def changed(body: Material, given: dict[str, Any]) -> Material:
+    """Body with other numbers, whose errors are those given; a hardness replaces its yield strength."""
     if "hardness" in given and body.hardening is None:
         given = {"yield_strength": None} | given
     errors = {key: error for key, error in body.uncertainty.items() if key not in given}
-    return dataclasses.replace(body, uncertainty=errors, **given)  # type: ignore[arg-type]
+    return dataclasses.replace(body, **given | {"uncertainty": errors | given.get("uncertainty", {})})

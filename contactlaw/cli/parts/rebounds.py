@@ -14,6 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
+from contactlaw._escaped import line
 from contactlaw.cli.parts import columns, own, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.fitting import Measurements
@@ -91,6 +92,8 @@ def _read(content: bytes) -> Read:
             "no text in UTF-8, as spreadsheets save it; take columns with names in the first line"
         ) from None
     found = columns.locate(names, _COLUMNS)
+    if found.keys() >= {"time_error", "contact_time_error"}:  # one column: of instants, or of contact times
+        found.pop("contact_time_error" if "t1" in found else "time_error")
     listed = ", ".join(names)[:200]
     if "speed" not in found and not any(map(is_height_or_time, found)):
         near = _nearest(names, ("speed",))
@@ -120,9 +123,7 @@ def _read(content: bytes) -> Read:
     lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
     unused = [name for n, name in enumerate(names) if name and n not in wanted]
     missing = _COLUMNS.keys() - found.keys()
-    comments = itertools.takewhile(
-        lambda line: line.startswith("#"), content.decode("utf-8-sig", "replace").splitlines()
-    )
+    comments = itertools.takewhile(lambda line: line.startswith("#"), columns.lines_of(content))
     head = "\n".join(line[1:] for line in comments)
     return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines, empty, head)
 
@@ -192,7 +193,8 @@ def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
         role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
     }
     errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
-    return Conditions(str(given.get("title", "")), str(given.get("reference", "")), bodies, errors)
+    title, reference = (line(str(given.get(name, ""))) for name in _TEXTS[:2])
+    return Conditions(title, reference, bodies, errors)
 
 
 def _check_keys(given: Mapping[str, Any], known: tuple[str, ...]) -> None:
@@ -206,9 +208,11 @@ def _body(role: str, given: Any, materials: Mapping[str, Material]) -> Material:
     """Material of a head: a name, numbers in one text, or a table of numbers `like` another."""
     if isinstance(given, str):
         return own.material_of(role, given, materials)
+    if not isinstance(given, dict):
+        raise ValueError(f"{role} = {given!r}: write the name of a material, or a table [{role}] of numbers")
     numbers = spelled_out(given)
     like = numbers.pop("like", None)
     _check_keys(numbers, tuple(one.name for one in dataclasses.fields(Material)))
     if like is not None:
-        return dataclasses.replace(find(like, materials), **numbers)
+        return own.changed(find(like, materials), numbers)
     return Material(**{"name": role} | numbers)

@@ -17,6 +17,7 @@ _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the 
 _OF_LAW = "two of three impacts by finite elements (no errors of the materials are known)"
 _OF_ALL = "two of three impacts, as far as errors are known"
 _ASSUMED = 0.1  # relative error of a strength whose own is not known
+_TELLS = 0.75  # share of a cause in all others from which without it the band is narrower by a fifth
 WIDTH = 110  # of a line of text
 
 
@@ -75,14 +76,15 @@ def assumed(pair: Pair) -> tuple[dict[str, str], Pair]:
 
 
 def measure_first(band: Band, assumed: dict[str, str]) -> str:
-    """Name the input of one impact whose measurement narrows the band most, and by how much.
+    """Name the input whose measurement narrows the band most, and by how much: rms of several impacts.
 
     Causes that are `assumed` have an error of 10 %, since theirs is not known.
     """
-    sizes = {cause: np.ravel(size).item() for cause, size in band.causes.items()}
-    cause, size = max(sizes.items(), key=lambda one: one[1])
-    rest = math.sqrt(sum(one**2 for name, one in sizes.items() if name != cause))
-    if cause == "model" or size < rest:
+    sizes = {cause: float(np.sqrt(np.mean(np.square(size)))) for cause, size in band.causes.items()}
+    rest = sizes.pop("model")
+    cause, size = max(sizes.items(), key=lambda one: one[1], default=("", 0.0))
+    rest = math.hypot(rest, *(one for name, one in sizes.items() if name != cause))
+    if not size > _TELLS * rest:
         return ""
     what = "the " + cause.replace("yield strength", "yield strength or hardness")
     why = (
@@ -90,24 +92,27 @@ def measure_first(band: Band, assumed: dict[str, str]) -> str:
         if cause in assumed
         else f", {size:.2g} of half the width"
     )
-    return f"{what}{why}; all else is {rest:.2g}"
+    guessed = [f"the {name}" for name in sizes.keys() & assumed if name != cause]
+    return f"{what}{why}; all else is {rest:.2g}{', with 10 % for ' * bool(guessed)}{' and '.join(guessed)}"
 
 
-def explained(band: Band, pair: Pair) -> Iterator[str]:
+def explained(band: Band, pair: Pair, first: str) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
-    said = f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."
-    yield from textwrap.wrap(said, WIDTH)
+    said = [f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."]
     if meaning(band) is _OF_ALL and np.isfinite(band.low).any():
-        yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", WIDTH)
+        said.append(f"Half its width by cause: {_causes(band)}.")
+    yield from textwrap.wrap(" ".join([*said, *[f"Measure this first: {first}."] * bool(first)]), WIDTH)
 
 
 def left_out(band: Band, pair: Pair) -> str:
-    """Name what is not in the band and often matters most: unknown errors, viscosity."""
+    """Name what is not in the band and often matters most, unknown errors and viscosity, and ranges."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
     known = {"yield_strength", "hardness"}
     names = [role for role, body in roles.items() if body.strength is not None and not body.uncertainty.keys() & known]
     parts = list(filter(None, [unknown(band)]))
+    if ranges := [role for role, body in roles.items() if min(body.uncertainty.values(), default=0.0) < 0.0]:
+        parts.append(f"strength of {' and '.join(ranges)} from the specified minimum to the most that is known")
     if names and meaning(band) is _OF_ALL:
         subject = "strength" if len(names) == 1 else "strengths"
         parts.append(f"errors of the {subject} of {' and '.join(names)} are not")
