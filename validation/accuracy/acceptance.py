@@ -2,9 +2,9 @@
 
 Six sets are judged: impacts of the paper's kind, to which the law was also fitted, and everyday
 impacts, those on thin plates, those of metals with hardening and rate, of bodies of which every
-constant was drawn, and of polymers with losses, which no fit has seen. A set holds if enough of its impacts, 95 % as a rule, are within the
-bound of each number, if its rms error in COR is within its bound, and if every impact beyond a
-bound carries a flag of `contactlaw.Validity.ACCURACY`.
+constant was drawn, and of polymers with losses, which no fit has seen. A set holds if enough of its
+impacts, 95 % as a rule, are within the bound of each number, if its rms error in COR is within its
+bound, and if every impact beyond a bound carries a flag of `contactlaw.Validity.ACCURACY`.
 
 The reference is finite elements of our own, the mean of two meshes that differ by 0.8 % in COR
 (root mean square) where a body flows. One published measurement of the restitution of a sphere, on

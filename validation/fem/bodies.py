@@ -21,7 +21,7 @@ class Set(NamedTuple):
     """What a set draws; limits are drawn between by their logarithm."""
 
     seed: int
-    count: int
+    number: int
     ratios: Limits = 30.0, 1500.0  # E*/A of the weaker body
     stiffer: Limits = 1.0, 10.0  # ratio of the moduli
     stronger: float = 3.0  # largest ratio of the strengths, where both flow
@@ -45,7 +45,7 @@ def draw(name: str) -> list[Case]:
     """List the impacts of one of `SETS`."""
     wanted, listed = SETS[name], list[Case]()
     generator = np.random.default_rng(wanted.seed)
-    while len(listed) < wanted.count:
+    while len(listed) < wanted.number:
         case = _one(generator, wanted, _WAYS[len(listed) % 3 if wanted.flows == "any" else 2])
         if case is not None and fits(case):
             listed.append(case)
@@ -71,8 +71,8 @@ def _one(generator: np.random.Generator, wanted: Set, flows: tuple[bool, bool]) 
     bodies = []
     for n in range(2):
         body = f"glass, elastic {moduli[n]:g} {nu[n]:g} {densities[n]:g}"
-        rate = generator.uniform(0.005, 0.06) * generator.integers(2)
-        hardening, exponent = generator.uniform(0.0, 4.0), generator.uniform(0.15, 0.7)
+        rate = float(generator.uniform(0.005, 0.06) * generator.integers(2))
+        hardening, exponent = float(generator.uniform(0.0, 4.0)), generator.uniform(0.15, 0.7)
         if not wanted.hardens:
             rate = hardening = 0.0
         if flows[n]:
@@ -82,7 +82,8 @@ def _one(generator: np.random.Generator, wanted: Set, flows: tuple[bool, bool]) 
     thickness = float(f"{radius / log_uniform(generator, _SLENDERNESS):.4g}")
     if not wanted.stiffer[0] <= max(plane) / min(plane) <= wanted.stiffer[1]:
         return None
-    return Case(speed, thickness, radius, *bodies, yields=flows[0], plate_yields=flows[1])
+    sphere, plate = bodies
+    return Case(speed, thickness, radius, sphere, plate, yields=flows[0], plate_yields=flows[1])
 
 
 def compute(name: str, processes: int) -> None:

@@ -83,6 +83,7 @@ class Case:
 def material(name: str) -> cl.Material:
     """Look a material up; "glass, yield strength x 0.5" is glass with half its strength.
 
+    "body, elastic 2e11 0.3 7800" has this Young's modulus, Poisson's ratio and density.
     "glass, flow 3e8 2e8 0.3 0.02 1" is glass with these constants of the flow stress, and
     "glass, loss 0.1 1e4" glass with that loss factor, and its modulus, at that frequency.
 
@@ -106,9 +107,7 @@ def material(name: str) -> cl.Material:
     name, elastic, numbers = name.partition(", elastic ")
     if elastic:
         e, nu, rho = map(float, numbers.split())
-        return cl.Material(
-            name=f"{name}{elastic}{numbers}", youngs_modulus=e, poissons_ratio=nu, density=rho, kind="metal"
-        )
+        return cl.Material(f"{name}{elastic}{numbers}", e, nu, rho, kind="metal")
     name, weaker, factor = name.partition(", yield strength x ")
     found = cl.material(name)
     if not weaker:

@@ -144,8 +144,8 @@ class Constants(NamedTuple):
 
 def shipped() -> Constants:
     """Constants of the law."""
-    strain, _, *others = fem.fitted()["strain"]
-    return Constants(strain, *others, fem.fitted()["rate"])
+    strain, _, both, by_exponent, by_ratio = fem.fitted()["strain"]
+    return Constants(strain, both, by_exponent, by_ratio, fem.fitted()["rate"])
 
 
 def at_rate(pair: cl.Pair, case: Case, share: float = rates.SHARE) -> cl.Pair:
