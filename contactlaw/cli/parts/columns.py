@@ -57,7 +57,7 @@ def split_table(content: bytes) -> tuple[list[str], list[str], str]:
         lines = content.decode("utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError:
         if b"\0" in content:
-            raise ValueError("neither text in UTF-8") from None
+            raise ValueError("no text in UTF-8") from None
         lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
     below = next((n for n, line in enumerate(lines) if not line.startswith("#")), 0)
     words = re.sub(r"\d[eE][-+]?\d|nan|inf", "", lines[below])
