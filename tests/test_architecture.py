@@ -78,16 +78,16 @@ BUDGETS = {
     # of vectors beside the kernel of one impact (13 ns for 75), checksums and locks of tables,
     # public methods of answers, the record and its file, errors that carry an argument's name,
     # completion.
-    "contactlaw": 37_657,
+    "contactlaw": 37_695,
     "contactlaw/answers": 2_765,
-    "contactlaw/cli": 4_449,
+    "contactlaw/cli": 4_467,
     "contactlaw/emit": 836,
     "contactlaw/engines": 4_105,
     "contactlaw/equation": 2_676,  # series of w_m, masses, the part of a law that an impact asks
     "contactlaw/export": 1_382,
-    "contactlaw/fitting": 2_496,
+    "contactlaw/fitting": 2_509,
     "contactlaw/laws": 1_986,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 4_166,  # with laws, impacts, bodies: 700 less in answers and export
+    "contactlaw/physical": 4_171,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/record": 702,
     "contactlaw/reporting": 1_027,
     "contactlaw/stepping": 2_860,  # 550 of them are softened contacts and parcels
@@ -99,7 +99,7 @@ BUDGETS = {
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
     "validation": 14_646,
-    "tests": 26_698,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "tests": 26_766,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
