@@ -12,10 +12,9 @@ from contactlaw import quantities, style
 from contactlaw._arrays import Array
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
-from contactlaw._readable import in_unit
 from contactlaw.cli.parts import chosen, columns, options, own, wording
 from contactlaw.cli.parts.plots import save
-from contactlaw.fitting.bounces import Bounces, bounces, from_scipy, of_times
+from contactlaw.fitting.bounces import Bounces, bounces, from_scipy, loudest, of_times
 from contactlaw.quantities import TIME
 
 _LARGEST = 1e8  # [bytes] of a recording, our choice; two minutes of two channels have 2e7
@@ -49,32 +48,52 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def _heard(arguments: argparse.Namespace) -> tuple[Bounces, float, Array]:
     """Bounces in a file, the time between two samples of its sound [s], and these."""
-    path, known = Path(arguments.sound), dict[str, float]()
+    chosen.check_quantities(arguments)
+    path, known, lines = Path(arguments.sound), dict[str, float](), list[int]()
     if (arguments.sphere is None) != (arguments.radius is None):
         raise ArgumentError("sphere, radius", None, "the air is taken off with both, and left in without both")
-    if arguments.sphere is None:
-        wording.print_warning("the air is left in, which slows small beads: --sphere and --radius take it off")
-    else:
+    if arguments.sphere is not None:
         density = own.material_of("sphere", arguments.sphere, arguments.materials).density
         known = {"radius": arguments.radius, "density": density}
-    with wording.reading(path):
+    samples, rate = np.empty(0), 1.0
+    try:
         if path.suffix.lower() in (".csv", ".tsv", ".txt"):
-            names, rows, delimiter = columns.split_table(content_of(path, LARGEST_TEXT, pipe=True))
-            if not (place := columns.locate(names, _TIME).get("time")):
-                raise ValueError(f"no column of times in its first line, {', '.join(names)[:200]!r}: call it time_s")
-            _, table = columns.numbers(rows, delimiter, names, [place.place])
-            return of_times(table[:, 0] / place.per_unit, arguments.drop, **known), 1.0, np.empty(0)
-        if path.suffix.lower() != ".wav":
-            raise ValueError(f"takes .wav, or .csv of times: ffmpeg -i {path.name} {path.stem}.wav")
-        wavfile = from_scipy("io.wavfile")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # of chunks about the telephone
-            rate, samples = wavfile.read(io.BytesIO(content_of(path, _LARGEST)))
-        try:
+            with wording.reading(path):
+                lines, times = _times(content_of(path, LARGEST_TEXT, pipe=True))
+            found = of_times(times, arguments.drop, **known)
+        else:
+            with wording.reading(path):
+                rate, samples = _samples(content_of(path, _LARGEST), path)
             found = bounces(samples, rate, arguments.drop, **known)
-        except ArgumentError as error:
-            raise ValueError(error.complaint) if error.name == "samples" else error from None
-    return found, 1.0 / rate, samples.reshape(len(samples), -1).mean(axis=1)
+    except ArgumentError as error:
+        if error.name in vars(arguments):
+            raise
+        at = "" if error.element is None or error.name != "times" else f", line {lines[error.element]}"
+        complaint = error.complaint if error.name in ("samples", "times") else error
+        raise ValueError(f"{path}{at}: {complaint}") from None
+    if not known:
+        wording.print_warning("the air is left in, which slows small beads: --sphere and --radius take it off")
+    return found, 1.0 / rate, samples
+
+
+def _times(content: bytes) -> tuple[list[int], Array]:
+    """Lines of a table, and their times [s]."""
+    names, rows, delimiter = columns.split_table(content)
+    if not (place := columns.locate(names, _TIME).get("time")):
+        raise ValueError(f"no column of times in its first line, {', '.join(names)[:200]!r}: call it time_s")
+    lines, table = columns.numbers(rows, delimiter, names, [place.place])
+    return lines, table[:, 0] / place.per_unit
+
+
+def _samples(content: bytes, path: Path) -> tuple[float, Array]:
+    """Take the samples in a second, and these, from the content of a file."""
+    if not content.startswith((b"RIFF", b"RIFX", b"RF64")):
+        raise ValueError(f"takes WAV, or .csv of times: ffmpeg -i {path.name} {path.stem}_new.wav")
+    wavfile = from_scipy("io.wavfile")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wavfile.WavFileWarning)  # of chunks about the telephone
+        rate, samples = wavfile.read(io.BytesIO(content))
+    return rate, loudest(samples)
 
 
 def _print(found: Bounces, radius: float | None) -> None:
@@ -89,15 +108,13 @@ def _print(found: Bounces, radius: float | None) -> None:
 
 def _draw(found: Bounces, step: float, x: Array, arguments: argparse.Namespace) -> None:
     with style.applied():
-        fell = "" if arguments.drop is None else f", dropped from {in_unit(arguments.drop, 'm')}"
-        caption = (
-            f"{found.at.size} CORs, air {'taken off' if arguments.radius else 'left in'}{fell}. Triangles: impacts"
-        )
-        figure = style.figure(10.0, 6.4, Path(arguments.sound).name, f"{caption}; bars: standard errors")
+        caption = f"{found.at.size} CORs; triangles: impacts; bars: standard errors"
+        figure = style.figure(10.0, 6.4, Path(arguments.sound).name, caption)
         above, below = figure.subplots(2, 1)
         if x.size:
+            x = x - x.mean()
             starts = np.linspace(0, x.size - 1, min(_POINTS, x.size)).astype(int)
-            low, top = (part.reduceat(x / np.abs(x).max(), starts) for part in (np.minimum, np.maximum))
+            low, top = (part.reduceat(x / abs(x).max(), starts) for part in (np.minimum, np.maximum))
             above.fill_between(starts * step, low, top, color=style.MUTED, linewidth=0.4)
         for n, impacts in enumerate(found.impacts):
             colour = (style.BLUE, style.VERMILION, style.GREEN, style.PURPLE)[n % 4]
@@ -108,6 +125,5 @@ def _draw(found: Bounces, step: float, x: Array, arguments: argparse.Namespace) 
         first, last = min(one[0] for one in found.impacts), max(one[-1] for one in found.impacts)
         above.set(xlabel="time [s]", ylabel="sound over its peak", xlim=(first - 0.2, last + 0.2), ylim=(-1.05, 1.25))
         below.set(xlabel="impact speed [m/s]", ylabel="COR [-]", xlim=(0.0, None))
-        if len(found.impacts) > 1:
-            below.legend(loc="best")
+        below.legend(loc="best")
         save(figure, arguments.plot)

@@ -12,28 +12,30 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array, Integers, Places
 from contactlaw._errors import ArgumentError
-from contactlaw.fitting.drops import rebounds_of
+from contactlaw.fitting.drops import METRES, rebounds_of
 from contactlaw.physical import flight
-from contactlaw.physical.arguments import positive
+from contactlaw.physical.arguments import number, positive, within
+from contactlaw.table.cache import progress_bar
 
 # All numbers are our choice, by the recordings of validation/hostile/recordings.py.
 _RATE, _MOST = 16e3, 120.0  # least samples in a second; longest recording [s], which takes 0.5 GB
 _FRAME = 1e-3  # [s] steps of the spectrum, whose window is four times as long
 _BAND = 400.0, 16e3  # [Hz] in which impacts are sought
 _SURE, _RISE = 6.0, 0.2  # least rise of the spectrum in deviations of the noise's, and in logarithms
-_VOICE = 13e-3  # [s] longest period of a voice, whose pulses follow each other so soon
 _ORDER, _PAST = 48, 30e-3  # linear prediction of an impact from the ringing before it, of this time [s]
 _INSTANT = 5e-5  # [s] least error of an instant; contacts last about so long
 _SHORTEST, _LONGEST = 0.02, 1.5  # [s] between two bounces
 _NEXT = 6  # impacts among which the next bounce of a bead is sought
-_FEWEST = 5  # impacts of a bead, or one more if another bounces meanwhile
+_FEWEST = 5  # impacts of a bead, or one more if another bounces meanwhile, or two if its COR is not steady
 _SHRINKS = 0.85  # largest ratio of the last time between bounces to the first: clocks tick evenly
 _FADES = 0.2  # least power of the speed with which the loudness grows, which is 1 but for noise and places
-_CHANGE = 0.97, 1.2  # ratio of a COR to the one before, of which only this range is known
-_SMOOTH = 0.96, 1.04  # the same where two are known, over the ratio of these two
-_OF_DROP = 0.85, 1.2  # the same for the drop's, from which the air is not taken off
+_SCATTER, _STEADY = 0.08, 0.03  # most by which a COR is off the one before; where few bounces are enough
+_SLOWER = 0.2  # power of the COR with which it rises to that of the next bounce, which is slower, at most
+_OF_DROP = 0.85, 1.2  # ratio of the second COR to the first of a drop, from which the air is not taken off
+_LOUDER = 1.6  # most by which a bounce is louder than the root of the COR makes it: sound depends on the place, too
 _ECHO, _FAINT = 80e-3, 0.8  # [s] until an echo, and how loud it is at most beside its impact
-_STRANGERS = 0.3  # largest number of other impacts during a series, over the number of its own
+_STRANGERS = 0.2  # largest number of other impacts during a series, over the number of its own
+_CROWD = 20  # other impacts in a recording, among which five may follow each other by chance
 _UNSURE = 0.0025  # a COR with a larger standard error is left out
 
 
@@ -143,7 +145,7 @@ def of_times(
 ) -> Bounces:
     """Find speeds and CORs from the times of all bounces of one drop [s], of which no errors are known."""
     t = np.asarray(times, dtype=np.float64)
-    wrong = ~(np.diff(t) > 0.0)
+    wrong = ~((np.diff(t) > 0.0) & np.isfinite(t[1:]))
     if wrong.any():
         n = int(np.argmax(wrong)) + 1
         reason = "times of bounces have to rise; `contactlaw fit` takes times between them, as columns t1, t2, ..."
@@ -158,11 +160,14 @@ def _measured(
     t: Array, error: Array, drop: float | None, radius: float | None, density: float | None
 ) -> Sequence[Array]:
     """Find times, speeds, CORs and their errors of the bounces of one drop."""
+    if (radius is None) != (density is None):
+        raise ArgumentError("radius, density", None, "the air is taken off with both, and left in without both")
     gaps, at = np.diff(t), t[1:-1]
     worst = np.max([error[:-2], error[1:-1], error[2:]], axis=0)
     rows = {"drop": np.full(at.size, np.nan), "t1": gaps[:-1], "t2": gaps[1:], "time_error": worst}
     if drop is not None:
-        first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * positive("drop", drop, "m"))
+        within("drop", np.array([number("drop", drop)]), *METRES)
+        first = 0.5 * flight.GRAVITY * gaps[0] / math.sqrt(2.0 * flight.GRAVITY * drop)
         if t.size > 2 and not (first < 1.0 and _OF_DROP[0] < gaps[1] / gaps[0] / first < _OF_DROP[1]):
             said = f"the bounce at {t[0]:.3f} s is not the first after a drop from {drop:g} m, and gets no COR"
             warnings.warn(said, stacklevel=3)
@@ -170,7 +175,9 @@ def _measured(
     if drop is not None:
         one = {"drop": drop, "t1": gaps[0], "t2": np.nan, "time_error": error[:2].max()}
         rows, at = {name: np.insert(values, 0, one[name]) for name, values in rows.items()}, t[:-1]
-    found = rebounds_of(rows | {"radius": radius or 1.0}, density or flight.NO_AIR)
+    found = rebounds_of(
+        rows | {"radius": 1.0 if radius is None else radius}, flight.NO_AIR if density is None else density
+    )
     speed, cor, errors = (found[name] for name in ("speed", "restitution", "restitution_error"))
     sure, bends = errors <= _UNSURE, np.abs(np.diff(cor, 2)) / math.sqrt(6.0)  # the errors, if these are independent
     for n, bend in enumerate(bends):
@@ -190,26 +197,33 @@ def from_scipy(part: str) -> Any:
     try:
         return importlib.import_module(f"scipy.{part}")
     except ImportError as error:
-        raise ImportError("recordings need scipy: pip install 'contactlaw[fit]'") from error
+        raise ImportError("this needs scipy: pip install 'contactlaw[fit]'") from error
+
+
+def loudest(samples: Array) -> Array:
+    """Channel of a recording; the mean of channels would blur instants, or be silent."""
+    return samples if samples.ndim == 1 else np.asarray(samples[:, samples.std(axis=0).argmax()])
 
 
 def _checked(samples: ArrayLike, rate: float) -> Array:
     """One channel of a recording, between -1 and 1."""
     given = np.asarray(samples)
-    if given.dtype.kind not in "iuf" or given.ndim not in (1, 2):
-        raise ArgumentError("samples", None, f"expected numbers (n,) or (n, channels), got {given.dtype} {given.shape}")
-    x = given.astype(np.float64)
+    if given.dtype.kind not in "iuf" or given.ndim not in (1, 2) or not given.size or not np.isfinite(given).all():
+        reason = f"expected finite numbers (n,) or (n, channels), got {given.dtype} {given.shape}"
+        raise ArgumentError("samples", None, reason)
+    x, step = given.astype(np.float64), 0.0
     if given.dtype.kind in "iu":
-        half = 2.0 ** (8 * given.itemsize - 1)
-        x = (x - half * (given.dtype.kind == "u")) / half
-    x = x if x.ndim == 1 else x.mean(axis=1)
+        step = 0.5 ** (8 * given.itemsize - 1)
+        x = x * step - (given.dtype.kind == "u")
+    x = loudest(x)
     if positive("rate", rate, "1/s") < _RATE:
         raise ArgumentError("rate", rate, f"must be at least {_RATE:g} [1/s]: of calls and memos too little is left")
     if not 0.5 <= x.size / rate <= _MOST:
         raise ArgumentError("samples", None, f"{x.size / rate:.3g} s; must last from 0.5 to {_MOST:g} s: cut it")
     low, high = x.min(), x.max()
-    if not high - low > 2e-4:
-        raise ArgumentError("samples", None, "silent: was the microphone on, and allowed to the app?")
+    if not high - low > max(2e-4, 8.0 * step):
+        reason = f"silent, {0.5 * (high - low):.1g} of full scale: was the microphone on, and allowed to the app?"
+        raise ArgumentError("samples", None, reason)
     if np.count_nonzero(((x == low) | (x == high))[1:] & (x[1:] == x[:-1])) >= 5:
         reason = f"clipped at {max(-low, high):.3g} of full scale: record with less gain, or from farther away"
         raise ArgumentError("samples", None, reason)
@@ -222,21 +236,18 @@ def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
     step = round(_FRAME * rate)
     f, _, power = signal.spectrogram(x, rate, "hann", 4 * step, 3 * step, detrend=False, scaling="spectrum")
     power = power[(f > _BAND[0]) & (f < _BAND[1])]
-    floor = np.median(power, axis=1, keepdims=True) + 1e-9 * power.max()
+    live = power.sum(axis=0) > 1e-10 * power.sum(axis=0).max()  # recorders blank what is faint, or the start
+    floor = np.median(power[:, live], axis=1, keepdims=True) + 1e-9 * power.max()
     after, before = (ndimage.uniform_filter1d(power, n, axis=1) for n in (3, 5))
     rise = np.zeros(power.shape[1])
     rise[8:-1] = np.maximum(np.log((after[:, 9:] + floor) / (before[:, 2:-7] + floor)), 0.0).mean(axis=0)
-    usual = np.median(rise)
-    least = usual + max(_SURE * 1.4826 * np.median(np.abs(rise - usual)), _RISE)
+    usual = np.median(rise[live])
+    least = usual + max(_SURE * 1.4826 * np.median(np.abs(rise[live] - usual)), _RISE)
     at = np.flatnonzero((rise == ndimage.maximum_filter1d(rise, 17)) & (rise > least))
     at = at[(at > 5 + 1.1 * _PAST / _FRAME) & (at < rise.size - 8)]
-    soon, level = np.diff(at) * _FRAME < _VOICE, rise[at]
-    pulses = np.zeros(at.size, dtype=bool)
-    for n in np.flatnonzero(soon[:-1] & soon[1:]):
-        pulses[n : n + 3] |= level[n + 1 : n + 3].min() > 0.6 * level[n]
-    at = at[~pulses]
     high = signal.sosfilt(signal.butter(2, _BAND[0], "high", fs=rate, output="sos"), x)
-    instants = [_instant(high, n - 4, step, rate, linalg.solve_toeplitz) for n in at.tolist()]
+    frames = progress_bar(iter((at - 4).tolist()), at.size)
+    instants = [_instant(high, n, step, rate, linalg.solve_toeplitz) for n in frames]
     loud = np.sqrt(np.maximum((power / floor).mean(axis=0) - 1.0, 0.0))
     times, errors = np.array(instants).reshape(-1, 2).T
     return times, errors, ndimage.maximum_filter1d(loud, 5)[at + 2]
@@ -267,21 +278,39 @@ def _instant(x: Array, frame: int, step: int, rate: float, solve_toeplitz: Any) 
 def _series(t: Array, strength: Array) -> Iterator[Places]:
     """Impacts of each bead, without echoes, and without series that other sounds are mixed with."""
     free, found = np.ones(t.size, dtype=bool), list[Places]()
-    while (best := _longest(t, strength, np.flatnonzero(free))).size >= _FEWEST:
+    for best in sorted(_chains(t, strength), key=lambda one: (-one.size, -strength[one].sum())):
+        if not free[best].all():
+            continue
         free[best] = False
         gaps = np.diff(t[best])
-        mixed = any(t[one[0]] < t[best[-1]] and t[best[0]] < t[one[-1]] for one in found)  # with another bead's
         fades = np.polyfit(np.log(gaps), np.log(strength[best[1:]]), 1)[0] > _FADES
-        wrong = _is_echo(best, t, strength) or _is_part(best, t)
-        if best.size >= _FEWEST + mixed and gaps[-1] < _SHRINKS * gaps[0] and fades and not wrong:
+        if (
+            best.size >= _FEWEST + 2 * _is_uneven(gaps)
+            and gaps[-1] < _SHRINKS * gaps[0]
+            and fades
+            and not _is_echo(best, t, strength)
+        ):
             found.append(best)
-    heard = np.concatenate([*found, np.empty(0, dtype=np.int64)])
+    heard, rest = np.concatenate([*found, np.empty(0, dtype=np.int64)]), np.flatnonzero(free)
+    late = t[rest, None] - t[heard]
+    echoes = (late > 0.0) & (late < _ECHO) & (strength[rest, None] < _FAINT**2 * strength[heard])
+    rest = rest[~echoes.any(axis=1)]
     for one in sorted(found, key=lambda one: t[one[0]]):
-        others = np.flatnonzero(free & (t > t[one[0]]) & (t < t[one[-1]]) & (strength > 0.5 * strength[one].min()))
-        late = t[others, None] - t[heard]
-        echoes = (late > 0.0) & (late < _ECHO) & (strength[others, None] < _FAINT**2 * strength[heard])
-        if np.count_nonzero(~echoes.any(axis=1)) <= _STRANGERS * one.size:
-            yield one
+        meanwhile = sum(t[other[0]] < t[one[-1]] and t[one[0]] < t[other[-1]] for other in found) > 1
+        near = (t[rest] > t[one[0]]) & (t[rest] < t[one[-1]]) & (strength[rest] > 0.5 * strength[one].min())
+        strangers = np.count_nonzero(near)
+        mixed = meanwhile or strangers > 0
+        least = _FEWEST + meanwhile + 2 * (rest.size > _CROWD)
+        uneven = mixed and _is_uneven(np.diff(t[one]))
+        if one.size >= least and strangers <= _STRANGERS * one.size and not uneven:
+            yield one[int(mixed) :]  # the first impact may be another bead's
+
+
+def _is_uneven(gaps: Array) -> bool:
+    """Whether CORs go up and down by more than those of a bead that hardly spins."""
+    logs = np.diff(np.log(gaps))
+    bends = np.diff(logs)
+    return bool(((bends < -_STEADY) | (bends > _STEADY - _SLOWER * logs[:-1])).any())
 
 
 def _is_echo(one: Places, t: Array, strength: Array) -> bool:
@@ -289,52 +318,34 @@ def _is_echo(one: Places, t: Array, strength: Array) -> bool:
     late = t[one, None] - t
     late[(late <= 0.0) | (late > _ECHO) | (strength[one, None] > _FAINT * strength)] = np.inf
     lags = late[np.isfinite(late)]
-    return any((np.abs(late - lag) < 2.0 * _FRAME).any(axis=1).mean() > 0.7 for lag in lags)
+    return any((np.abs(late - lag) < 2.0 * _FRAME).any(axis=1).mean() > 0.6 for lag in lags)
 
 
-def _is_part(one: Places, t: Array) -> bool:
-    """Whether a series has but every second or third of a bead's impacts, as others lie where these would."""
-    gaps = np.diff(t[one])
-    for parts in (2, 3):
-        cor = (gaps[1:] / gaps[:-1]) ** (1.0 / parts)
-        next_one = t[one[:-2]] + gaps[:-1] * (1.0 - cor) / (1.0 - cor**parts)
-        if (np.abs(t - next_one[:, None]).min(axis=1) < 0.03 * gaps[:-1]).mean() > 0.7:
-            return True
-    return False
+def _chains(t: Array, strength: Array) -> Iterator[Places]:
+    """Find series of impacts whose intervals shrink as a bead's, with many impacts in common."""
+    for n in progress_bar(iter(range(t.size)), t.size):
+        for m in range(n + 1, min(n + 1 + _NEXT, t.size)):
+            for last in range(m + 1, min(m + 1 + _NEXT, t.size)):
+                if (one := _extended(t, strength, [n, m, last])).size >= _FEWEST:
+                    yield one
 
 
-def _longest(t: Array, strength: Array, free: Places) -> Places:
-    """Find the longest series of impacts, and its loudest, whose intervals shrink as a bead's."""
-    best, size = np.empty(0, dtype=np.intp), (0, 0.0)
-    for n in range(free.size):
-        for m in range(n + 1, min(n + 1 + _NEXT, free.size)):
-            for last in free[m + 1 : m + 1 + _NEXT]:
-                one = _extended(t, strength, free, [free[n], free[m], last])
-                if (trial := (one.size, float(strength[one].sum()))) > size:
-                    best, size = one, trial
-    return best
-
-
-def _extended(t: Array, strength: Array, free: Places, chain: list[Any]) -> Places:
+def _extended(t: Array, strength: Array, chain: list[Any]) -> Places:
     """Add to three impacts those that may follow; nothing if the three cannot be of a bead."""
     i, j, k = chain
     first, gap = t[j] - t[i], t[k] - t[j]
-    cor, change = gap / first, None
-    fades = _fades(strength[j], strength[i], cor) and _fades(strength[k], strength[j], cor)
-    if not (_SHORTEST < gap < 0.99 * first < _LONGEST and cor > 0.1 and fades):
+    cor = gap / first
+    most = _LOUDER * math.sqrt(cor)
+    fades = strength[j] < most * strength[i] and strength[k] < most * strength[j]
+    if not (_SHORTEST < gap < 0.99 * first < _LONGEST and fades):
         return np.empty(0, dtype=np.intp)
     while True:
-        low, high = _CHANGE if change is None else (_SMOOTH[0] * change, _SMOOTH[1] * change)
-        ends = t[chain[-1]] + gap * np.array([max(low * cor, _SHORTEST / gap), min(high * cor, 0.995)])
-        after = free[slice(*np.searchsorted(t[free], ends))]
-        after = after[_fades(strength[after], strength[chain[-1]], cor)]
+        low, high = (1.0 - _SCATTER) * cor, (1.0 + _SCATTER) * cor ** (1.0 - _SLOWER)
+        ends = t[chain[-1]] + gap * np.array([max(low, _SHORTEST / gap), min(high, 0.995)])
+        after = np.arange(*np.searchsorted(t, ends))
+        after = after[strength[after] < _LOUDER * math.sqrt(cor) * strength[chain[-1]]]
         if not after.size:
             return np.array(chain)
         chain.append(after[np.argmax(strength[after])])
-        new = (t[chain[-1]] - t[chain[-2]]) / gap
-        gap, cor, change = new * gap, new, min(max(new / cor, 0.97), 1.1)
-
-
-def _fades(loud: Array, before: Array, cor: float) -> Any:
-    """Whether a bounce may be so loud after the one before: sound depends on the place, too."""
-    return (loud > 0.2 * before) & (loud < 1.6 * math.sqrt(cor) * before)
+        cor = (t[chain[-1]] - t[chain[-2]]) / gap
+        gap *= cor

@@ -1,6 +1,7 @@
 """Speeds and CORs from what people note down: heights, and times between bounces."""
 
 import re
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,11 +10,11 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.physical import flight
-from contactlaw.physical.arguments import broadcast, within
+from contactlaw.physical.arguments import broadcast, check, number, within
 
 _BOUNCE = re.compile(r"(bounce|t)([0-9]*)")
-_METRES, _SECONDS = (1e-5, 10.0, "metres; in cm or mm?"), (1e-3, 5.0, "seconds; in ms?")
-_ERRORS = "drop_error", "bounce_error", "time_error"
+METRES, _SECONDS = (1e-5, 10.0, "metres; in cm or mm?"), (1e-3, 5.0, "seconds; in ms?")
+_ERRORS = {"drop_error": "drop", "bounce_error": "bounce", "time_error": "t"}  # and what they are of
 NAMES = f"drop, bounce, bounce2, ..., t1, t2, ..., {', '.join(_ERRORS)}"
 
 
@@ -37,7 +38,7 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     >>> found["speed"].round(3), found["restitution"].round(3)
     (array([2.425, 1.96 ]), array([0.809, 0.8  ]))
     """
-    columns = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
+    columns = dict(data)
     if not any(map(is_height_or_time, columns)):
         return columns
     if columns.get("radius") is None:
@@ -48,15 +49,21 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     order = sorted((int(match[2] or 1), name) for name in given if (match := _BOUNCE.fullmatch(name)))
     if [n for n, _ in order] != [*range(1, len(order) + 1)]:
         raise ArgumentError("data", ", ".join(name for _, name in order), "number bounces 1, 2, 3, ..., each once")
-    for clash in ("restitution", "angle", "sliding_speed"):
+    known = [name for name in _ERRORS if name in given]
+    for clash in ("restitution", "angle", "sliding_speed", *["restitution_error"] * bool(known)):
         if order and clash in flat:
             raise ArgumentError(clash, None, f"leave it out beside {order[0][1]}, from which the COR follows")
-    for name in ("drop", *(name for _, name in order)):
-        values = given.get(name, np.array([np.nan]))
-        limits = _SECONDS if name[0] == "t" else _METRES
-        within(name, np.where(np.isnan(values), limits[0], values), *limits)
+    kinds = {name.rstrip("0123456789") for _, name in order} | ({"drop"} & given.keys() if order else set())
+    for name in known:
+        if _ERRORS[name] not in kinds:
+            raise ArgumentError(name, None, "there is no bounce whose COR it enters: leave it out")
+    for name, values in given.items():
+        least, most, hint = _SECONDS if name[0] == "t" else METRES
+        within(name, np.where(np.isnan(values), most, values), 0.0 if name in _ERRORS else least, most, hint)
+    check(radius=flat["radius"])
+    within("density", np.array([number("density", density)]), 5.0, flight.NO_AIR, "kg/m3; in g/cm3?")
     radius = flat["radius"]
-    none, known = np.full(radius.size, np.nan), [name for name in _ERRORS if name in given]
+    none = np.full(radius.size, np.nan)
     drop_error, height_error, time_error = (given.get(name, 0.0 * radius) for name in _ERRORS)
     height = given.get("drop", none)
     fallen = flight.of_height(height, radius, density).down
@@ -89,8 +96,13 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     speed, cor, errors = (np.ravel(part, "F") for part in zip(*rows, strict=True))
     first = np.tile([True] + [False] * (len(rows) - 1), radius.size)
     keep = np.isfinite(speed) & (first | np.isfinite(cor)) if order else first
-    if not keep.any():
-        raise ArgumentError("data", None, "a bounce alone has no COR: add drop, speed, or what follows, as t2")
+    lost = ~keep.reshape(-1, len(rows)).any(axis=1)
+    if lost.any():
+        reason = "a bounce alone has no COR: add this, its speed, or what follows, as t2"
+        if lost.all():
+            raise ArgumentError("drop", None, reason)
+        rows_lost = flat.get("line", np.arange(lost.size))[lost].astype(int)
+        warnings.warn(f"drop: {reason}; rows {rows_lost} are left out", stacklevel=4)
     flat = {name: np.repeat(values, len(rows)) for name, values in flat.items()}
     for name in flat.keys() - {"radius", "thickness", "friction", "line"}:
         flat[name] = np.where(first, flat[name], np.nan)

@@ -14,6 +14,7 @@ from contactlaw._arrays import Array, Integers, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
+from contactlaw.fitting.bounces import from_scipy
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
@@ -24,6 +25,7 @@ from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.record.file import Record
+from contactlaw.table.cache import progress_bar
 
 _ROUNDS = 2  # rounds to estimate errors that were not given; a third changes them by less than 1 %
 _LEAST_FREEDOM = 0.5  # least degrees of freedom of a kind of values, so that it has a finite error
@@ -204,7 +206,7 @@ def fit(
     enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    search.optimizer()
+    from_scipy("optimize")
     unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
     data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)
@@ -253,7 +255,7 @@ def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquar
         follow = descent if n == rounds else nearby
         if n > 0:
             error, freedom = _found_errors(predictor, follow, basins[0].at, error)
-        basins = search.distinct([follow(one.at, error) for one in basins])
+        basins = search.distinct([follow(one.at, error) for one in progress_bar(iter(basins), len(basins))])
     return _LeastSquares(basins, error, freedom)
 
 

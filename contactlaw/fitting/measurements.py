@@ -192,7 +192,7 @@ class Measurements:
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
             raise TypeError(f"data: expected Measurements, a Record or a mapping of names, got {data!r}")
         known = [field.name for field in fields(cls)]
-        columns = rebounds_of(data, density)
+        columns = rebounds_of({str(name): _missing(data[name]) for name in data.keys()}, density)  # noqa: SIM118
         wrong = [name for name in columns if name not in known]
         if wrong or "speed" not in columns:
             what = f"does not know {', '.join(map(repr, wrong))}" if wrong else "lacks 'speed'"

@@ -9,15 +9,17 @@ fine grid, on which the sum of squares shows every basin.
 import itertools
 import math
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlaw._arrays import Array, Places
 from contactlaw.answers.backend import UnsolvedError
+from contactlaw.fitting.bounces import from_scipy
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
+from contactlaw.table.cache import progress_bar
 
 _ROWS = 8  # rebounds of each kind that the scan predicts, from the slowest to the fastest
 _SUBSET = 200  # most rebounds of each kind in least squares before those with all rebounds
@@ -43,21 +45,6 @@ _STEPS = 6  # steps after which a basin may be dropped: the splines' minimum is 
 # rebounds nor as good.
 _HOPELESS = 25.0
 _SAME_BASIN = 1e-2  # distance in logarithms within which two descents have found one basin
-
-
-def optimizer() -> Any:
-    """Import scipy.optimize, which only the extra ``fit`` installs.
-
-    Raises
-    ------
-    ImportError
-        Without scipy; the message says how to install it.
-    """
-    try:
-        import scipy.optimize
-    except ImportError as error:
-        raise ImportError("a fit needs scipy: pip install 'contactlaw[fit]'") from error
-    return scipy.optimize
 
 
 def limits(predictor: Predictor) -> tuple[Array, Array]:
@@ -88,7 +75,7 @@ def basins(predictor: Predictor) -> list[Basin]:
 
 def _descents(predictor: Predictor, starts: list[Array], *steps: int) -> list[Basin]:
     descent, error = Descent(predictor), guessed(predictor.values)
-    return distinct([descent(start, error, *steps) for start in starts])
+    return distinct([descent(start, error, *steps) for start in progress_bar(iter(starts), len(starts))])
 
 
 def guessed(values: Values) -> Array:
@@ -149,7 +136,7 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     bottoms: list[tuple[float, Array]] = []
     for place in places:
         start = np.clip([axes[n][place[n]] for n in free], *(np.array(ends).T + _INSIDE))
-        done = optimizer().least_squares(
+        done = from_scipy("optimize").least_squares(
             lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20
         )
         bottoms.append((float(done.cost), done.x))
@@ -187,7 +174,8 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
     found = np.empty((len(points), count))
     bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
     ends = np.flatnonzero(np.any(np.diff(points[order][:, bodies], axis=0), axis=1)) + 1
-    for part in np.split(order, ends) if bodies else [order]:
+    parts = np.split(order, ends) if bodies else [order]
+    for part in progress_bar(iter(parts), len(parts)):
         found[part] = predictor.at_trials(np.array([axes.values(points[n]) for n in part]))
     return found
 
@@ -341,7 +329,7 @@ class Descent:
         first = np.clip(np.log(start), self._low + margin, self._high - margin)
         if not np.isfinite(residuals(first)).all():  # the model has no answer there
             return Basin(start, math.inf)
-        found = optimizer().least_squares(
+        found = from_scipy("optimize").least_squares(
             residuals,
             first,
             slopes,

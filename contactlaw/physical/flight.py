@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
+from contactlaw._errors import ArgumentError
 from contactlaw._readable import percent
 
 GRAVITY = 9.80665  # [m/s2] standard gravity
@@ -42,8 +43,12 @@ def of_height(height: ArrayLike, radius: ArrayLike = 1.0, density: ArrayLike = N
     (2.4257, 2.3763)
     """
     h, r, rho = np.broadcast_arrays(*(np.asarray(one, dtype=np.float64) for one in (height, radius, density)))
-    up, rise = _half(h, r, rho, -1.0)
-    down, fall = _half(h, r, rho, 1.0)
+    with np.errstate(invalid="ignore"):
+        up, rise = _half(h, r, rho, -1.0)
+        down, fall = _half(h, r, rho, 1.0)
+    if (lost := np.isnan(fall) & np.isfinite(h)).any():
+        reason = "such a bead has fallen at its terminal speed for long, by far slower than without air: give the speed"
+        raise ArgumentError("radius", r[lost].flat[0], reason)
     return Flight(h, rise + fall, up, down)
 
 
@@ -87,7 +92,7 @@ def _half(height: Array, radius: Array, density: Array, sign: float) -> tuple[Ar
 
 def say_air(ratio: Array) -> None:
     """Warn if speeds differ by more than 1 % from those without air, of which they are this share."""
-    share = float(np.max(np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0)))
+    share = float(np.max(np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0), initial=0.0))
     if share > _SAID:
         warnings.warn(
             f"the air changes the speeds by up to {percent(share)}, which is taken into account", stacklevel=5

@@ -96,7 +96,7 @@ def test_tables_as_people_write_them(head, rows, table):
         (["drop_mm,t1_ms,t2_ms", "300,400,400"], "line 2: t2: got 0.4 (element 0); a bead that arrives at 1.9"),
         (["drop_cm,t1,t2", "30,400,300"], "t1: got 400.0; must lie between 0.001 and 5 seconds; in ms"),
         (["drop_cm,v,COR", "30,2.4,0.9"], "drop: give speeds or drops, not both"),
-        (["bounce_cm", "30"], "a bounce alone has no COR: add drop, speed"),
+        (["bounce_cm", "30"], "drop: a bounce alone has no COR: add this, its speed"),
         (["drop_cm,bounce_cm,COR", "30,20,0.9"], "restitution: leave it out beside bounce"),
         (["speed_m/s,COR"], "it has no row after the first line"),
         (["speed_m/s,COR", "1,half"], "half"),

@@ -422,7 +422,7 @@ def test_without_scipy_it_says_what_to_install():
         "'thickness')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert "ImportError: a fit needs scipy: pip install 'contactlaw[fit]'" in done.stderr
+    assert "ImportError: this needs scipy: pip install 'contactlaw[fit]'" in done.stderr
 
 
 def test_numbers_of_rebounds_are_listed():

@@ -2,7 +2,8 @@
 
 The sounds are made here, from the modes of a plate that each impact strikes; nothing of the package
 is used. Every fourth recording has one or two beads that bounce, the others have none. A bead with
-eight bounces or more has to be heard where the noise is 20 dB below its first impact.
+eight bounces or more has to be heard where the noise is 20 dB below its first impact, if its COR
+is steady within 0.03; of the others it scatters by 1 or 2 %.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ Floats = NDArray[np.float64]
 
 FULL = 667  # of which 500 have no bounce
 BOUND = 0.005  # largest error of a COR, unless three stated errors are more
-OTHERS = "noise", "talk", "typing", "ticks", "tones", "knocks"
+OTHERS = "noise", "talk", "typing", "ticks", "knocks"
 _G = 9.80665
 
 
@@ -28,15 +29,15 @@ def faults(count: int, seed: int) -> Iterator[str]:
     for n in range(count):
         rng = np.random.default_rng((seed, n))
         rate, ratio, beads = int(rng.choice([44100, 48000])), rng.uniform(10.0, 40.0), (n % 4 == 0) + (n % 8 == 4)
-        name = f"recording {n} (seed {seed}), {beads} beads, {ratio:.0f} dB, {OTHERS[n % 6]}"
+        name = f"recording {n} (seed {seed}), {beads} beads, {ratio:.0f} dB, {OTHERS[n % 5]}"
         if beads:
             times, cors, sound, drop = drops(rng, rate, beads, ratio)
         else:
-            times, cors, sound, drop = np.empty(0), np.empty(0), without_bounces(rng, OTHERS[n % 6], rate), 0.3
+            times, cors, sound, drop = np.empty(0), np.empty(0), without_bounces(rng, OTHERS[n % 5], rate), 0.3
         try:
             found = cl.bounces(sound, rate, drop=drop if n % 3 else None)
         except ValueError as error:
-            if beads == 1 and ratio > 20.0 and times.size > 7:
+            if beads == 1 and ratio > 20.0 and times.size > 7 and np.abs(np.diff(cors)).max() < 0.03:
                 yield f"{name}: {error}"
             continue
         for at, cor, sigma in zip(found.at, found.restitution, found["restitution_error"], strict=True):
@@ -56,9 +57,10 @@ def drops(rng: np.random.Generator, rate: int, beads: int, decibels: float) -> t
     for bead in range(beads):
         t, v = rng.uniform(0.3, 0.6) + 0.37 * bead, math.sqrt(2.0 * _G * height)
         lowest, rises, first = rng.uniform(0.45, 0.93), rng.uniform(0.0, 0.12), v
+        scatter = rng.choice([0.0, 0.01, 0.02])
         for _ in range(20):
             times.append(t)
-            cors.append(min(lowest * (v / first) ** -rises, 0.96))
+            cors.append(min(lowest * (v / first) ** -rises * rng.normal(1.0, scatter), 0.96))
             strike(rng, sound, rate, modes, t, v, lasts)
             v *= cors[-1]
             t += 2.0 * v / _G
@@ -107,21 +109,15 @@ def noise(rng: np.random.Generator, count: int) -> Floats:
 
 
 def without_bounces(rng: np.random.Generator, kind: str, rate: int) -> Floats:
-    """Four seconds of talk, of clicks and knocks at random, of a clock, of tones, or of noise alone."""
-    sound, t = np.zeros(4 * rate), np.arange(4 * rate) / rate
+    """Seconds of talk, of clicks and knocks at random, of a clock, or of noise alone."""
+    t = np.arange((12 if kind == "typing" else 4) * rate) / rate
+    sound = 0.0 * t
     if kind == "talk":
         talk(rng, sound, t)
-    elif kind == "tones":
-        for at in np.cumsum(rng.choice([0.125, 0.25, 0.5], 30)):
-            after, f = (t - at).clip(0.0), 220.0 * 2.0 ** (rng.integers(0, 36) / 12.0)
-            for k in range(1, 6):
-                sound += (
-                    np.exp(-4.0 * after) * (1.0 - np.exp(-after / 0.003)) * np.sin(2.0 * math.pi * k * f * after) / k
-                )
     elif kind != "noise":
         modes, often = plate(rng), rng.uniform(1.0, 10.0 if kind == "typing" else 4.0)
-        gaps = rng.normal(1.0, 0.01, 60) / often if kind == "ticks" else rng.exponential(1.0 / often, 60) + 0.02
-        for at in np.cumsum(gaps)[np.cumsum(gaps) < 3.9]:
+        gaps = rng.normal(1.0, 0.01, 120) / often if kind == "ticks" else rng.exponential(1.0 / often, 120) + 0.02
+        for at in np.cumsum(gaps)[np.cumsum(gaps) < t[-1] - 0.1]:
             strike(rng, sound, rate, modes, at, rng.lognormal(0.0, 0.1 if kind == "ticks" else 0.6), 5e-5)
     sound += (sound.std() or 1.0) * 10.0 ** -rng.uniform(0.5, 2.0) * noise(rng, sound.size)
     return np.asarray(0.7 * sound / np.abs(sound).max())

@@ -48,7 +48,7 @@ def lines_of(content: bytes) -> list[str]:
         return content.decode("utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError:
         if b"\0" in content:
-            raise ValueError("neither text in UTF-8") from None
+            raise ValueError("no text in UTF-8") from None
         return content.decode("cp1252", "replace").splitlines()
 
 

@@ -4,6 +4,7 @@ import dataclasses
 import difflib
 import itertools
 import os
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -92,8 +93,8 @@ def _read(content: bytes) -> Read:
             "no text in UTF-8, as spreadsheets save it; take columns with names in the first line"
         ) from None
     found = columns.locate(names, _COLUMNS)
-    if found.keys() >= {"time_error", "contact_time_error"}:  # one column: of instants, or of contact times
-        found.pop("contact_time_error" if "t1" in found else "time_error")
+    if found.get("time_error") == found.get("contact_time_error"):  # a column of this name is of what else is there
+        found.pop("contact_time_error" if any(re.fullmatch("t[0-9]+", name) for name in found) else "time_error", None)
     listed = ", ".join(names)[:200]
     if "speed" not in found and not any(map(is_height_or_time, found)):
         near = _nearest(names, ("speed",))
@@ -159,7 +160,8 @@ def completed(found: Read, path: str | os.PathLike[str], density: float, **sizes
     if twice:
         raise ArgumentError(min(twice), None, "the table has its own: leave this one out")
     for name, values in found.columns.items():
-        if name in (*INPUTS, "angle") and np.isnan(values).any():
+        either = name == "speed" and "drop" in found.columns  # each row has one of them
+        if name in (*INPUTS, "angle") and np.isnan(values).any() and not either:
             row = int(np.argmax(np.isnan(values)))
             raise ValueError(f"{path}: line {found.lines[row]} has no {name}")
     try:
