@@ -34,8 +34,9 @@ those of the softest body that was pressed (`Curves`).
 
 Where a body hardens, its flow stress is A + B strain^n at a representative strain, c (w - b w_Y),
 with w_Y the w at which flow begins, for a Poisson's ratio of 0.3; b w_Y is at most 0.995 of the w
-at which it does. The curves at a depth are those of ideal bodies of the strength there
-(`HardeningCurves`). `validation.fem.metals` has the impacts to which c was fitted.
+at which it does. The slope c grows with n and with E*/sigma (`strains`). The curves at a depth are
+those of ideal bodies of the strength there (`HardeningCurves`). `validation.fem.metals` has the
+impacts to which c was fitted.
 
 A body with losses gives back less of the work and is left compressed, which it recovers from later:
 

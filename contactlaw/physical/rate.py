@@ -2,10 +2,10 @@
 
 A flowing contact's strength is that at a representative rate, a share of (V0/R)(V_Y/V0)^0.3, with
 V_Y the speed from which a slow pair yields on a half-space: at the deepest point, which decides
-about the rebound, the flow has nearly come to rest, the more so the farther it has spread. Both the yield strength
-and the hardening of a body grow by its factor 1 + C ln(rate/rate0). Where both bodies have one, the
-pair's factor is that of the larger C and the lower rate0, so that it stands for one rate wherever
-one of the bodies grows stronger, and each has its own factor at that rate.
+about the rebound, the flow has nearly come to rest, the more so the farther it has spread. Both the
+yield strength and the hardening of a body grow by its factor 1 + C ln(rate/rate0). Where both bodies
+have one, the pair's factor is that of the larger C and the lower rate0, so that it stands for one
+rate wherever one of the bodies grows stronger, and each has its own factor at that rate.
 """
 
 import dataclasses

@@ -326,6 +326,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         least = _STIFFEST * min(body.plane_modulus for body in bodies)
         known &= all(body.plane_modulus <= least for body in flowing)
         untried = (not known) * Validity.UNTRIED_STRENGTH
+        hardens = any(body.flow is not None and body.flow.hardening for body in flowing)
         return Limits(
             slender=_SLENDER_FEM,
             slowness=0.0,
@@ -334,7 +335,7 @@ def limits(pair: Pair, law: Law) -> Limits:
             least_yield_ratio=0.0,
             fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H/R at V0/sqrt(E*/rho1)
-            deepest=min(law.range[1] * (law.scale or 0.0), _HARDENED if given.hardens else math.inf),
+            deepest=min(law.range[1] * (law.scale or 0.0), _HARDENED if hardens else math.inf),
             on_yield=int(on_yield | untried),
             **common | {"bending": _BENDING * min(plate, _flowing_sphere(pair, given))},
         )
