@@ -63,8 +63,9 @@ def with_strengths(pair: Pair, law: Law) -> Law:
     tops = force.tops(laws)  # corners that were found from other samples are not quite the same
     for width in _SEGMENTS:
         ends = np.array(knots(pair, width, rate.FASTEST, USUAL.near)[0])
-        near = tops[np.abs(ends[:, None] - tops).argmin(axis=1)]
-        ends = np.where(np.abs(near - ends) < _NEAR, near, ends)
+        off = np.abs(ends[:, None] - tops)
+        alike = (off < _NEAR) & (off == off.min(axis=0)) & (off == off.min(axis=1, keepdims=True))
+        ends = np.where(alike.any(axis=1), tops[alike.argmax(axis=1)], ends)
         if all(_is_smooth(laws, *one) for one in itertools.pairwise(ends.tolist())):
             break
     fine, cells = np.array(knots(pair, _CELL, rate.FASTEST, USUAL.near)[0]), []

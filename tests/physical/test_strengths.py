@@ -8,6 +8,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw.equation import force
+from contactlaw.laws.fem import RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.strengths import COARSE, USUAL, by_strength, knots
@@ -82,6 +83,17 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
         exact = cl.ImpactModel(rate.strengthened(pair, factor)).solve(v[n], r[n], 2.0 * r[n])
         assert found.restitution[n] == pytest.approx(exact.restitution, abs=2e-6)
         assert found.flags[n] == exact.flags
+
+
+def test_a_table_may_end_next_to_a_corner():
+    """The corner and the end were taken for one, and no table was made."""
+    strength = cl.Pair(WEAK, "glass").effective_modulus / RATIOS[1] * math.exp(-4e-3)
+    pair = cl.Pair(dataclasses.replace(WEAK, yield_strength=strength, rate=(3.4e-4, 1.0)), "glass")
+    corner, end = knots(pair, USUAL.piece, rate.FASTEST, USUAL.near)[0][-2:]
+    assert USUAL.near < end - corner < 1e-3
+    model = cl.ImpactModel(pair)
+    found, exact = (how([0.1, 3.0], 1e-3, 1e-2).restitution for how in (model.lookup, model.solve))
+    assert found == pytest.approx(exact, abs=1e-6)
 
 
 def test_a_rate_beyond_the_laws_is_refused():
