@@ -238,8 +238,11 @@ def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tup
 def _overloads(law: Law, kink: Array | float, lam: Array, elastic: Array, strength: Array | float = 0.0) -> Array:
     """Overloads at which the largest compression is that of a kink."""
     data = law.at_any_strength
-    for rtol in (1e-12, 1e-11):  # an impact that turns next to a kink may want smaller steps than there are
-        found: Array = zener.overload_at(data, lam, elastic, kink, rtol, strength=strength)
+    found: Array = np.full(np.shape(lam), math.nan)
+    # impacts that turn next to a kink may want smaller steps than there are, others at each rtol
+    for rtol in (1e-12, 1e-11, 1e-10, 1e-9):
+        tried = zener.overload_at(data, lam, elastic, kink, rtol, strength=strength)
+        found = np.where(np.isfinite(found), found, tried)
         if np.isfinite(found).all():
             return found
     raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {np.unique(kink)} d_Y")

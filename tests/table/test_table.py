@@ -12,7 +12,8 @@ import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.force import HERTZ
-from contactlaw.table import file, lookup, splines, sweep
+from contactlaw.physical.strengths import with_strengths
+from contactlaw.table import file, grid, lookup, splines, sweep
 from contactlaw.table.grid import on_demand
 
 MYC = laws.law("myc")
@@ -174,6 +175,18 @@ def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
     monkeypatch.setattr(sweep.zener, "solve_overloads", lambda *a: (zener.TOO_MANY_STEPS, 0))
     with pytest.raises(RuntimeError, match=r"node lambda = .*, chi = .* did not solve"):
         table.build(MYC, SMALL)
+
+
+def test_impacts_that_turn_next_to_a_kink_are_found():
+    """At each rtol a few in a hundred of other impacts did not solve, and no table was made."""
+    flow = {"yield_strength": 60e6, "hardening": (60e6, 0.5), "rate": (0.05, 1e-3), "loss_factor": (0.05, 1e3)}
+    body = cl.Material("polymer", 3e9, 0.4, 1200, kind="polymer", **flow)
+    pair = cl.Pair(body, body)
+    law = with_strengths(pair, cl.ImpactModel(pair).force_law)
+    lam, strength = np.geomspace(0.5, 6.0, 100), np.full(100, 0.087)
+    elastic = grid.elastic_compressions(law, lam, 1e-12, strength)
+    found = np.log(grid._overloads(law, grid._end(law.at_any_strength, 0.087), lam, elastic, strength))
+    assert np.abs(np.diff(found, 3)).max() < 1e-5
 
 
 def test_progress_sees_every_row():
