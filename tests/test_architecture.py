@@ -97,8 +97,8 @@ BUDGETS = {
     # 11,000 was asked. 5,529 are finite elements; the rest are the claims of the paper, campaigns
     # of random input and benchmarks themselves: what stood there twice is gone, and campaigns
     # drawn by hypothesis were no shorter.
-    "validation": 14_769,
-    "tests": 27_081,  # 20,500 was asked; a fact is held at the level nearest to the user
+    "validation": 14_770,
+    "tests": 27_088,  # 20,500 was asked; a fact is held at the level nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -46,6 +46,11 @@ class Census(NamedTuple):
     flags: dict[Validity, float]  # share of each flag of accuracy that occurs
     warned: int  # pairs whose table is less accurate than it has to be
 
+    @property
+    def flagged(self) -> str:
+        """Flags with their shares [%], in words."""
+        return ", ".join(f"{flag.name} {100 * share:.2g}" for flag, share in self.flags.items())
+
 
 def everything() -> list[tuple[str, str]]:
     """Pairs of all metals, ceramics and glasses that the catalogue has now."""
@@ -138,18 +143,14 @@ def settings(law: Law) -> Settings:
 def rows() -> Iterator[Row]:
     """Count for the laws fem and myc, and for fem of all materials of the catalogue."""
     found = count("fem", each=24, tables=False, pairs=everything)
-    flags = ", ".join(f"{flag.name} {100 * share:.2g}" for flag, share in found.flags.items())
     # At most 8 % was wanted. FROM_HARDNESS needs strengths of shot and balls, which no source states.
-    yield Row(
-        "fem: flagged on accuracy, all of the catalogue", 100 * found.inaccurate, "%", _MOST_FLAGGED_OF_ALL, note=flags
-    )
+    yield Row("fem: flagged, all materials", 100 * found.inaccurate, "%", _MOST_FLAGGED_OF_ALL, note=found.flagged)
     for name in _LAWS:
         start = time.perf_counter()
         found = count(name)
         taken = time.perf_counter() - start
         made = name == "fem"
         none = 0.0 if made else None
-        flags = ", ".join(f"{flag.name} {100 * share:.2g}" for flag, share in found.flags.items())
         yield Row(
             f"{name}: everyday impacts refused",
             100 * found.refused,
@@ -159,6 +160,6 @@ def rows() -> Iterator[Row]:
         )
         yield Row(f"{name}: outside the table", 100 * found.outside, "%", none)
         most = _MOST_FLAGGED if made else None
-        yield Row(f"{name}: flagged on accuracy", 100 * found.inaccurate, "%", most, note=flags)
+        yield Row(f"{name}: flagged on accuracy", 100 * found.inaccurate, "%", most, note=found.flagged)
         yield Row(f"{name}: flagged on damage", 100 * found.damaging, "%")
         yield Row(f"{name}: inside all limits", 100 * found.inside, "%")

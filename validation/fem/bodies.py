@@ -12,7 +12,7 @@ import numpy as np
 
 from validation.fem import journal
 from validation.fem.cases import Case
-from validation.fem.metals import fits, log_uniform
+from validation.fem.metals import fits, log_uniform, sizes
 
 Limits = tuple[float, float]
 
@@ -36,7 +36,7 @@ SETS = {
     "bodies_unlike": Set(20261130, 14, stiffer=(12.0, 40.0), stronger=2.6, hardens=False, flows="soft first"),
     "bodies_stiff": Set(20261131, 6, stiffer=(12.0, 40.0), hardens=False, flows="stiff alone"),
 }
-_RADII, _SPEEDS, _SLENDERNESS = (0.3e-3, 3e-3), (0.3, 30.0), (0.1, 1.6)  # [m], [m/s], R/H
+_SPEEDS, _SLENDERNESS = (0.3, 30.0), (0.1, 1.6)  # [m/s], R/H
 _MODULI, _DENSITIES, _POISSON = (15e9, 450e9), (1500.0, 16e3), (0.2, 0.4)  # [Pa], [kg/m3]
 _WAYS = (True, False), (False, True), (True, True)
 
@@ -78,8 +78,7 @@ def _one(generator: np.random.Generator, wanted: Set, flows: tuple[bool, bool]) 
         if flows[n]:
             body += f", flow {strengths[n]:.4g} {hardening * strengths[n]:.4g} {exponent:.3f} {rate:.3f} 1"
         bodies.append(body)
-    speed, radius = log_uniform(generator, _SPEEDS), log_uniform(generator, _RADII)
-    thickness = float(f"{radius / log_uniform(generator, _SLENDERNESS):.4g}")
+    speed, thickness, radius = sizes(generator, _SPEEDS, _SLENDERNESS)
     if not wanted.stiffer[0] <= max(plane) / min(plane) <= wanted.stiffer[1]:
         return None
     sphere, plate = bodies

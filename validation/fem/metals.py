@@ -68,10 +68,12 @@ def log_uniform(generator: np.random.Generator, limits: tuple[float, float]) -> 
     return float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}")
 
 
-def _sizes(generator: np.random.Generator, speeds: tuple[float, float]) -> tuple[float, float, float]:
+def sizes(
+    generator: np.random.Generator, speeds: tuple[float, float], slenderness: tuple[float, float] = _SLENDERNESS
+) -> tuple[float, float, float]:
     """Speed, thickness and radius, in the order of `Case`."""
     speed, radius = log_uniform(generator, speeds), log_uniform(generator, _RADII)
-    thickness = float(f"{radius / log_uniform(generator, _SLENDERNESS):.4g}")
+    thickness = float(f"{radius / log_uniform(generator, slenderness):.4g}")
     return speed, thickness, radius
 
 
@@ -94,7 +96,7 @@ def _of_fit(generator: np.random.Generator, *, with_rate: bool, alike: bool) -> 
         if flows:
             bodies[n] += f", flow {flow}"
     sphere, plate = bodies
-    return Case(*_sizes(generator, _SPEEDS[0]), sphere, plate, yields=yields, plate_yields=plate_yields, meshes=1)
+    return Case(*sizes(generator, _SPEEDS[0]), sphere, plate, yields=yields, plate_yields=plate_yields, meshes=1)
 
 
 def ideal(case: Case) -> cl.Pair:
@@ -128,7 +130,7 @@ def _published(generator: np.random.Generator) -> Case:
     elif which == 2:
         sphere = str(generator.choice(_RIGID))
     return Case(
-        *_sizes(generator, _SPEEDS[1]), sphere, plate, yields=", flow " in sphere, plate_yields=", flow " in plate
+        *sizes(generator, _SPEEDS[1]), sphere, plate, yields=", flow " in sphere, plate_yields=", flow " in plate
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactlaw.laws import fem
-from validation.fem import campaign, census, fit, journal, metals, store
+from validation.fem import bodies, campaign, census, fit, journal, metals, store
 from validation.fem.campaign import Press
 
 
@@ -126,3 +126,10 @@ def test_a_killed_run_goes_on(tmp_path, monkeypatch):
     assert journal._read(journal.path("some")) == {}
     journal.forget("some")
     assert not journal.path("some").exists()
+
+
+@pytest.mark.parametrize("name", bodies.SETS)
+def test_drawn_bodies_are_those_of_their_seed(name):
+    stored = store.read(name).data
+    for key in ("speed", "radius", "thickness", "sphere", "plate"):
+        assert [getattr(one, key) for one in bodies.draw(name)] == stored[key].tolist()
