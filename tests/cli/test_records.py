@@ -84,6 +84,10 @@ def test_a_record_of_an_engine(tmp_path):
     assert found.plate.tolist() == [1, 0]
     assert found.radius.tolist() == [RADIUS[0], RADIUS[2]]
     assert found.thickness.tolist() == [1e-3, math.inf]
+    rows["parcel"], rows["mass"], rows["thickness"] = [2.0, 1.0, 3.0], [8.0, 1.0, 54.0], 1e-3
+    cl.Record(rows).save(tmp_path / "impacts.h5")
+    found = one(tmp_path / "impacts.h5")  # a parcel stands for as many beads as fit into it
+    assert found.weights.tolist() == [8.0, 27.0] and found.mass.tolist() == [1.0, 2.0]
 
 
 def recorded(path, kinds):

@@ -91,6 +91,13 @@ def test_a_rebound_of_next_to_nothing_has_no_long_number(run):
     assert summary.impacts(Run(cl.Record(rows)))[1][6] == ">1000%"
 
 
+def test_a_parcel_counts_for_its_beads(run):
+    rows = run[1].collisions()
+    rows["parcel"] = 2.0
+    found = Run(cl.Record(rows))
+    assert f" which stand for {8 * found.impacts.size} of true beads, " in summary.counts(found)
+
+
 @pytest.mark.parametrize("beads", [1, 5])
 def test_contacts_on_one_flat_plate_have_room(beads):
     space = make_space()
