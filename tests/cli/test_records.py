@@ -290,6 +290,7 @@ DAMAGES = [
     *((vast, place, f"{place} has 100000000000 rows, expected") for place in COLUMNS),
     (put([1, 1]), "impacts/plate", "impacts/plate has 2 rows, expected 4 as in the other columns"),
     (another(9), "impacts/bodies", "impacts/bodies has 9 in row 0, expected a whole number"),
+    (another(2), "impacts/bodies", "impacts/bodies has 2 in row 0, expected a whole number from 0 to 1"),
     (another(0.5), "impacts/bodies", "impacts/bodies has 0.5 in row 0"),
     (another(math.nan), "impacts/plate", "plate of row 0 is nan, expected a whole number"),
     (another(math.nan), "impacts/approach_speed", "speed: got nan"),
