@@ -8,7 +8,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-long test-engines matrix coverage lint docs package validation bench \
+.PHONY: demo test test-long test-engines extras matrix coverage lint docs package validation bench \
   pictures release clean
 
 demo: $(VENV)/demo.done  ## rain beads on thin plates; the page is rain/index.html
@@ -30,6 +30,14 @@ test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, 
 	$(BIN)/python -m pytest tests/export/test_lammps_fix.py tests/export/test_liggghts.py tests/export/test_gpu.py \
 	  --junitxml=$(VENV)/engines.xml
 	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
+
+EXTRAS := lammps demo fit shell
+
+extras:  ## use each extra of users in an environment of its own: attach, record, save, read, report
+	@for extra in $(EXTRAS); do \
+	  $(MAKE) --no-print-directory VENV=.venv/$$extra .venv/$$extra/$$extra.done && \
+	  NUMBA_CACHE_DIR=$(CURDIR)/.pytest_cache/machine-code .venv/$$extra/bin/python tests/extras.py $$extra || exit 1; \
+	done
 
 PYTHONS := 3.11 3.12 3.13
 QUICK := tests/physical tests/laws/test_laws.py tests/test_model.py tests/cli/test_cor.py
