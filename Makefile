@@ -51,16 +51,8 @@ matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is
 	  else echo "Python $$version is not on PATH: not tested"; fi; \
 	done
 
-# Tests that need few integrations: with kernels as Python, whose lines count then, these are slow.
-PLAIN := tests/physical/test_materials.py tests/physical/test_pair.py tests/physical/test_hardness.py \
-  tests/physical/test_scaling.py tests/physical/test_validity.py \
-  tests/cli/test_quantities.py tests/cli/test_wording.py tests/cli/test_lines.py \
-  tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/reporting \
-  contactlaw/engines/pymunk
-
-coverage: $(VENV)/coverage.done  ## print which lines of contactlaw a part of the tests reaches
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest --cov=contactlaw --cov-report=term:skip-covered \
-	  -m "not long" $(PLAIN)
+coverage: $(VENV)/coverage.done  ## print which lines of contactlaw `make test` reaches, but for compiled kernels
+	$(PYTEST) -m "not long" --cov=contactlaw --cov-report=term:skip-covered $(PART)
 
 lint: $(VENV)/dev.done  ## check style and types
 	$(BIN)/ruff check .
