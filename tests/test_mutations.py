@@ -7,7 +7,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 sys.path.append(str(ROOT / "tests/mutations"))
-from run import edits  # noqa: E402
+from mutate import edits  # noqa: E402
 
 
 @pytest.mark.parametrize("edit", edits(), ids=lambda edit: f"{edit.file}: {' '.join(edit.text.split())[:40]}")

@@ -1,6 +1,6 @@
 """Change the sources one small edit at a time, and see that the named test fails with each.
 
-``python tests/mutations/run.py [ROOM or path of contactlaw ...] [--find [TESTS ...]]``
+``python tests/mutations/mutate.py [ROOM or path of contactlaw ...] [--find [TESTS ...]]``
 
 Each ``ROOM.toml`` beside this file lists edits that are faults: a file, a text that occurs in it
 once, its replacement, why that is wrong, and the test that fails then. An entry with ``plain``
@@ -55,7 +55,7 @@ def run(copy: Path, plain: bool, *tests: str) -> tuple[bool, str]:
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     with subprocess.Popen(command, cwd=copy, env=environment, start_new_session=True, **pipes) as process:
         try:
-            said, _ = process.communicate(timeout=LONGEST)
+            said, _ = process.communicate(timeout=LONGEST * len(tests))
         except subprocess.TimeoutExpired:
             said = f"longer than {LONGEST:g} s"
         finally:
