@@ -1,14 +1,21 @@
-"""Change the sources one small edit at a time, and see that the named test fails with each.
+"""Make small faults in a copy of the sources, one at a time, and see that a named test fails.
 
-``python tests/mutations/mutate.py [ROOM or path of contactlaw ...] [--find [TESTS ...]]``
+``python tests/mutations/mutate.py [ROOM or beginning of a path ...] [--find [TESTS ...]]``
 
-Each ``ROOM.toml`` beside this file lists edits that are faults: a file, a text that occurs in it
-once, its replacement, why that is wrong, and the test that fails then. An entry with ``plain``
-runs its test with numba switched off, since a change of a kernel has everything compiled anew.
-An edit that no test notices has an empty ``test`` and is counted apart. With ``--find`` more tests
-run for each edit that its own test does not notice, by default all but the long ones, and the first
-that fails is named. All runs are in a copy of the tree, in a temporary folder. ``make mutations``
-runs the whole list, one process after the other.
+Each ``ROOM.toml`` beside this file lists edits. An edit has a file, a text that occurs in it once, its
+replacement, a sentence that says why the change is a fault, and the test that fails with it. An edit
+with ``plain`` runs its test with numba switched off, because everything is compiled anew after a
+change of a kernel. An edit that no test notices has an empty ``test``. Each line of the output begins
+with what became of an edit:
+
+- caught: its test fails with it, and passes without it;
+- missed: its test passes with it;
+- found: its test passes with it, and the first of the tests after ``--find`` that fails is named (all
+  tests but the long ones, if none are given);
+- open: no test notices it;
+- wrong: its text does not occur once, or its test does not pass without it.
+
+All runs are in a temporary copy of the tree, one process after the other.
 """
 
 import argparse
