@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.physical.plates import Foundation, Orthotropic, Shell, sheet_of
-from contactlaw.walls.edges import Rims, boundary, edges_of
+from contactlaw.walls.edges import Rims, boundary, edges_of, side_lengths, welded
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.round import between, positive
@@ -44,7 +44,8 @@ class Mesh:
     vertices : array_like, shape (n, 3)
         Corners of the triangles [m].
     triangles : array_like of int, shape (m, 3)
-        For each triangle the numbers of its three corners, from 0.
+        For each triangle the numbers of its three corners, from 0. Vertices that differ by no more
+        than the rounding of single precision become one, and of its numbers the mesh keeps one.
     thickness : float or array_like, shape (m,), or Foundation or Shell of such
         Plate thickness in the model, of all triangles or of each [m]; ``inf`` is the half-space.
         The geometry has no thickness. A `contactlaw.Shell` swings back as in `Plate`.
@@ -53,15 +54,15 @@ class Mesh:
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the wall moves; without it, the wall stands still.
     edges : {"free", "supported", "clamped"} or callable, optional
-        How the wall ends at its rims and holes: on sides of one triangle alone, wherever the
-        vertices' numbers differ but their places do not. A callable takes the middles of these
-        sides, shape (n, 3) [m], and returns a kind, or None, for each. Without `edges`, the wall
-        gives way as an endless plate.
+        How the wall ends at its rims and holes, the sides that one triangle alone has. A callable
+        takes the middles of these sides, shape (n, 3) [m], and returns a kind, or None, for each.
+        Without `edges`, the wall gives way as an endless plate.
 
     Attributes
     ----------
     dropped : int
-        Number of triangles left out, with a warning: those without area, and duplicates.
+        Number of triangles left out, with a warning: those without area, and duplicates. A flat one
+        between others is no loss: its neighbour at the longest side is divided at its third corner.
     kept : ndarray of int
         For each triangle of the mesh, its number in the `triangles` that were given.
     rim : structured array
@@ -103,7 +104,7 @@ class Mesh:
         thickness = _thickness(checked_sheet(self.thickness), len(triangles))
         check_models(self.model)
         check_motion(self.motion)
-        good = _valid_triangles(vertices, triangles)
+        corners, good = _valid_triangles(vertices, triangles)
         lost = len(triangles) - len(good)
         if not good.size:
             raise ArgumentError("triangles", None, f"none of {len(triangles)} has an area [m2]")
@@ -111,9 +112,9 @@ class Mesh:
             warnings.warn(
                 f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates", stacklevel=3
             )
-        rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, triangles[good]))
-        found = {"vertices": vertices, "triangles": triangles[good], "thickness": thickness[good]}
-        for name, value in {**found, "dropped": lost, "kept": good, "rim": rim, "given": self.thickness}.items():
+        rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, corners))
+        arrays = {"vertices": vertices, "triangles": corners, "thickness": thickness[good]}
+        for name, value in {**arrays, "dropped": lost, "kept": good, "rim": rim, "given": self.thickness}.items():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked
             object.__setattr__(self, name, value)
@@ -384,14 +385,34 @@ def _thickness(given: Any, triangles: int) -> Floats:
     return np.broadcast_to(found, triangles).copy()
 
 
-def _valid_triangles(vertices: Floats, triangles: Integers) -> Integers:
-    """Numbers of the triangles that have an area, without duplicates."""
-    corners = vertices[triangles]
-    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    some = np.flatnonzero(twice > _FLAT * sides.max(axis=1) ** 2)
-    # Duplicates have the same three corners, in any order and under any vertex numbers.
-    _, number_of = np.unique(vertices, axis=0, return_inverse=True)
-    key = np.sort(number_of.ravel()[triangles[some]], axis=1)
-    _, first = np.unique(key, axis=0, return_index=True)
-    return some[np.sort(first)]
+def _valid_triangles(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
+    """Triangles that have an area, without duplicates; the number that each had.
+
+    A flat triangle lies between one neighbour at its longest side and two at its other sides, which
+    would not share sides without it. So the first neighbour is divided at the middle corner of the
+    flat triangle, and one half takes the place of this.
+    """
+    triangles, close = welded(vertices, triangles)
+    ordered = np.sort(triangles, axis=1)
+    _, kept = np.unique(ordered, axis=0, return_index=True)
+    kept = np.sort(kept[(np.diff(ordered[kept], axis=1) > 0).all(axis=1)])
+    triangles = triangles[kept]
+    area, longest = _sizes(vertices[triangles])
+    flat = np.flatnonzero(area <= longest * np.maximum(close, _FLAT * longest))
+    for n in flat[np.argsort(-longest[flat])]:
+        end, middle, start = np.roll(triangles[n], -side_lengths(vertices[triangles[n]]).argmax())
+        triangles[n] = middle  # without area
+        beside = np.flatnonzero(np.isin(triangles, (start, end)).sum(axis=1) == 2)
+        if len(beside) == 1:
+            whole = triangles[beside]
+            triangles[n] = np.where(whole == start, middle, whole)
+            triangles[beside] = np.where(whole == end, middle, whole)
+    area, longest = _sizes(vertices[triangles])
+    good = area > _FLAT * longest**2
+    return triangles[good], kept[good]
+
+
+def _sizes(corners: Floats) -> tuple[Floats, Floats]:
+    """Twice the area of each triangle, and its longest side."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.linalg.norm(across, axis=1), side_lengths(corners).max(axis=1)
