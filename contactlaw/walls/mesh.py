@@ -139,6 +139,9 @@ class Mesh:
     ) -> Self:
         """Read a mesh from a file: STL (binary or text), PLY, OBJ or another that trimesh reads.
 
+        Letters may have any encoding, and exponents may be those of Fortran (1.0D+01). A file that
+        was cut is refused; of an OBJ, which counts no triangles, that is not always seen.
+
         A warning names parts that are facets of a whole cylinder, cone, sphere or cap, and the
         walls of `contactlaw.walls` to take in their place. It does not know parts that go on
         smoothly in another shape, as the cylinder of a capsule does.
@@ -192,14 +195,16 @@ class Mesh:
             with warnings.catch_warnings():
                 # trimesh would take the corners before a number that cannot be read for all
                 warnings.filterwarnings("error", "string or file could not be read")
-                stl = Path(path).suffix.lower() == ".stl"
-                source, kind = (_stl(path), "stl") if stl else (str(path), None)
+                source, kind, least = _source(path)
                 found = trimesh.load_mesh(source, kind, process=False)
             vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
-            if not len(triangles):
-                raise ValueError("no triangles")
+            if len(triangles) < least:
+                raise ValueError(f"{len(triangles)} triangles, where at least {least} should be")
+            if not np.isfinite(vertices).all():
+                raise ValueError("not all coordinates are finite")
         except Exception as error:  # trimesh's readers raise errors of many types
-            reason = f"no mesh that trimesh reads: {error}"
+            what = "not all coordinates are numbers" if "unmatched data" in str(error) else error
+            reason = f"no mesh that trimesh reads: {what}; write it again, best as a binary STL"
             raise ArgumentError("path", str(path), reason) from error
         extent = float(np.ptp(vertices, axis=0).max())
         if scale is None and extent > _LONGEST:
@@ -332,13 +337,28 @@ class Mesh:
         return cls(np.vstack((middle + around, middle)), fan, thickness, model, motion, edges)
 
 
-def _stl(path: str | Path) -> io.BytesIO:
-    """Content of an STL file as trimesh knows it: no bytes after the last triangle, "endsolid"."""
-    content = Path(path).read_bytes()
-    end = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary one; text has > 7e9
-    if 84 < end <= len(content):
-        return io.BytesIO(content[:end])
-    return io.BytesIO(re.sub(rb"(?im)^([ \t]*)end[ \t]+solid", rb"\1endsolid", content))
+def _source(path: str | Path) -> tuple[Any, str | None, int]:
+    """Prepare a file for trimesh: its path or content, its kind, and how many triangles it has at least.
+
+    trimesh takes a cut file for a small one, and reads neither 1.0D+01 nor any letters but UTF-8.
+    """
+    content, kind = Path(path).read_bytes(), Path(path).suffix.lower()[1:]
+    if kind not in ("stl", "ply", "obj", "off"):
+        return str(path), None, 1
+    size = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary STL; some have zeros behind it
+    if kind == "stl" and size <= len(content) and not content[size:].strip(b"\0\r\n"):
+        return io.BytesIO(content[:size]), kind, 1
+    end = content.find(b"end_header") if b"format binary" in content else len(content)
+    code = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    text = io.TextIOWrapper(io.BytesIO(content[:end]), code, "replace").read()
+    text = re.sub(r"\ufffd\\?", "?", text)  # a letter of Shift-JIS may end like a line that goes on
+    text = re.sub(r"[dD](?<=[\d.].)(?=[-+\d])", "e", text)
+    if kind == "stl":
+        if not re.search(r"(?i)end\s*solid.*\W*$", text):
+            raise ValueError(f"cut, or no STL: no endsolid at its end, and {len(content)} bytes in place of {size}")
+        text = re.sub(r"(?im)^\s*(end)?\s*solid.*", r"\1solid", text)  # names may have the word "vertex"
+    faces = re.match(r"(?s)(?:ply\s.*?element face|OFF(?:\s+#[^\n]*)*\s+\d+)\s+([1-9]\d*)", text)
+    return io.BytesIO(text.encode() + content[end:]), kind, int(faces[1]) if faces else 1
 
 
 def _circle(axis: Floats, facets: int) -> Floats:
