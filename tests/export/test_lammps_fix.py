@@ -259,6 +259,8 @@ set group all diameter 1.6e-3 density 879
 velocity all set 0 0 -20"""
 REGIONS = {
     "region drum": "region drum block -0.02 0.02 -0.02 0.02 0 0.02",
+    "region mill": """variable angle equal 1e5*time
+region mill plane 0 0 -1 0 0 1 rotate v_angle 0.1 0 1e-3 0 -1 0""",
     "region both": """variable angle equal time
 region one sphere 0 0 0 1 rotate v_angle 0 0 0 0 0 1
 region other sphere 0 0 0 2
@@ -271,6 +273,10 @@ region both intersect 2 one other""",
     [
         ("plane 9 0 0 0 0 1 thickness 1e-3", "COR 0.824"),  # `ImpactModel.restitution`; the point is far from the box
         ("region drum softening 1e9", "its centre went through the wall at 20 m/s"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 move 0 0 1e4", "further than its radius of 0.0008 m"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 vibrate 0 0 1 1591", "at 1.002e+04 m/s it flies further than its radius"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 rotate 0.1 0 1e-3 0 -1 0 1e5", "further than its radius of 0.0008 m"),
+        ("region mill", "further than its radius of 0.0008 m"),
         ("region both", "there is no both, or its shape changes or parts move"),
     ],
 )

@@ -263,7 +263,8 @@ void FixWallContactlaw::Scene::add_edges(int number, size_t first)
         std::for_each(all.back().begin(), all.back().end(), [&](Vector one) { whole.add(one); });
     }
     const Vector wide = whole.size();
-    const double step = CONTACTLAW_MERGED * std::max({ wide[0], wide[1], wide[2], 1e-300 });
+    /* Vertices that round to the same steps are one. Round coordinates must not lie between two steps. */
+    const double step = 0.8647e-6 * std::max({ wide[0], wide[1], wide[2], 1e-300 });
     std::map<std::array<long long, 3>, int> vertices;
     std::map<std::pair<int, int>, std::vector<std::pair<int, int>>> sides; /* facet and corner */
     for (size_t n = 0; n < all.size(); ++n)
@@ -726,7 +727,15 @@ void FixWallContactlaw::look()
     for (int i = 0; i < atom->nlocal; ++i) {
         if (!(atom->mask[i] & groupbit) || s.beads[atom->type[i] - 1] < 0)
             continue;
-        const double speed = size(vector_of(atom->v[i])) * s.length / s.time, r = atom->radius[i] * s.length;
+        const Vector at = s.length * vector_of(atom->x[i]);
+        double wall = 0.0; /* speed of the fastest wall, of one that turns at the place of the bead */
+        for (const contactlaw_frame &one : s.frames) {
+            const Vector arm = at - vector_of(one.hub) - vector_of(one.shift);
+            const double most = size(vector_of(one.velocity)) + one.frequency * size(vector_of(one.amplitude));
+            wall = std::max(wall, std::fabs(one.spin) * size(cross(vector_of(one.axis), arm))
+                            + std::max(most, size(vector_of(one.rate)))); /* regions have a rate alone */
+        }
+        const double speed = size(vector_of(atom->v[i])) * s.length / s.time + wall, r = atom->radius[i] * s.length;
         if (!(speed * update->dt * s.time < r))
             refuse(TOO_FAST, atom->tag[i], -1, speed, r);
         const double mass = atom->rmass[i] * s.mass;
