@@ -8,7 +8,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-long test-engines matrix coverage lint docs package validation bench \
+.PHONY: demo test test-long test-engines extras matrix coverage lint docs package validation bench \
   pictures release clean
 
 demo: $(VENV)/demo.done  ## rain beads on thin plates; the page is rain/index.html
@@ -31,6 +31,14 @@ test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, 
 	  --junitxml=$(VENV)/engines.xml
 	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
 
+EXTRAS := lammps demo fit shell
+
+extras:  ## use each extra of users in an environment of its own: attach, record, save, read, report
+	@for extra in $(EXTRAS); do \
+	  $(MAKE) --no-print-directory VENV=.venv/$$extra .venv/$$extra/$$extra.done && \
+	  NUMBA_CACHE_DIR=$(CURDIR)/.pytest_cache/machine-code .venv/$$extra/bin/python tests/extras.py $$extra || exit 1; \
+	done
+
 PYTHONS := 3.11 3.12 3.13
 QUICK := tests/physical tests/laws/test_laws.py tests/test_model.py tests/cli/test_cor.py
 
@@ -43,16 +51,8 @@ matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is
 	  else echo "Python $$version is not on PATH: not tested"; fi; \
 	done
 
-# Tests that need few integrations: with kernels as Python, whose lines count then, these are slow.
-PLAIN := tests/physical/test_materials.py tests/physical/test_pair.py tests/physical/test_hardness.py \
-  tests/physical/test_scaling.py tests/physical/test_validity.py \
-  tests/cli/test_quantities.py tests/cli/test_wording.py tests/cli/test_lines.py \
-  tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/reporting \
-  contactlaw/engines/pymunk
-
-coverage: $(VENV)/coverage.done  ## print which lines of contactlaw a part of the tests reaches
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest --cov=contactlaw --cov-report=term:skip-covered \
-	  -m "not long" $(PLAIN)
+coverage: $(VENV)/coverage.done  ## print which lines of contactlaw `make test` reaches, but for compiled kernels
+	$(PYTEST) -m "not long" --cov=contactlaw --cov-report=term:skip-covered $(PART)
 
 lint: $(VENV)/dev.done  ## check style and types
 	$(BIN)/ruff check .

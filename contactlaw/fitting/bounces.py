@@ -1,6 +1,5 @@
 """Speeds and CORs of beads that bounce, from the sound of their impacts or from noted times."""
 
-import importlib
 import math
 import warnings
 from collections.abc import Iterator, Sequence
@@ -192,14 +191,6 @@ def _measured(
     return at[sure], speed[sure], cor[sure], errors[sure]
 
 
-def from_scipy(part: str) -> Any:
-    """Import a part of scipy, which only the extra ``fit`` installs."""
-    try:
-        return importlib.import_module(f"scipy.{part}")
-    except ImportError as error:
-        raise ImportError("this needs scipy: pip install 'contactlaw[fit]'") from error
-
-
 def loudest(samples: Array) -> Array:
     """Channel of a recording; the mean of channels would blur instants, or be silent."""
     return samples if samples.ndim == 1 else np.asarray(samples[:, samples.std(axis=0).argmax()])
@@ -232,7 +223,8 @@ def _checked(samples: ArrayLike, rate: float) -> Array:
 
 def _impacts(x: Array, rate: float) -> tuple[Array, Array, Array]:
     """Instants of impacts [s], their errors [s], and how loud they are beside the noise."""
-    linalg, ndimage, signal = map(from_scipy, ("linalg", "ndimage", "signal"))
+    from scipy import linalg, ndimage, signal
+
     step = round(_FRAME * rate)
     f, _, power = signal.spectrogram(x, rate, "hann", 4 * step, 3 * step, detrend=False, scaling="spectrum")
     power = power[(f > _BAND[0]) & (f < _BAND[1])]

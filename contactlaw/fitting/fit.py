@@ -14,7 +14,6 @@ from contactlaw._arrays import Array, Integers, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.bounces import from_scipy
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
@@ -206,7 +205,6 @@ def fit(
     enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    from_scipy("optimize")
     unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
     data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)

@@ -15,7 +15,6 @@ import numpy as np
 
 from contactlaw._arrays import Array, Places
 from contactlaw.answers.backend import UnsolvedError
-from contactlaw.fitting.bounces import from_scipy
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
@@ -120,7 +119,7 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     A narrow valley across the grid has a chain of lowest points. Least squares on the splines start
     from each and end in one minimum, so that no chain hides another valley.
     """
-    from scipy import interpolate, ndimage
+    from scipy import interpolate, ndimage, optimize
 
     squares = (off**2).sum(axis=-1)
     lowest = squares <= ndimage.minimum_filter(squares, 3, mode="nearest")
@@ -136,9 +135,7 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     bottoms: list[tuple[float, Array]] = []
     for place in places:
         start = np.clip([axes[n][place[n]] for n in free], *(np.array(ends).T + _INSIDE))
-        done = from_scipy("optimize").least_squares(
-            lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20
-        )
+        done = optimize.least_squares(lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20)
         bottoms.append((float(done.cost), done.x))
     kept: list[Array] = []
     for _, x in sorted(bottoms, key=lambda one: one[0]):
@@ -325,11 +322,13 @@ class Descent:
         def slopes(x: Array) -> Array:
             return np.vstack([self.slopes(x) / error[:, None], pull])
 
+        from scipy.optimize import least_squares
+
         margin = 1e-6 * (self._high - self._low)
         first = np.clip(np.log(start), self._low + margin, self._high - margin)
         if not np.isfinite(residuals(first)).all():  # the model has no answer there
             return Basin(start, math.inf)
-        found = from_scipy("optimize").least_squares(
+        found = least_squares(
             residuals,
             first,
             slopes,

@@ -5,8 +5,6 @@ import pickle
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 import tracemalloc
 
 import numpy as np
@@ -412,17 +410,6 @@ def test_things_that_are_no_data():
         cl.fit(STEEL, [1.0, 2.0], "thickness")
     with pytest.raises(TypeError, match="pair: expected"):
         cl.fit(("steel", "glass"), {}, "thickness")
-
-
-def test_without_scipy_it_says_what_to_install():
-    code = (
-        "import sys; sys.modules['scipy'] = None; sys.modules['scipy.optimize'] = None\n"
-        "import contactlaw as cl\n"
-        "cl.fit(cl.Pair('glass', 'glass'), {'speed': 1.0, 'radius': 1e-3, 'restitution': 0.9}, "
-        "'thickness')"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert "ImportError: this needs scipy: pip install 'contactlaw[fit]'" in done.stderr
 
 
 def test_numbers_of_rebounds_are_listed():
