@@ -6,6 +6,7 @@ from dumbbell import Dumbbell, impact
 from lammps_box import PAIR, R, flat, on_two_ranks, quiet
 
 import contactlaw as cl
+from contactlaw.cli import main
 from contactlaw.engines.lammps import attach
 from contactlaw.engines.record import Kind
 
@@ -95,6 +96,25 @@ def test_bodies_of_any_mass_rebound_as_their_mass_at_the_contact_says():
 def test_a_run_may_be_cut_into_pieces():
     (_, _, whole), (_, _, cut) = (thrown(orientations()[::6], 0.3, pieces=pieces) for pieces in (1, 24))
     assert cut["restitution"] == pytest.approx(whole["restitution"], abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["run.h5", "run.npy", "run.csv"])
+def test_one_constant_is_that_of_the_recorded_impacts(name, tmp_path, capsys):
+    _, walls, rows = thrown(orientations())
+    if name == "run.h5":
+        walls.save(tmp_path / name)
+    elif name == "run.npy":
+        np.save(tmp_path / name, rows)
+    else:
+        np.savetxt(tmp_path / name, rows, delimiter=",", header=",".join(rows.dtype.names))
+    command = ["constant", "--record", str(tmp_path / name), "--csv", "--law", "myc"]
+    pair = ["--sphere", PAIR.sphere.name, "--plate", PAIR.plate.name]
+    assert main(command + pair * (name != "run.h5")) == 0
+    head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
+    energy = rows["mass"] * rows["approach_speed"] ** 2
+    best = np.sqrt(np.average(rows["restitution"] ** 2, weights=energy))
+    assert set(rows["kind"]) == {Kind.OF_BODY} and rows.size == N
+    assert float(row[head.index("restitution")]) == pytest.approx(best, abs=1e-3)
 
 
 def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
