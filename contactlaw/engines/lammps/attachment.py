@@ -6,6 +6,7 @@ import ctypes
 import functools
 import os
 import pickle
+import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -359,6 +360,7 @@ class LammpsPlates:
         self._shared = self._share(columns)
         self._register()
         self._shared["since"] = self.time
+        self._run = self._comm.bcast(time.time_ns() // 1000), self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
         self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0, ""
 
@@ -513,6 +515,7 @@ class LammpsPlates:
         scene = self._contacts.scene
         rows, clumped = scene.impacts[: scene.status["impacts"][0]].copy(), self._clumped()
         rows["kind"][np.isin(rows["bead"], clumped)] = Kind.IN_CLUMP
+        rows["run"], rows["run_start"] = self._run
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)

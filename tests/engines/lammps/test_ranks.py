@@ -4,6 +4,7 @@ import faulthandler
 import sys
 
 import lammps_box as box
+import numpy as np
 import pytest
 
 import contactlaw as cl
@@ -36,6 +37,11 @@ def output(tmp_path_factory):
 )
 def test_an_error_on_one_rank_is_raised_on_all(fault, method, output):
     assert output.count(f"{fault}, {method}: {MESSAGES[fault].format(method)}") == 2
+
+
+def test_rows_that_an_earlier_run_has_left_are_refused(output):
+    assert "2 rows of both ranks" in output
+    assert "mixed: " in output and "hits.1.npy: " in output and "hits.0.npy is of another run" in output
 
 
 def test_a_report_that_cannot_be_drawn_keeps_its_record(output):
@@ -93,6 +99,7 @@ def main(folder):
                     print(text, end="", flush=True)
     if WORLD.rank == 0:
         print(f"{cl.read_record(f'{folder}/out/record.h5').rows.size} rows kept")
+    np.save(f"{folder}/hits.{WORLD.rank}.npy", walls.collisions())
     started = {"Dup": {"comm": WORLD.Dup()}, "Split": {"comm": WORLD.Split(WORLD.rank)}}
     started["partition"] = {"more": ["-partition", "2x1", "-in", "none", "-plog", "none", "-pscreen", "none"]}
     for name, how in started.items():
@@ -101,6 +108,15 @@ def main(folder):
         lmp.command("run 700")
         if (rows := walls.gather()) is not None:
             print(f"{name} {rows.size} {rows['restitution'][0]}\n", end="", flush=True)
+    WORLD.barrier()
+    if WORLD.rank == 0:
+        files = [f"{folder}/hits.{rank}.npy" for rank in range(2)]
+        print(f"{cl.read_record(*files).rows.size} rows of both ranks")
+        np.save(files[0], rows)
+        try:
+            cl.read_record(*files)
+        except ValueError as error:
+            print(f"mixed: {error}")
 
 
 if __name__ == "__main__":
