@@ -372,7 +372,13 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
 
     def constant(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: Thickness, keep: Keep = "energy", weights: ArrayLike = 1.0
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: Thickness,
+        keep: Keep = "energy",
+        weights: ArrayLike = 1.0,
+        mass: ArrayLike | None = None,
     ) -> Constant:
         """One COR in place of those of many impacts, for engines that take nothing else.
 
@@ -387,6 +393,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             e = sum(w R^3 V e_i)/sum(w R^3 V).
         weights : array_like, optional
             How often each impact happens, in any unit; broadcast with the others.
+        mass : array_like, optional
+            As in `restitution`; it goes for R^3 then.
 
         Returns
         -------
@@ -406,9 +414,10 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(best.restitution, 4), round(best.mean, 4)
         (0.6225, 0.7343)
         """
-        found = self.lookup(speed, radius, thickness)
+        found = self.lookup(speed, radius, thickness, mass=mass)
         given = {"restitution": found.restitution, "flags": found.flags}
-        v, r, w, e, flags, _ = broadcast(speed=speed, radius=radius, weights=weights, **given)
+        size = radius if mass is None else np.cbrt(mass)
+        v, r, w, e, flags, _ = broadcast(speed=speed, radius=size, weights=weights, **given)
         return constant(v, r, w, e, flags.astype(np.int64), keep)
 
     def speed_table(

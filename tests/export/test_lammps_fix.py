@@ -192,16 +192,26 @@ def test_energies_add_up(built, deck, tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_restart_goes_on_in_mid_contact(ranks, built, deck, tmp_path):
-    _, whole, _ = found(built, tmp_path, script("deck", deck, "friction 0.3"))
+    _, whole, rows = found(built, tmp_path, script("deck", deck, "friction 0.3"))
     middle = "run {half}\nwrite_restart half\n"
     half = next(n for n in range(3000, STEPS) if touching(tmp_path, n))
     found(built, tmp_path, script("deck", deck, "friction 0.3", 0, middle.format(half=half)))
+    (tmp_path / "hits.0.npy").rename(tmp_path / "first.npy")
     head, _, tail = script("deck", deck, "friction 0.3", STEPS - half).partition("fix weight")
     text = "read_restart half\nneigh_modify exclude group all all\nfix weight" + tail
     _, rest, _ = found(built, tmp_path, text, ranks)
     assert rest == pytest.approx(whole, rel=1e-10, abs=1e-12)
+    pieces = np.sort(cl.read_record(tmp_path / "first.npy", *tmp_path.glob("hits.*.npy")).rows, order=("bead", "time"))
+    assert pieces["restitution"] == pytest.approx(rows["restitution"], rel=1e-9)
     done = run(built, tmp_path, text.replace("friction 0.3", ""))
     assert done.returncode and "touches other walls in the restart file" in done.stdout + done.stderr
+
+
+def test_files_that_a_run_on_more_ranks_has_left_are_refused(built, deck, tmp_path):
+    text = script("deck", deck, "friction 0.3", STEPS // 3)
+    found(built, tmp_path, text, ranks=2)
+    with pytest.raises(ValueError, match=r"hits.1.npy: .*hits.0.npy is of another run.* earlier one, as .*hits.1.npy"):
+        found(built, tmp_path, text)
 
 
 def touching(folder, step):

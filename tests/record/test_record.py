@@ -119,6 +119,33 @@ def test_several_files_of_a_run_are_one(run, tmp_path):
         cl.read_record()
 
 
+def rows_of(run, start, times):
+    rows = np.zeros(len(times), IMPACT)
+    rows["run"], rows["run_start"], rows["time"] = run, start, times
+    return rows
+
+
+@pytest.mark.parametrize("end", ["h5", "npy"])
+def test_files_of_two_runs_are_one_only_if_one_goes_on_from_the_other(end, tmp_path):
+    runs = {"a": (7, 0.0, [0.1, 0.5, 0.6]), "b": (7, 0.0, [0.2]), "on": (8, 0.5, [0.55]), "anew": (9, 0.0, [0.3])}
+    path = {name: tmp_path / f"{name}.{end}" for name in runs}
+    for name, run in runs.items():
+        cl.Record(rows_of(*run)).save(path[name]) if end == "h5" else np.save(path[name], rows_of(*run))
+    assert cl.read_record(path["b"], path["a"]).rows["time"].tolist() == [0.1, 0.2, 0.5, 0.6]
+    with pytest.warns(UserWarning, match="1 rows are left out: the run that goes on from a restart"):
+        assert cl.read_record(path["on"], path["a"]).rows["time"].tolist() == [0.1, 0.5, 0.55]
+    for files in (("a", "on", "anew"), ("anew", "a")):
+        with pytest.raises(ValueError, match=f"begins at 0 s, too: leave out the files of the earlier .*a.{end}"):
+            cl.read_record(*(path[name] for name in files))
+    old = [name for name in IMPACT.names if not name.startswith("run")]  # of a version without these columns
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", rows_of(*runs[name])[old])
+    assert cl.read_record(tmp_path / "a.npy", tmp_path / "b.npy").rows.size == 4
+    with pytest.raises(ValueError, match=r"new.npy: .*a.npy is of another run.* the earlier one, as .*a.npy"):
+        np.save(tmp_path / "new.npy", rows_of(*runs["anew"]))
+        cl.read_record(tmp_path / "a.npy", tmp_path / "new.npy")
+
+
 def test_every_field_of_a_material_is_kept(tmp_path):
     more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
     more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}}

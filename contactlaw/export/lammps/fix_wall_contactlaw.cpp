@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -82,6 +83,12 @@ struct Joined {
     }
     void join(int a, int b) { part[root(a)] = root(b); }
 };
+
+/* The run that rows of the record name, one for all fixes: readers refuse files that another one has left. */
+struct {
+    long long number; /* microseconds from 1970 */
+    double start;     /* by LAMMPS's clock [s] */
+} run;
 
 struct Wall {
     double thickness = HUGE_VAL;
@@ -658,6 +665,10 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         if (!s.record)
             error->one(FLERR, "Fix wall/contactlaw: record: {} cannot be written: {}", record, utils::getsyserror());
         std::fwrite(contactlaw_npy, 1, sizeof contactlaw_npy, s.record);
+        const auto now = std::chrono::system_clock::now().time_since_epoch();
+        if (run.number == 0)
+            run = { std::chrono::duration_cast<std::chrono::microseconds>(now).count(), s.base };
+        MPI_Bcast(&run.number, 1, MPI_LONG_LONG, 0, world);
         count_rows();
     }
     grow_arrays(atom->nmax);
@@ -825,9 +836,11 @@ void FixWallContactlaw::step(bool advancing)
         contactlaw_interact(scene, clock, bead);
         if (s.status.trouble != 0)
             refuse(int(s.status.trouble), atom->tag[i], int(s.status.wall), s.status.value, s.status.limit);
-        for (int n = 0; n < s.status.impacts; ++n)
+        for (int n = 0; n < s.status.impacts; ++n) {
+            s.impacts[n].run = run.number, s.impacts[n].run_start = run.start;
             if (s.impacts[n].kind == contactlaw_IMPACT)
                 vector_atom[i] = head.restitution = s.impacts[n].restitution;
+        }
         if (s.record && s.status.impacts > 0)
             s.written += (long long) std::fwrite(s.impacts, sizeof *s.impacts, size_t(s.status.impacts), s.record);
         s.status.impacts = 0;
