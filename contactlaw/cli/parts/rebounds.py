@@ -128,7 +128,7 @@ def _read(content: bytes) -> Read:
     if heard:
         instants = np.array([picked.pop(f"t{n + 1}") for n in range(len(heard))])
         if len(heard) == 1:  # the set "All" has one below the other
-            instants, lines, picked = instants.T, lines[:1], {name: values[:1] for name, values in picked.items()}
+            instants, lines = instants.T, lines[:1]
         intervals = np.diff(np.where(instants > 0.0, instants, np.nan), axis=0)  # 0: not heard
         picked |= {f"t{n}": times for n, times in enumerate(intervals, start=1)}
     measured = np.any([~np.isnan(picked[kind]) for kind in _MEASURED if kind in picked], axis=0)
