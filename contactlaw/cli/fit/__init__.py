@@ -95,7 +95,10 @@ def _run(arguments: argparse.Namespace) -> None:
         raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
     if arguments.data is None:
         pair = chosen.pair(arguments)
-        data = _typed(arguments, pair.sphere.density)
+        names = "radius", "thickness", "friction", "drop", "bounce"
+        noted = {name: size for name, size in vars(arguments).items() if name in names and size is not None}
+        noted["line"] = np.arange(1, len(arguments.bounce) + 1)
+        data = Measurements.of(noted, density=pair.sphere.density)
     elif Path(arguments.data).suffix.lower() in (*HDF5, ".npy"):
         data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
         pair = chosen.pair(arguments, known)
@@ -117,13 +120,6 @@ def _run(arguments: argparse.Namespace) -> None:
         else:
             print(*filter(None, sources), in_words(asked), *printed.text(found), "", sep="\n")
             print(*printed.rows(found), sep="\n")
-
-
-def _typed(arguments: argparse.Namespace, density: float) -> Measurements:
-    """Take the drops that the options name."""
-    names = "radius", "thickness", "friction", "drop", "bounce"
-    given = {name: size for name, size in vars(arguments).items() if name in names and size is not None}
-    return Measurements.of(given | {"line": np.arange(1, len(arguments.bounce) + 1)}, density=density)
 
 
 def _errors(head: rebounds.Conditions, data: Measurements) -> dict[str, float]:

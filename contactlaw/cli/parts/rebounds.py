@@ -101,7 +101,7 @@ def _read(content: bytes) -> Read:
         ) from None
     heard = [n for n, name in enumerate(names) if _HEARD.fullmatch(name)]
     found = columns.locate(["" if n in heard else name for n, name in enumerate(names)], _COLUMNS)
-    found |= {f"t{n}": Located(place, 1.0) for n, place in enumerate(heard, start=1)}
+    found |= {f"t{n}": Located(place, 1.0) for n, place in enumerate(heard, 1)}
     if found.get("time_error") == found.get("contact_time_error"):  # a column of this name is of what else is there
         found.pop("contact_time_error" if any(re.fullmatch("t[0-9]+", name) for name in found) else "time_error", None)
     listed = ", ".join(names)[:200]
@@ -130,7 +130,7 @@ def _read(content: bytes) -> Read:
         if len(heard) == 1:  # the set "All" has one below the other
             instants, lines = instants.T, lines[:1]
         intervals = np.diff(np.where(instants > 0.0, instants, np.nan), axis=0)  # 0: not heard
-        picked |= {f"t{n}": times for n, times in enumerate(intervals, start=1)}
+        picked |= {f"t{n}": times for n, times in enumerate(intervals, 1)}
     measured = np.any([~np.isnan(picked[kind]) for kind in _MEASURED if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")
@@ -194,7 +194,7 @@ class Conditions(NamedTuple):
     reference: str
     bodies: dict[str, Material]  # those of sphere and plate that it names
     errors: dict[str, float]  # relative standard errors of speed and sizes, by argument
-    values: dict[str, Any]  # what all rows have, by the names of columns
+    values: dict[str, float]  # what all rows have, by the names of columns
 
 
 _TEXTS = "title", "reference", "provenance", "reading", "missing"
@@ -213,9 +213,7 @@ def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
         role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
     }
     errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
-    values: dict[str, Any] = {
-        n: quantities.value(str(given[n]), _COLUMNS[n].quantity or SHARE) for n in _OF_ALL if n in given
-    }
+    values = {n: quantities.value(str(given[n]), _COLUMNS[n].quantity or SHARE) for n in _OF_ALL if n in given}
     columns.halve_diameters(values)
     title, reference = (line(str(given.get(name, ""))) for name in _TEXTS[:2])
     return Conditions(title, reference, bodies, errors, values)
