@@ -32,6 +32,7 @@ from contactlaw.physical.arguments import broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
+from contactlaw.physical.materials import warn_of_softened
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import SHEETS, Thickness, sheet_of
 from contactlaw.physical.rebound import Rebound
@@ -86,6 +87,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     ) -> None:
         if not isinstance(pair, Pair):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
+        for body in pair.given:
+            warn_of_softened(body)
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
         self._tabulated = TableLookup(self._bodies, table, self._border)

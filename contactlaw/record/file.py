@@ -208,7 +208,7 @@ class Record:
     def content(self, more: Any = None) -> bytes:
         """Return the file's content; `more(file)` adds groups of its own to the open file."""
         image = io.BytesIO()
-        with h5py.File(image, "w") as file:
+        with h5py.File(image, "w", libver="v110") as file:
             file.attrs.update(
                 {
                     "format": FORMAT,
@@ -368,7 +368,8 @@ def read_from(file: h5py.File) -> Record:
 def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
     """Write an array with its unit and description."""
     data = np.asarray(values)
-    dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
+    checked = {"compression": "gzip", "fletcher32": True} if data.size else {}
+    dataset = group.create_dataset(name, data=data, **checked)
     dataset.attrs.update({"units": units, "description": description})
 
 

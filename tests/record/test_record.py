@@ -11,6 +11,7 @@ import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
+from contactlaw.record.file import opened, read_from
 
 MODELS = [
     cl.ImpactModel(cl.Pair(sphere, plate))
@@ -37,6 +38,39 @@ def run():
         impacts.add_bead(bead, material=sphere)
     steps(space, 20)
     return space, impacts
+
+
+def test_a_flipped_bit_is_refused_or_changes_no_number():
+    """Data, their types and shapes, and attributes have checksums, all but the texts of attributes."""
+
+    def numbers(content):
+        with opened(content) as file:
+            record = read_from(file)
+        return record.rows.tobytes(), [
+            [dataclasses.astuple(body)[1:5] for body in one.pair.given] for one in record.bodies
+        ]
+
+    random, rows = np.random.default_rng(23), np.zeros(40, [(name, IMPACT[name]) for name in ("time", "x", "flags")])
+    rows["time"], rows["x"] = np.sort(random.random((2, 40)))
+    content = cl.Record(rows, [cl.Bodies(MODELS[3].pair, "fem")]).content()
+    with opened(content) as file:
+        places = [file["impacts"][name].id.get_chunk_info(0).byte_offset for name in ("time", "x", "flags", "bodies")]
+    for place in places:
+        with pytest.raises(ValueError, match="is damaged: "):
+            numbers(flipped(content, 8 * place + 19))
+    wanted, refused = numbers(content), 0
+    for bit in random.choice(8 * len(content), 400, replace=False).tolist():
+        try:
+            assert numbers(flipped(content, bit)) == wanted, bit
+        except ValueError:
+            refused += 1
+    assert refused > 200
+
+
+def flipped(content, bit):
+    changed = bytearray(content)
+    changed[bit // 8] ^= 1 << bit % 8
+    return bytes(changed)
 
 
 def test_what_is_saved_is_read(run, tmp_path):
