@@ -3,7 +3,6 @@
 With what numba offers to all, first processes would take half as long again.
 """
 
-import gc
 from typing import Any
 
 import numba
@@ -99,12 +98,7 @@ class Inner(CPUDispatcher):
 
     def compile(self, types: Any) -> Any:
         """Compile for the types of arguments, not anew for each constant among them."""
-        before = gc.get_threshold()
-        gc.set_threshold(50_000, 20, 100)  # numba makes millions of objects, but hardly a loop
-        try:
-            return super().compile(tuple(map(numba.types.unliteral, types)))
-        finally:
-            gc.set_threshold(*before)
+        return super().compile(tuple(map(numba.types.unliteral, types)))
 
     def add_overload(self, result: Any) -> None:
         # Callers find the code by this object; other kernels have their entry for Python here.

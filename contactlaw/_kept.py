@@ -5,17 +5,16 @@ the CPU: numba itself notices an edit only in a function's own file, and would k
 functions that it calls in other files. Laws are data, so no kernel takes a function from outside.
 """
 
+import contextlib
 import functools
 import hashlib
 import io
-import os
 import re
 import shutil
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,6 +27,7 @@ from contactlaw import _folder
 
 config: Any = numba.core.config
 _UNUSED = 30 * 86400.0  # [s] after which unused code of another version is deleted
+_MARKER = "last_use_by_contactlaw"  # file in each folder of ours; its time says when that was
 
 
 def keep(dispatcher: Any) -> None:
@@ -61,7 +61,7 @@ class _SealedFiles(IndexDataCacheFile):
     numba reads a sealed file as if the checksum were not there.
     """
 
-    @contextmanager
+    @contextlib.contextmanager
     def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
         content = io.BytesIO()
         yield content
@@ -96,22 +96,34 @@ def _code_folder() -> Path | None:
         # a process may change its working folder, and numba does not expand ~
         home = home.expanduser().absolute()
         folder = home / f"contactlaw-{fingerprint()}"
-        if not folder.is_dir():
+        is_new = not folder.is_dir()
+        if is_new:
             home.mkdir(0o700, parents=True, exist_ok=True)
             folder.mkdir(0o700, exist_ok=True)
-            for other in home.glob("contactlaw-*"):
-                if time.time() - other.stat().st_mtime > _UNUSED:
-                    shutil.rmtree(other, ignore_errors=True)
+        if not (_folder.is_private(home, sticky=True) and _folder.is_private(folder)):
+            return None
+        (folder / _MARKER).touch(0o600)  # records the time of use; raises if we may not write
+        if is_new:
+            _delete_unused(folder)
             if sys.stderr is not None and sys.stderr.isatty():
                 said = "the first use of this version compiles it, for about half a minute"
                 print(f"contactlaw: {said}; kept in {home}", file=sys.stderr)
-        if not (_folder.is_private(home, sticky=True) and _folder.is_private(folder)):
-            return None
-        os.utime(folder)  # marks it as used; raises if it is not ours to write
         return folder
     except (OSError, RuntimeError) as error:
         _warn_once(str(error))
         return None
+
+
+def _delete_unused(folder: Path) -> None:
+    """Delete this user's machine code of other versions, if no process has used it for a month.
+
+    A folder with the name of ours, but without the marker, is a user's or that of an old version.
+    """
+    for other in folder.parent.glob("contactlaw-" + 16 * "[0-9a-f]"):
+        with contextlib.suppress(OSError):  # no marker, or another process has just deleted it
+            used = (other / _MARKER).stat()
+            if time.time() - used.st_mtime > _UNUSED and used.st_uid == folder.stat().st_uid:
+                shutil.rmtree(other, ignore_errors=True)  # not what a link leads to
 
 
 @functools.cache

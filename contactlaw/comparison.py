@@ -106,7 +106,7 @@ def compare(
     data = Measurements.of(data, (), pair.sphere.density)
     for name in _NEEDED:
         if getattr(data, name) is None:
-            hint = "; of heights or times their own, as bounce_error" * (name == "restitution_error")
+            hint = "; of heights or times their own, bounce_error or time_error" * (name == "restitution_error")
             raise ArgumentError(name, None, f"has to be given for each rebound, to compare it with the model{hint}")
     has_one = np.isfinite(np.asarray(data.restitution))
     given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}

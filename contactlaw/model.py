@@ -32,6 +32,7 @@ from contactlaw.physical.arguments import broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
+from contactlaw.physical.materials import warn_of_softened
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import SHEETS, Thickness, sheet_of
 from contactlaw.physical.rebound import Rebound
@@ -86,6 +87,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     ) -> None:
         if not isinstance(pair, Pair):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
+        for body in pair.given:
+            warn_of_softened(body)
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
         self._tabulated = TableLookup(self._bodies, table, self._border)
@@ -372,7 +375,13 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
 
     def constant(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: Thickness, keep: Keep = "energy", weights: ArrayLike = 1.0
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: Thickness,
+        keep: Keep = "energy",
+        weights: ArrayLike = 1.0,
+        mass: ArrayLike | None = None,
     ) -> Constant:
         """One COR in place of those of many impacts, for engines that take nothing else.
 
@@ -387,6 +396,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             e = sum(w R^3 V e_i)/sum(w R^3 V).
         weights : array_like, optional
             How often each impact happens, in any unit; broadcast with the others.
+        mass : array_like, optional
+            As in `restitution`; it goes for R^3 then.
 
         Returns
         -------
@@ -406,9 +417,10 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(best.restitution, 4), round(best.mean, 4)
         (0.6225, 0.7343)
         """
-        found = self.lookup(speed, radius, thickness)
+        found = self.lookup(speed, radius, thickness, mass=mass)
         given = {"restitution": found.restitution, "flags": found.flags}
-        v, r, w, e, flags, _ = broadcast(speed=speed, radius=radius, weights=weights, **given)
+        size = radius if mass is None else np.cbrt(mass)
+        v, r, w, e, flags, _ = broadcast(speed=speed, radius=size, weights=weights, **given)
         return constant(v, r, w, e, flags.astype(np.int64), keep)
 
     def speed_table(

@@ -195,6 +195,19 @@ def test_a_head_of_windows_keeps_its_letters_and_no_head_moves_the_cursor(tmp_pa
     assert rebounds.conditions(rebounds.read(path), {}).title == "Gl\u00e4tte [2J"
 
 
+def test_an_export_of_phyphox_is_compared(tmp_path, capsys):
+    path = tmp_path / "Multiple.csv"
+    path.write_text('"Start (s)";"Stop 1 (s)";"Stop 2 (s)"\n1,25E0;1,65E0;2,01E0\n')
+    asked = ["compare", str(path), "--sphere", "glass", "--plate", "glass", "--radius", "5mm", "--thickness", "1cm"]
+    refused(asked, "restitution_error: has to be given", "time_error", capsys=capsys)
+    assert main([*asked, "--time-error", "1ms", "--json"]) == 0
+    (rebound,) = json.loads(capsys.readouterr().out)["rebounds"]
+    assert rebound["measured"] == pytest.approx(0.9, abs=3e-3)
+    assert rebound["error"] == pytest.approx(
+        rebound["measured"] * 1e-3 * np.sqrt(2 / 0.4**2 + 2 / 0.36**2 + 2 / 0.144), rel=0.01
+    )
+
+
 def test_a_law_that_the_data_do_not_tell_from_the_nearest_is_named_with_it(capsys, tmp_path):
     """Data between the CORs of two laws: with a large error either may be the nearest one."""
     impact = 2.0, 2e-3, np.inf

@@ -1,11 +1,13 @@
 """Without numba's compiler, and without a folder to keep its code in."""
 
+import gc
 import json
 import math
 import os
 import runpy
 import subprocess
 import sys
+import time
 from pathlib import Path
 from warnings import catch_warnings, simplefilter
 
@@ -160,6 +162,35 @@ def test_without_a_folder_there_is_an_answer_and_at_most_one_warning(change, giv
     assert [*tmp_path.rglob("*.nbc")] == []
 
 
+def test_only_machine_code_that_nobody_uses_is_deleted(tmp_path, monkeypatch):
+    """Neither results of the user, nor what a link leads to, nor another user's code."""
+    monkeypatch.setattr(_kept.config, "CACHE_DIR", str(tmp_path / "home"))
+    home = tmp_path / "home"
+
+    def used_by(version):
+        monkeypatch.setattr(_kept, "fingerprint", lambda: 16 * version)
+        return _kept._code_folder.__wrapped__()
+
+    unused, used, linked, theirs = map(used_by, "abcd")
+    if os.geteuid() == 0:
+        for path in (theirs, *theirs.iterdir()):
+            os.chown(path, 65534, -1)
+    linked.rename(tmp_path / "elsewhere")
+    linked.symlink_to(tmp_path / "elsewhere")
+    for name in ("results", 16 * "e", "0123456789abcdef0"):
+        (home / f"contactlaw-{name}").mkdir()
+        (home / f"contactlaw-{name}" / "impacts.csv").touch()
+    before = set(tmp_path.rglob("*"))
+    for path in before:
+        os.utime(path, (0, time.time() - 31 * 86400))
+    used_by("b")
+    deleted_at_this_moment = home / f"contactlaw-{16 * 'f'}"
+    deleted_at_this_moment.symlink_to(tmp_path / "nowhere")
+    assert used_by("9") and used.is_dir()
+    gone = {unused} if os.geteuid() == 0 else {unused, theirs}
+    assert {path for path in before if not path.exists() and path.parent == home} == gone
+
+
 DAMAGES = {
     "emptied": lambda content: b"",
     "truncated": lambda content: content[:99],
@@ -179,6 +210,21 @@ def test_a_damaged_file_of_machine_code_is_made_anew(damage, suffix, twice, tmp_
     hits = [sum(twice().cache_hits.values()) for _ in range(2)]
     assert hits == [0, 1]  # compiled, and then read
     assert len(list(folder.iterdir())) == 2
+
+
+def test_to_compile_sets_nothing_of_the_garbage_collector(monkeypatch):
+    """Its thresholds are the process's: two threads that set and restore them would mix them up."""
+
+    @_jit.kernel
+    def squared(x):
+        return x * x
+
+    @_jit.kernel(entry=True)
+    def powers(x):
+        return squared(squared(x))
+
+    monkeypatch.setattr(gc, "set_threshold", None)
+    assert powers(2.0) == 16.0
 
 
 TWINS = """

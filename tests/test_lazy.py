@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.answers import tabulated
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
 from contactlaw.softsphere import Contacts, time_step
@@ -46,8 +45,7 @@ TABLES = {
 def test_only_what_looks_up_leaves_a_table(tables, ask, tmp_path, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
-    for cached in (cache.cached, tabulated._default):
-        cached.cache_clear()
+    cache.cached.cache_clear()
     ask(cl.ImpactModel(STEEL_ON_GLASS))
     assert len([*tmp_path.rglob("table-*.h5")]) == tables
 

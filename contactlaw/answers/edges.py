@@ -109,7 +109,7 @@ def _each(
     assert near is not None
     for by, which, these in ((both.others, ~near, impacts.forgetting), (both.near, near, impacts)):
         some = np.flatnonzero(which)
-        if some.size:
+        if some.size or near.size == 0:
             with renumbered(some):
                 found.append((some, answer(by, these.part(some), some)))
     return found

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, ByValue
 from contactlaw.answers.tabulated import Border, TableLookup
 from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.physical.arguments import shaped
@@ -27,8 +27,8 @@ _STEP = 1e-4
 _RTOL = 1e-10
 
 
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, eq=False)
+class Sensitivity(ByValue):
     """Elasticities d ln(COR)/d ln(input): per cent by which COR rises for 1 % more of an input.
 
     Each field is a float, or an array of one shape. An input that is known to 10 % leaves the COR

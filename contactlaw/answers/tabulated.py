@@ -130,6 +130,11 @@ class TableLookup:
         return lookup.with_plate(self.table.packed, self.bodies.constants)
 
     @functools.cached_property
+    def shapes(self) -> Table:
+        """The table with shapes of force histories, which a first one takes a second to add."""
+        return cache.cached_shapes(self.table)
+
+    @functools.cached_property
     def slides(self) -> Array:
         """The tangential rebounds of the pair, as kernels read them; once they take seconds."""
         return cache.cached_slides(self.table, self.bodies.pair.tangential_ratio)
@@ -194,8 +199,8 @@ class TableLookup:
             if known.integrated[some[0]]:
                 own = histories(self.bodies.data, part, samples)
             else:
-                own, table = outcome.history(some.size, samples), cache.cached_shapes(self.table)
-                shapes.sample(self.bodies.data, table.packed_shapes, part, own)
+                own = outcome.history(some.size, samples)
+                shapes.sample(self.bodies.data, self.shapes.packed_shapes, part, own)
             for values, more in zip(contacts, own, strict=True):
                 values[some] = more
         units = self.bodies.numbers(self.bodies.impact(impacts))
@@ -289,12 +294,6 @@ def extent(law: Law) -> Settings:
     return grid.on_demand(_law_with_table(law))
 
 
-@functools.cache
-def _default(law: Law) -> Table:
-    """Table that ships with the package, or that of the user's cache."""
-    return file.packaged(law) or cache.cached(law)
-
-
 def _law_with_table(law: Law) -> Law:
     """Law whose table serves this law: for Hertz's, the edge chi = 1 of the packaged one of MYC."""
     return law if law.yields or not law.is_hertz else laws.law("myc")
@@ -305,7 +304,7 @@ def table_for(law: Law, table: TableArgument) -> Table:
     enable_caching()
     served = _law_with_table(law)
     if table is None:
-        table = _default(served)
+        table = file.packaged(served) or cache.cached(served)
     elif isinstance(table, Settings):
         table = cache.cached(served, table)
     elif isinstance(table, str | os.PathLike):

@@ -53,7 +53,7 @@ _STRONGER, _MATTERS = (0.1, math.log(3.0)), 1e-4
 _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Band:
     """Range of one answer, in its unit: floats, or arrays of the shape of the impacts.
 
@@ -78,7 +78,7 @@ class Band:
     signs: dict[str, float | Array]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Uncertainty:
     """Ranges of the COR [-], the contact time [s] and the peak force [N] of impacts."""
 

@@ -58,7 +58,7 @@ def save(table: ImpactTable, model: ImpactModel, axes: Sequence[Sequence[float]]
         _atomic.write(path, text.getvalue().encode())
         return
     image = io.BytesIO()
-    with h5py.File(image, "w") as file:
+    with h5py.File(image, "w", libver="v110") as file:
         _fill(file, table, model, dict(zip(("speed", "radius", "thickness"), axes, strict=True)))
     _atomic.write(path, image.getvalue())
 
@@ -74,13 +74,13 @@ def _fill(file: h5py.File, table: ImpactTable, model: ImpactModel, axes: dict[st
         outside=model.outside,
     )
     for name in _AXES:
-        file[name] = axes[name]
+        file.create_dataset(name, data=axes[name], fletcher32=True)
         file[name].attrs["units"] = units()[name]
         file[name].make_scale(name)
     shape = tuple(len(axes[name]) for name in _AXES)
     for name, values in {**table.columns, "flags": table.flags}.items():
         if name not in _AXES:
-            field = file.create_dataset(name, data=values.reshape(shape))
+            field = file.create_dataset(name, data=values.reshape(shape), fletcher32=True)
             field.attrs["units"] = units().get(name) or "1"
             for axis, scale in zip(field.dims, _AXES, strict=True):
                 axis.attach_scale(file[scale])

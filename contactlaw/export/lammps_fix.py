@@ -31,7 +31,7 @@ from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import PLATE_ROW, plate_rows
 from contactlaw.stepping.softened import DEEPEST_OVERLAP
-from contactlaw.walls.edges import EDGE, MERGED
+from contactlaw.walls.edges import EDGE
 from contactlaw.walls.facet import FACET, Point, Touch, on_facet
 from contactlaw.walls.frame import FRAME
 from contactlaw.walls.grid import MARGIN
@@ -158,8 +158,8 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
         said = ", ".join(f'"{text}"' for text in texts)
         lists.append(f"static const char *const CONTACTLAW_{name}[] = {{ {said} }};")
     numbers = {"SPHERE_COUNT": len(spheres), "PLATE_COUNT": len(plates), "ROOM": ROOM, "MARGIN": MARGIN}
-    numbers |= {"MERGED": MERGED, "FARTHEST": FARTHEST, "MOST_CONTACTS": MOST_CONTACTS}
-    numbers |= {"DEEPEST_OVERLAP": DEEPEST_OVERLAP}  # the kernels define what they need themselves
+    # The kernels define what they need themselves.
+    numbers |= {"FARTHEST": FARTHEST, "MOST_CONTACTS": MOST_CONTACTS, "DEEPEST_OVERLAP": DEEPEST_OVERLAP}
     constants = "\n".join(f"#define CONTACTLAW_{name} {value}" for name, value in numbers.items())
     head = "typedef const double contactlaw_data;"
     written = _program(max(1, *map(room_for, laws)))

@@ -127,10 +127,10 @@ def number(name: str, value: float) -> float:
 
 
 def positive(name: str, given: float, unit: str) -> float:
-    """Return one number, or raise an error if it is not positive and finite."""
+    """Return one number, or raise an error if it is not positive, or so extreme that its powers overflow."""
     found = number(name, given)
-    if not 0.0 < found < math.inf:
-        raise ArgumentError(name, given, f"must be positive and finite [{unit}]")
+    if not 1e-60 <= found <= 1e60:
+        raise ArgumentError(name, given, f"must be positive, from 1e-60 to 1e60 [{unit}]")
     return found
 
 

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import tomllib
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
@@ -29,6 +30,9 @@ _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel 
 # Two bounds far from any matter, beyond which products of these numbers leave the range of floats.
 _DENSITIES = (1e-6, 1e20)  # [kg/m3]: air has 1.2, a neutron star 1e18
 _WEAKEST = 1e-12  # yield strain sigma_Y/E
+# A tenth of Young's modulus is the usual estimate of the ideal strength of solids. In the catalogue alumina granules
+# have the largest yield strain, 0.039, and polymers up to 0.031. Beyond, the modulus was mostly softened; our choice.
+_IDEAL_STRENGTH = 0.1
 # Plastics without fibres have up to 5 GPa, with 30 % of glass 10; PTFE is the densest, with 2200
 # kg/m3. Of metals only the alkalis are as soft and light; for porous ceramics give the kind.
 _STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
@@ -741,9 +745,24 @@ def _check_units(modulus: float, density: float) -> None:
         raise ArgumentError("density, youngs_modulus", (density, modulus), f"{wave}: {remedy}")
 
 
+def warn_of_softened(body: Material) -> None:
+    """Warn, at the caller's caller's, of a body that is stronger than any solid of its modulus."""
+    strength = max(body.strength or 0.0, float(body.hardness or 0.0) / CONSTRAINT)
+    if strength > _IDEAL_STRENGTH * body.youngs_modulus:
+        warnings.warn(
+            f"material {body.name!r}: a strength of {strength:.4g} Pa is above a tenth of youngs_modulus "
+            f"{body.youngs_modulus:.4g} Pa, as of no solid. Give the true modulus; for longer time steps "
+            "Contacts, WallContacts and attach have softening=. Of rubber leave the strength out",
+            stacklevel=3,
+        )
+
+
 def _check_strength(field: str, strength: float | None, modulus: float) -> None:
     if strength is not None and not (strength < modulus):
-        reason = f"must be below youngs_modulus {modulus!r}: give both in Pa"
+        reason = (
+            f"must be below youngs_modulus {modulus!r}: give both in Pa, and the true modulus, as softening= "
+            "is there for longer time steps"
+        )
         raise ArgumentError(field, strength, reason)
     if strength is not None and not (strength >= _WEAKEST * modulus):
         limit = f"must be at least {_WEAKEST:g} of youngs_modulus {modulus!r}"

@@ -36,7 +36,7 @@ _AT_REST = 1e-300  # [m/s]
 FASTEST = 1e9  # psi from which the digits of a sliding speed no longer matter
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ObliqueRebound(Rebound):
     """Outcome of an oblique impact, or of many: the fields of `Rebound` and those of friction.
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array, ByValue, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import BARE, number, positive
 from contactlaw.physical.materials import Material, resolve
@@ -187,8 +187,8 @@ class Orthotropic(EquivalentThickness):
         """Take the mean over all directions."""
         x, y, k = (number(*one) for one in (("along", along), ("across", across), ("twist", twist)))
         m, p = positive("mass", mass, "kg/m2"), number("pitch", pitch)
-        if not (0.0 < x < math.inf and 0.0 < y < math.inf and -math.sqrt(x * y) < k < math.inf):
-            reason = "must be positive, and twist above -sqrt(along across) [N m]: it bends under no load else"
+        if not (1e-200 <= min(x, y) <= max(x, y, k) <= 1e200 and -math.sqrt(x) * math.sqrt(y) < k):
+            reason = "must be positive, up to 1e200, and twist above -sqrt(along across) [N m]: else no load bends it"
             raise ArgumentError("along, across, twist", (x, y, k), reason)
         if not 0.0 <= p < math.inf:
             raise ArgumentError("pitch", p, "must be 0 or more [m]")
@@ -239,8 +239,8 @@ class Orthotropic(EquivalentThickness):
         return cls(body, bending, bending, bending, left * body.density * h, pitch)
 
 
-@dataclass(frozen=True)
-class Foundation:
+@dataclass(frozen=True, eq=False)
+class Foundation(ByValue):
     """A plate that lies on an elastic foundation: on rubber, glued to foam, on a bed of springs.
 
     Parameters
@@ -262,8 +262,8 @@ class Foundation:
     stiffness: ArrayLike
 
 
-@dataclass(frozen=True)
-class Shell:
+@dataclass(frozen=True, eq=False)
+class Shell(ByValue):
     """A wall that is curved: a pipe, a drum, a bowl, a dome.
 
     Its curvature makes it stiff, so that it swings back, and R* in the contact is made of both

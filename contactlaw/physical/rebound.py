@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Integers
+from contactlaw._arrays import Array, ByValue, Integers
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
@@ -17,8 +17,8 @@ from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at, wall_flags
 
 
-@dataclass(frozen=True)
-class Rebound:
+@dataclass(frozen=True, eq=False)
+class Rebound(ByValue):
     """Outcome of an impact, or of many: every field a float, or an array of one shape.
 
     Attributes

@@ -17,6 +17,7 @@ import json
 import os
 import platform
 import tokenize
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
@@ -207,7 +208,7 @@ class Record:
     def content(self, more: Any = None) -> bytes:
         """Return the file's content; `more(file)` adds groups of its own to the open file."""
         image = io.BytesIO()
-        with h5py.File(image, "w") as file:
+        with h5py.File(image, "w", libver="v110") as file:
             file.attrs.update(
                 {
                     "format": FORMAT,
@@ -252,14 +253,14 @@ class Record:
 
 def flagged(record: Record) -> Record:
     """Set `Validity.SHARED_PLATE` in a record that knows the bodies of all rows, and return it."""
-    from scipy.spatial import cKDTree
-
     path = np.array([wave_path(one.pair.plate) for one in record.bodies])[record.which] * record.rows["thickness"]
     some = np.flatnonzero(only_impacts(record.rows["kind"])[0] & (path < np.inf))
     rows, path, point = record.rows[some], path[some], record.points[some]
     time, long, force, plate = (rows[name] for name in ("time", "contact_time", "peak_force", "plate"))
     share = rows["wave_energy"] / (0.5 * rows["mass"] * rows["approach_speed"] ** 2)
     if some.size > 1:
+        from scipy.spatial import cKDTree
+
         at = np.column_stack((point / np.sqrt(_REACH * np.median(path * long)), time / np.median(long), 1e12 * plate))
         near = cKDTree(at).query(at, min(_NEAREST, some.size))[1].T
         after = np.maximum(time - time[near], 0.0)
@@ -280,6 +281,7 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     *paths : path-like
         Files of `Record.save` (``.h5``), or rows that ``np.save`` has written (``.npy``): these
         know neither materials nor law, see `Record.lacks`. Rows that two files have are taken once.
+        A run that goes on from a restart file replaces the rows of the run before from there on.
 
     Returns
     -------
@@ -291,7 +293,8 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     TypeError
         Without a path.
     ValueError
-        If a file is damaged, of another kind, or of a run with other walls than those before.
+        If a file is damaged, of another kind, of a run with other walls than those before, or of a
+        second run that begins at the same time, as files that an earlier run has left.
     OSError
         If a file cannot be read.
 
@@ -307,14 +310,27 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     """
     if not paths:
         raise TypeError("read_record: expected the path of a file, or several")
-    whole, *others = (_read(Path(path)) for path in paths)
-    for path, one in zip(paths[1:], others, strict=True):
-        whole = _joined(whole, one, path)
+    whole, *others = files = [_read(Path(path)) for path in paths]
+    runs: dict[float, tuple[int, str]] = {}  # that begin at each time
+    for path, one in zip(paths, files, strict=True):
+        for start, run in set(one.rows[["run_start", "run"]].tolist()):
+            other = runs.setdefault(start, own := (run, os.fspath(path)))
+            if other[0] != run:  # none goes on from the other
+                reason = f"{other[1]} is of another run, which begins at {start:g} s, too"
+                raise ValueError(f"{path}: {reason}: leave out the files of the earlier one, as {min(own, other)[1]}")
+        whole = whole if one is whole else _joined(whole, one, path)
+    starts = sorted(runs)
+    until = np.append(starts, np.inf)[np.searchsorted(starts, whole.rows["run_start"], "right")]
+    again = whole.rows["time"] > until * (1.0 + 1e-12)  # an impact within the step of the restart ends there
+    if again.any():
+        what = f"{again.sum()} rows are left out: the run that goes on from a restart has their times again"
+        warnings.warn(what, stacklevel=2)
+        whole = whole.part(~again)
     if others:  # a run that went on after a save has the rows of before in both files
         if "flags" in (whole.rows.dtype.names or ()):  # one of them alone may know of a shared plate
             whole = whole.part(np.argsort(-whole.rows["flags"], kind="stable"))
         key = whole.rows.copy()
-        key[[name for name in key.dtype.names or () if name == "flags"]] = 0
+        key[[name for name in key.dtype.names or () if name in ("run", "run_start", "flags")]] = 0
         whole = whole.part(np.unique(key.view(f"V{key.itemsize}"), return_index=True)[1])
     keys = [whole.rows[name] for name in ("bead", "time") if name in (whole.rows.dtype.names or ())]
     return whole.part(np.lexsort(keys))
@@ -352,7 +368,8 @@ def read_from(file: h5py.File) -> Record:
 def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
     """Write an array with its unit and description."""
     data = np.asarray(values)
-    dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
+    checked = {"compression": "gzip", "fletcher32": True} if data.size else {}
+    dataset = group.create_dataset(name, data=data, **checked)
     dataset.attrs.update({"units": units, "description": description})
 
 

@@ -19,7 +19,7 @@ from contactlaw._arrays import Places
 
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
 # Errors that h5py raises for what it cannot read.
-_DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
+_DAMAGED = (OSError, RuntimeError, TypeError, ValueError, AttributeError, KeyError, OverflowError, MemoryError)
 
 
 @contextmanager

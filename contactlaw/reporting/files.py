@@ -49,24 +49,31 @@ def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Seque
     ImportError
         Without matplotlib; the message says how to install it.
     OSError
-        If a file cannot be written; nothing is left behind then.
+        If a file cannot be written; nothing is left behind then, but for record.h5, which is written
+        first. An error while the page is drawn has a note that names it.
     """
     run = Run(with_meshes(record, meshes) if meshes else record)
     if not run.rows.size:
         raise ArgumentError("record", None, "has no impact on a wall yet: simulate longer")
-    with style.applied(), _atomic.folder(out) as folder:
-        pictures = {name: figures.draw(name, run) for name in figures.names()}
-        for name, picture in pictures.items():
-            (folder / f"{name}.png").write_bytes(picture)
-        (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
+    with _atomic.folder(out) as folder:
         run.record.save(folder / "record.h5")
-        if run.map is not None:
-            from contactlaw.reporting.figures.places import colours
+    try:
+        with style.applied(), _atomic.folder(out) as folder:
+            pictures = {name: figures.draw(name, run) for name in figures.names()}
+            for name, picture in pictures.items():
+                (folder / f"{name}.png").write_bytes(picture)
+            (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
+            if run.map is not None:
+                from contactlaw.reporting.figures.places import colours
 
-            shown = colours(run.map)
-            for name, form in zip(_MAPS, (vtk, ply), strict=True):
-                (folder / name).write_bytes(form(run.map, shown))
-        (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
+                shown = colours(run.map)
+                for name, form in zip(_MAPS, (vtk, ply), strict=True):
+                    (folder / name).write_bytes(form(run.map, shown))
+            (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
+    except Exception as error:
+        kept = Path(out) / "record.h5"
+        error.add_note(f"The record is in {kept}, and `contactlaw report {kept} --out {out}` draws it.")
+        raise
     if run.map is None:
         for name in _MAPS:  # of an earlier report
             (Path(out) / name).unlink(missing_ok=True)

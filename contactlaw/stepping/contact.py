@@ -472,7 +472,7 @@ def _end(
     record.scheme_energy = missing  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
-    record.parcel = scene.parcel
+    record.parcel, record.run, record.run_start = scene.parcel, 0, 0.0
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
     bent = curved_flags(contact.bending)

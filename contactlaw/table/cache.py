@@ -9,6 +9,9 @@ import dataclasses
 import functools
 import hashlib
 import json
+import os
+import re
+import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
@@ -31,6 +34,10 @@ _DIGEST = 32  # bytes of a checksum
 # [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be
 # minutes where many processes share a core: one that holds a lock for longer hangs.
 _PATIENCE = 600.0
+# How many tables stay in memory without a model that uses them, of 1 to 3 MB; 7 MB with shapes.
+_TABLES, _TABLES_WITH_SHAPES = 16, 4
+_UNUSED = 90 * 86400.0  # [s] after which a file that no process reads is deleted
+_OUR_NAMES = re.compile(r"\.?(table|slides)-[0-9a-f]{24}\.(h5|lock|bin)(\.\w+\.part)?")
 
 
 def file_name(law: Law, settings: Settings) -> str:
@@ -50,7 +57,7 @@ def file_name(law: Law, settings: Settings) -> str:
     return f"table-{digest[:24]}.h5"
 
 
-@functools.cache
+@functools.lru_cache(_TABLES)
 def cached(law: Law, settings: Settings | None = None) -> Table:
     """Table of a law from the cache; built, and kept there, if it is missing or damaged.
 
@@ -64,7 +71,7 @@ def cached(law: Law, settings: Settings | None = None) -> Table:
     return _kept(law, settings, make, lambda found: True)
 
 
-@functools.cache
+@functools.lru_cache(_TABLES_WITH_SHAPES)
 def cached_shapes(table: Table) -> Table:
     """Return the table with shapes of force histories, from the cache or built as in `cached`."""
     if table.states is not None:
@@ -91,6 +98,7 @@ def cached_slides(table: Table, kappa: float) -> Array:
     if path is not None:
         with contextlib.suppress(OSError):
             whole = path.read_bytes()
+            _mark_used(path)
             digest, content = whole[:_DIGEST], whole[_DIGEST:]
             if digest == hashlib.sha256(content).digest():
                 return np.frombuffer(content).copy()  # kernels take no constant arrays
@@ -128,6 +136,7 @@ def _kept(
             made = make(found)
             _clear(path)
             file.write(made, path)
+            _delete_unused(place)
         if fault:
             warnings.warn(
                 f"the table of law {law.family!r} in the cache was damaged and has been built anew "
@@ -164,9 +173,23 @@ def _usable(path: Path, law: Law, settings: Settings) -> tuple[Table | None, str
         return None, ""
     except file.DamagedTableError as error:
         return None, str(error.__cause__)
+    _mark_used(path)
     if found.law.key != law.key or found.settings != settings:
         return None, "it is the table of another law or of other settings"
     return dataclasses.replace(found, law=law), ""
+
+
+def _mark_used(path: Path) -> None:
+    with contextlib.suppress(OSError):  # of a folder that cannot be written
+        os.utime(path)
+
+
+def _delete_unused(place: Path) -> None:
+    """Delete what no process has read for three months, if its name is one that we give."""
+    for path in place.iterdir():
+        with contextlib.suppress(OSError):  # another process may have deleted it
+            if _OUR_NAMES.fullmatch(path.name) and time.time() - path.stat().st_mtime > _UNUSED:
+                path.unlink()
 
 
 @contextlib.contextmanager

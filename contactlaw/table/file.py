@@ -302,7 +302,7 @@ def _overloads(file: h5py.File) -> Axis:
     return Axis(grids.AXES[1], tuple(segments), float(group.attrs["stretch"]))
 
 
-@functools.cache
+@functools.lru_cache(maxsize=16)
 def packaged(law: Law) -> Table | None:
     """Read the table of a law that ships with the package; None for a law without one.
 

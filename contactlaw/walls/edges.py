@@ -33,9 +33,11 @@ EDGE = np.dtype(
 )
 
 SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
-# Vertices within this share of the mesh's size are one. It is no round number, because coordinates
-# that are would lie between two steps of the grid that finds such vertices.
-MERGED = 0.8647e-6
+# Two vertices are one within four steps of single precision at the largest coordinate, to which
+# programs round the copies of a vertex, and within this share of a triangle's shortest side, so that
+# a fine mesh far from the origin keeps its shape. That side is the median of all triangles, since
+# one sliver would part the copies of all vertices.
+_ROUNDED, _SHARE = 4.0 * float(np.finfo(np.float32).eps), 0.1
 _OUTSIDE = 0.5  # least mean cosine from which triangles lie outside of a line, all around it
 _FACETS, _EDGES = 8, 4  # facets share a list of edges if they are so few, or the edges are
 
@@ -66,13 +68,12 @@ def boundary(vertices: Floats, triangles: Integers) -> tuple[Floats, Floats, Int
 
     A closed line of such sides goes around a hole if the triangles lie outside of it.
     """
-    key, _ = _sides(vertices, triangles)
-    _, first, count = np.unique(key, return_index=True, return_counts=True)
+    _, first, count = np.unique(_sides(triangles)[0], return_index=True, return_counts=True)
     alone = np.sort(first[count == 1])
     facet, side = alone // 3, alone % 3
-    starts, ends = (vertices[triangles[facet, (side + n) % 3]] for n in (0, 1))
+    corners = np.stack([triangles[facet, (side + n) % 3] for n in (0, 1)], axis=1)
+    starts, ends = vertices[corners[:, 0]], vertices[corners[:, 1]]
     middles, lengths = 0.5 * (starts + ends), np.linalg.norm(ends - starts, axis=1)
-    corners = np.stack((key[alone] // len(vertices), key[alone] % len(vertices)), axis=1)
     _, line = np.unique(_joined(len(vertices), corners)[corners[:, 0]], return_inverse=True)
     around = np.bincount(line, lengths)
     centre = np.stack([np.bincount(line, lengths * middles[:, n]) / around for n in range(3)], 1)
@@ -88,24 +89,35 @@ def _unit(vectors: Floats) -> Floats:
     return found
 
 
-def _sides(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
-    """Numbers of the three sides of each triangle, of the same places the same; pairs that share.
+def welded(vertices: Floats, triangles: Integers) -> tuple[Integers, float]:
+    """Triangles with one number for all copies of a vertex; the distance within which they lie [m]."""
+    from scipy.spatial import KDTree
 
-    Pairs are of triangles, shape (n, 2).
-    """
-    step = MERGED * max(np.ptp(vertices, axis=0).max(), 1e-300)
-    _, place = np.unique(np.round(vertices / step), axis=0, return_inverse=True)
-    corners = place.ravel()[triangles]
-    ends = np.sort(np.stack((corners, np.roll(corners, -1, axis=1)), axis=2), axis=2)
-    key = (ends[..., 0] * len(vertices) + ends[..., 1]).ravel()
+    corners = vertices[triangles]
+    close = min(_ROUNDED * abs(corners).max(), _SHARE * np.median(side_lengths(corners).min(axis=1)))
+    places, first, place = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    pairs = KDTree(places).query_pairs(close, output_type="ndarray")
+    return first[_joined(len(places), pairs)[place.ravel()]][triangles], close
+
+
+def side_lengths(corners: Floats) -> Floats:
+    """Lengths of triangles' sides, each from the corner before to that of its number."""
+    lengths: Floats = np.linalg.norm(corners - np.roll(corners, 1, axis=-2), axis=-1)
+    return lengths
+
+
+def _sides(triangles: Integers) -> tuple[Integers, Integers]:
+    """Numbers of the three sides of each triangle; pairs of triangles that share a side, shape (n, 2)."""
+    ends = np.sort(np.stack((triangles, np.roll(triangles, -1, axis=1)), axis=2), axis=2)
+    key = (ends[..., 0] * (triangles.max() + 1) + ends[..., 1]).ravel()
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(np.diff(key[order]) == 0)
     return key, np.stack((order[same], order[same + 1]), axis=1) // 3
 
 
-def smooth_parts(vertices: Floats, triangles: Integers, normals: Floats) -> Integers:
+def smooth_parts(triangles: Integers, normals: Floats) -> Integers:
     """Give the triangles that form one smooth surface the same number."""
-    _, pairs = _sides(vertices, triangles)
+    _, pairs = _sides(triangles)
     smooth = abs((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)) > SMOOTH
     return _joined(len(triangles), pairs[smooth])
 

@@ -119,7 +119,7 @@ def _with_edges(wall: Wall, rows: Rows) -> Rows:
         return found
     if not len(wall.rim):
         return rows[:0]
-    part = smooth_parts(wall.vertices, wall.triangles, rows["normal"])
+    part = smooth_parts(wall.triangles, rows["normal"])
     return fill_edges(rows, corners_of(rows), wall.rim, part)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.physical.plates import Foundation, Orthotropic, Shell, sheet_of
-from contactlaw.walls.edges import Rims, boundary, edges_of
+from contactlaw.walls.edges import Rims, boundary, edges_of, side_lengths, welded
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.round import between, positive
@@ -44,7 +44,8 @@ class Mesh:
     vertices : array_like, shape (n, 3)
         Corners of the triangles [m].
     triangles : array_like of int, shape (m, 3)
-        For each triangle the numbers of its three corners, from 0.
+        For each triangle the numbers of its three corners, from 0. Vertices that differ by no more
+        than the rounding of single precision become one, and of its numbers the mesh keeps one.
     thickness : float or array_like, shape (m,), or Foundation or Shell of such
         Plate thickness in the model, of all triangles or of each [m]; ``inf`` is the half-space.
         The geometry has no thickness. A `contactlaw.Shell` swings back as in `Plate`.
@@ -53,15 +54,15 @@ class Mesh:
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the wall moves; without it, the wall stands still.
     edges : {"free", "supported", "clamped"} or callable, optional
-        How the wall ends at its rims and holes: on sides of one triangle alone, wherever the
-        vertices' numbers differ but their places do not. A callable takes the middles of these
-        sides, shape (n, 3) [m], and returns a kind, or None, for each. Without `edges`, the wall
-        gives way as an endless plate.
+        How the wall ends at its rims and holes, the sides that one triangle alone has. A callable
+        takes the middles of these sides, shape (n, 3) [m], and returns a kind, or None, for each.
+        Without `edges`, the wall gives way as an endless plate.
 
     Attributes
     ----------
     dropped : int
-        Number of triangles left out, with a warning: those without area, and duplicates.
+        Number of triangles left out, with a warning: those without area, and duplicates. A flat one
+        between others is no loss: its neighbour at the longest side is divided at its third corner.
     kept : ndarray of int
         For each triangle of the mesh, its number in the `triangles` that were given.
     rim : structured array
@@ -103,7 +104,7 @@ class Mesh:
         thickness = _thickness(checked_sheet(self.thickness), len(triangles))
         check_models(self.model)
         check_motion(self.motion)
-        good = _valid_triangles(vertices, triangles)
+        corners, good = _valid_triangles(vertices, triangles)
         lost = len(triangles) - len(good)
         if not good.size:
             raise ArgumentError("triangles", None, f"none of {len(triangles)} has an area [m2]")
@@ -111,9 +112,9 @@ class Mesh:
             warnings.warn(
                 f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates", stacklevel=3
             )
-        rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, triangles[good]))
-        found = {"vertices": vertices, "triangles": triangles[good], "thickness": thickness[good]}
-        for name, value in {**found, "dropped": lost, "kept": good, "rim": rim, "given": self.thickness}.items():
+        rim = () if self.edges is None else edges_of(self.edges, *boundary(vertices, corners))
+        arrays = {"vertices": vertices, "triangles": corners, "thickness": thickness[good]}
+        for name, value in {**arrays, "dropped": lost, "kept": good, "rim": rim, "given": self.thickness}.items():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked
             object.__setattr__(self, name, value)
@@ -137,6 +138,9 @@ class Mesh:
         edges: Rims | None = None,
     ) -> Self:
         """Read a mesh from a file: STL (binary or text), PLY, OBJ or another that trimesh reads.
+
+        Letters may have any encoding, and exponents may be those of Fortran (1.0D+01). A file that
+        was cut is refused; of an OBJ, which counts no triangles, that is not always seen.
 
         A warning names parts that are facets of a whole cylinder, cone, sphere or cap, and the
         walls of `contactlaw.walls` to take in their place. It does not know parts that go on
@@ -191,14 +195,16 @@ class Mesh:
             with warnings.catch_warnings():
                 # trimesh would take the corners before a number that cannot be read for all
                 warnings.filterwarnings("error", "string or file could not be read")
-                stl = Path(path).suffix.lower() == ".stl"
-                source, kind = (_stl(path), "stl") if stl else (str(path), None)
+                source, kind, least = _source(path)
                 found = trimesh.load_mesh(source, kind, process=False)
             vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
-            if not len(triangles):
-                raise ValueError("no triangles")
+            if len(triangles) < least:
+                raise ValueError(f"{len(triangles)} triangles, where at least {least} should be")
+            if not np.isfinite(vertices).all():
+                raise ValueError("not all coordinates are finite")
         except Exception as error:  # trimesh's readers raise errors of many types
-            reason = f"no mesh that trimesh reads: {error}"
+            what = "not all coordinates are numbers" if "unmatched data" in str(error) else error
+            reason = f"no mesh that trimesh reads: {what}; write it again, best as a binary STL"
             raise ArgumentError("path", str(path), reason) from error
         extent = float(np.ptp(vertices, axis=0).max())
         if scale is None and extent > _LONGEST:
@@ -331,13 +337,28 @@ class Mesh:
         return cls(np.vstack((middle + around, middle)), fan, thickness, model, motion, edges)
 
 
-def _stl(path: str | Path) -> io.BytesIO:
-    """Content of an STL file as trimesh knows it: no bytes after the last triangle, "endsolid"."""
-    content = Path(path).read_bytes()
-    end = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary one; text has > 7e9
-    if 84 < end <= len(content):
-        return io.BytesIO(content[:end])
-    return io.BytesIO(re.sub(rb"(?im)^([ \t]*)end[ \t]+solid", rb"\1endsolid", content))
+def _source(path: str | Path) -> tuple[Any, str | None, int]:
+    """Prepare a file for trimesh: its path or content, its kind, and how many triangles it has at least.
+
+    trimesh takes a cut file for a small one, and reads neither 1.0D+01 nor any letters but UTF-8.
+    """
+    content, kind = Path(path).read_bytes(), Path(path).suffix.lower()[1:]
+    if kind not in ("stl", "ply", "obj", "off"):
+        return str(path), None, 1
+    size = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary STL; some have zeros behind it
+    if kind == "stl" and size <= len(content) and not content[size:].strip(b"\0\r\n"):
+        return io.BytesIO(content[:size]), kind, 1
+    end = content.find(b"end_header") if b"format binary" in content else len(content)
+    code = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    text = io.TextIOWrapper(io.BytesIO(content[:end]), code, "replace").read()
+    text = re.sub(r"\ufffd\\?", "?", text)  # a letter of Shift-JIS may end like a line that goes on
+    text = re.sub(r"[dD](?<=[\d.].)(?=[-+\d])", "e", text)
+    if kind == "stl":
+        if not re.search(r"(?i)end\s*solid.*\W*$", text):
+            raise ValueError(f"cut, or no STL: no endsolid at its end, and {len(content)} bytes in place of {size}")
+        text = re.sub(r"(?im)^\s*(end)?\s*solid.*", r"\1solid", text)  # names may have the word "vertex"
+    faces = re.match(r"(?s)(?:ply\s.*?element face|OFF(?:\s+#[^\n]*)*\s+\d+)\s+([1-9]\d*)", text)
+    return io.BytesIO(text.encode() + content[end:]), kind, int(faces[1]) if faces else 1
 
 
 def _circle(axis: Floats, facets: int) -> Floats:
@@ -384,14 +405,34 @@ def _thickness(given: Any, triangles: int) -> Floats:
     return np.broadcast_to(found, triangles).copy()
 
 
-def _valid_triangles(vertices: Floats, triangles: Integers) -> Integers:
-    """Numbers of the triangles that have an area, without duplicates."""
-    corners = vertices[triangles]
-    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    some = np.flatnonzero(twice > _FLAT * sides.max(axis=1) ** 2)
-    # Duplicates have the same three corners, in any order and under any vertex numbers.
-    _, number_of = np.unique(vertices, axis=0, return_inverse=True)
-    key = np.sort(number_of.ravel()[triangles[some]], axis=1)
-    _, first = np.unique(key, axis=0, return_index=True)
-    return some[np.sort(first)]
+def _valid_triangles(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
+    """Triangles that have an area, without duplicates; the number that each had.
+
+    A flat triangle lies between one neighbour at its longest side and two at its other sides, which
+    would not share sides without it. So the first neighbour is divided at the middle corner of the
+    flat triangle, and one half takes the place of this.
+    """
+    triangles, close = welded(vertices, triangles)
+    ordered = np.sort(triangles, axis=1)
+    _, kept = np.unique(ordered, axis=0, return_index=True)
+    kept = np.sort(kept[(np.diff(ordered[kept], axis=1) > 0).all(axis=1)])
+    triangles = triangles[kept]
+    area, longest = _sizes(vertices[triangles])
+    flat = np.flatnonzero(area <= longest * np.maximum(close, _FLAT * longest))
+    for n in flat[np.argsort(-longest[flat])]:
+        end, middle, start = np.roll(triangles[n], -side_lengths(vertices[triangles[n]]).argmax())
+        triangles[n] = middle  # without area
+        beside = np.flatnonzero(np.isin(triangles, (start, end)).sum(axis=1) == 2)
+        if len(beside) == 1:
+            whole = triangles[beside]
+            triangles[n] = np.where(whole == start, middle, whole)
+            triangles[beside] = np.where(whole == end, middle, whole)
+    area, longest = _sizes(vertices[triangles])
+    good = area > _FLAT * longest**2
+    return triangles[good], kept[good]
+
+
+def _sizes(corners: Floats) -> tuple[Floats, Floats]:
+    """Twice the area of each triangle, and its longest side."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.linalg.norm(across, axis=1), side_lengths(corners).max(axis=1)

@@ -20,7 +20,7 @@ def round_parts(vertices: Array, triangles: Integers) -> list[str]:
     areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(areas, axis=1)
     found = []
-    for some in members(smooth_parts(vertices, triangles, areas / area[:, None])):
+    for some in members(smooth_parts(triangles, areas / area[:, None])):
         if len(some) < _FEWEST:
             continue
         whole, points = area[some].sum(), corners[some].reshape(-1, 3)

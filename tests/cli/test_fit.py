@@ -4,6 +4,7 @@ import json
 import os
 import re
 from errno import ENOSPC
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -79,9 +80,58 @@ def test_tables_as_people_write_them(head, rows, table):
     assert data.contact_time == pytest.approx([np.nan, 7.5e-6], nan_ok=True)
 
 
+HEARD = [1.25, 1.65, 2.01, 2.334, 0.0, 0.0]  # phyphox writes 0 for a bounce that it did not hear
+PHYPHOX = {
+    "energy": (
+        [
+            f"{what} {n}{unit}"
+            for n in range(6)
+            for what, unit in (("Bounce", " (s)"), ("Height", " (m)"), ("Energy", ""))
+        ],
+        [[x for t in HEARD for x in (t, 9.9, 0.5)]],
+    ),
+    "multiple": (["Start (s)", *(f"Stop {n} (s)" for n in range(1, 6))], [HEARD]),
+    "all": (["Event time (s)", "Interval (s)"], [[t, 0.3] for t in HEARD[:4]]),
+}
+
+
+@pytest.mark.parametrize("name", PHYPHOX)
+@pytest.mark.parametrize(("between", "point"), [",.", "\t.", ";.", "\t,", ";,"])
+def test_what_phyphox_exports(name, between, point, table):
+    """The instants give the times between bounces; heights and energies that it derives without air are not read."""
+    names, rows = PHYPHOX[name]
+    cells = [[f"{x:.9E}".replace("E+0", "E").replace(".", point) for x in row] for row in rows]
+    lines = [f'"{one}"' for one in names], *cells
+    path = table(*(between.join(line) for line in lines))
+    found = tables.read(path)
+    data = tables.completed(found, path, 7800.0, radius=0.01, time_error=1e-3)
+    times = {"t1": 0.4, "t2": 0.36, "t3": 0.324, "radius": 0.01, "time_error": 1e-3}
+    wanted = cl.Measurements.of(times, density=7800.0)
+    for field in ("speed", "restitution", "restitution_error"):
+        assert getattr(data, field) == pytest.approx(getattr(wanted, field), rel=1e-6)
+    assert data.restitution == pytest.approx([0.9, 0.9], abs=2e-3) and found.unused == () and len(found.lines) == 1
+
+
+def test_a_head_says_what_options_may_say(usual, table, capsys):
+    """Materials, sizes and their errors; the errors enter as priors, and options come first."""
+    bodies = [f'# {body} = "{name}"' for body, name in (("sphere", BODIES[1]), ("plate", BODIES[3]))]
+    lines = Path(usual).read_text().splitlines()
+    assert main(["fit", usual, *FIT, "--prior", "radius=0.05mm", "--json"]) == 0
+    wanted = json.loads(capsys.readouterr().out)
+    path = table('# title = "steel"', *bodies, '# diameter = "2mm"', '# radius_error = "5%"', *lines)
+    asked = ["fit", path, "--unknown", "thickness"]
+    assert main([*asked, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["values"] == wanted["values"] and printed["errors"] == wanted["errors"]
+    assert main([*asked, "--radius", "2mm"]) == 0
+    assert capsys.readouterr().out.startswith("steel\n")
+
+
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
+        (['# plates = "glass"', "speed,COR", "1,0.5"], "its head has an unknown 'plates'; did you mean plate?"),
+        (["# by me = mine", "speed,COR", "1,0.5"], "are no TOML"),
         (
             ["velocty,COR", "1,0.5"],
             "no column of speeds in its first line, 'velocty, COR': call one "

@@ -33,7 +33,7 @@ NAMES = """
     time bead plate other x y z approach_speed restitution sliding_speed kind
     sliding_speed_after spin_x spin_y spin_z contact_time peak_force plastic_energy
     wave_energy other_energy scheme_energy friction_energy wall_work radius mass parcel material
-    thickness triangle flags
+    thickness triangle run run_start flags
 """.split()
 
 
@@ -43,7 +43,7 @@ def test_every_column_has_a_unit_and_a_description():
     for column in COLUMNS:
         assert column.unit in units, column
         assert len(column.description) > 10, column
-        whole = "bead plate other kind material triangle flags".split()
+        whole = "bead plate other kind material triangle run flags".split()
         assert IMPACT[column.name] == (np.int64 if column.name in whole else np.float64)
 
 
@@ -71,7 +71,7 @@ def test_record_without_lookup_has_no_derived_columns():
     record = Record()
     add(record, 0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
     rows = record.read(register_of(Full(), [R], [(Full(), 1e-3)]))
-    assert rows.dtype.names[-2:] == ("triangle", "flags")
+    assert rows.dtype.names[-3:] == ("run", "run_start", "flags")
     assert rows.dtype == IMPACT
 
 

@@ -192,16 +192,26 @@ def test_energies_add_up(built, deck, tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_restart_goes_on_in_mid_contact(ranks, built, deck, tmp_path):
-    _, whole, _ = found(built, tmp_path, script("deck", deck, "friction 0.3"))
+    _, whole, rows = found(built, tmp_path, script("deck", deck, "friction 0.3"))
     middle = "run {half}\nwrite_restart half\n"
     half = next(n for n in range(3000, STEPS) if touching(tmp_path, n))
     found(built, tmp_path, script("deck", deck, "friction 0.3", 0, middle.format(half=half)))
+    (tmp_path / "hits.0.npy").rename(tmp_path / "first.npy")
     head, _, tail = script("deck", deck, "friction 0.3", STEPS - half).partition("fix weight")
     text = "read_restart half\nneigh_modify exclude group all all\nfix weight" + tail
     _, rest, _ = found(built, tmp_path, text, ranks)
     assert rest == pytest.approx(whole, rel=1e-10, abs=1e-12)
+    pieces = np.sort(cl.read_record(tmp_path / "first.npy", *tmp_path.glob("hits.*.npy")).rows, order=("bead", "time"))
+    assert pieces["restitution"] == pytest.approx(rows["restitution"], rel=1e-9)
     done = run(built, tmp_path, text.replace("friction 0.3", ""))
     assert done.returncode and "touches other walls in the restart file" in done.stdout + done.stderr
+
+
+def test_files_that_a_run_on_more_ranks_has_left_are_refused(built, deck, tmp_path):
+    text = script("deck", deck, "friction 0.3", STEPS // 3)
+    found(built, tmp_path, text, ranks=2)
+    with pytest.raises(ValueError, match=r"hits.1.npy: .*hits.0.npy is of another run.* earlier one, as .*hits.1.npy"):
+        found(built, tmp_path, text)
 
 
 def touching(folder, step):
@@ -259,6 +269,8 @@ set group all diameter 1.6e-3 density 879
 velocity all set 0 0 -20"""
 REGIONS = {
     "region drum": "region drum block -0.02 0.02 -0.02 0.02 0 0.02",
+    "region mill": """variable angle equal 1e5*time
+region mill plane 0 0 -1 0 0 1 rotate v_angle 0.1 0 1e-3 0 -1 0""",
     "region both": """variable angle equal time
 region one sphere 0 0 0 1 rotate v_angle 0 0 0 0 0 1
 region other sphere 0 0 0 2
@@ -271,6 +283,10 @@ region both intersect 2 one other""",
     [
         ("plane 9 0 0 0 0 1 thickness 1e-3", "COR 0.824"),  # `ImpactModel.restitution`; the point is far from the box
         ("region drum softening 1e9", "its centre went through the wall at 20 m/s"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 move 0 0 1e4", "further than its radius of 0.0008 m"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 vibrate 0 0 1 1591", "at 1.002e+04 m/s it flies further than its radius"),
+        ("plane 0 0 -1 0 0 1 thickness 1e-3 rotate 0.1 0 1e-3 0 -1 0 1e5", "further than its radius of 0.0008 m"),
+        ("region mill", "further than its radius of 0.0008 m"),
         ("region both", "there is no both, or its shape changes or parts move"),
     ],
 )

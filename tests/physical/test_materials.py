@@ -13,7 +13,8 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from contactlaw.physical.materials import Material, material, materials
+import contactlaw
+from contactlaw.physical.materials import Material, material, materials, warn_of_softened
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
 FLOW = ("hardening", "rate")
@@ -391,6 +392,28 @@ def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
     assert entry.hardness == 8e9 and entry.yield_strength is None
     with pytest.raises(ValueError, match=r"^hardness: got 8\S+; must be below youngs_mod"):
         dataclasses.replace(entry, hardness=80e9)
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [
+        {"youngs_modulus": 1e8, "yield_strength": 25e6},
+        {"youngs_modulus": 7e9, "hardness": 5.7e9, "kind": "glass"},  # soda-lime glass, a tenth of its modulus
+        {"youngs_modulus": 15e9, "hardness": "62 HRC", "hardening": 0.2},
+    ],
+)
+def test_a_modulus_that_was_softened_draws_a_warning_and_no_solid_does(numbers):
+    soft = Material("soft", poissons_ratio=0.3, density=2500.0, **numbers)
+    with pytest.warns(UserWarning, match="'soft': a strength of .* as of no solid. .* softening=") as caught:
+        contactlaw.ImpactModel(contactlaw.Pair(soft, "glass"))
+    assert caught[0].filename == __file__
+    solids = [material(name) for name in materials()]
+    solids += [Material("soft LDPE", 0.1e9, 0.45, 915.0, yield_strength=8e6)]  # of data sheets
+    solids += [Material("fused silica", 72e9, 0.17, 2200.0, hardness=9.8e9, kind="glass")]
+    for solid in solids:
+        warn_of_softened(solid)
+    with pytest.raises(ValueError, match="must be below youngs_modulus .* softening="):
+        dataclasses.replace(soft, youngs_modulus=1e6)
 
 
 def test_soft_and_light_beads_are_accepted() -> None:

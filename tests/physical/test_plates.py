@@ -5,6 +5,8 @@ import math
 import pickle
 import re
 
+import hypothesis
+import hypothesis.strategies as st
 import numpy as np
 import pymunk
 import pytest
@@ -253,6 +255,40 @@ def test_a_foundation_swings_as_its_spring_and_the_plates_mass():
     assert (np.diff(stiff.restitution) > 0.0).all()
     balance = stiff.restitution**2 + stiff.plastic_fraction + stiff.wave_fraction + stiff.other_fraction
     assert balance == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", [cl.Foundation, cl.Shell])
+def test_walls_of_arrays_are_equal_by_value(kind):
+    one, two, three = (kind(np.array([H, size]), np.full(2, 1e-2)) for size in (H, H, 2 * H))
+    assert one == two and hash(one) == hash(two) and one != three and {one, two, three} == {one, three}
+    assert one == kind([H, H], [1e-2, 1e-2]) and one != kind(H, 1e-2) and kind(H, 1) == kind(H, 1.0)
+
+
+def test_answers_of_arrays_are_equal_by_value():
+    speed = [1.0, 5.0]
+    for answer in (MODEL.solve, MODEL.sensitivity, lambda *impact: MODEL.oblique(impact[0], 1.0, *impact[1:], 0.3)):
+        one, two, three = (answer(np.array(speed), IMPACT[1], size) for size in (H, H, 2 * H))
+        assert one == two and hash(one) == hash(two) and one != three
+
+
+EXTREME = st.one_of(st.floats(), st.floats(-330, 310).map(lambda power: 10.0**power if power < 308 else np.inf))
+
+
+@hypothesis.settings(max_examples=300, deadline=None)
+@hypothesis.given(EXTREME, EXTREME, EXTREME, EXTREME)
+@hypothesis.example(1e308, 0.3, 0.0, 1.0)
+@hypothesis.example(1e-300, 1e300, -1e-10, 1e-300)
+def test_plates_of_any_numbers_are_finite_or_refused_in_words(a, b, c, d):
+    for make in (
+        lambda: cl.Layers([("glass", a), ("pom", b)]),
+        lambda: cl.Orthotropic("glass", a, b, c, d),
+        lambda: cl.Orthotropic.perforated("glass", a, b, c),
+    ):
+        try:
+            plate = make()
+        except cl.ArgumentError:
+            continue
+        assert 0.0 < plate < np.inf and np.isfinite([plate.areal, plate.bending]).all()
 
 
 def test_flat_shells_and_half_spaces_do_not_swing():

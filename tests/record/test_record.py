@@ -11,6 +11,7 @@ import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
+from contactlaw.record.file import opened, read_from
 
 MODELS = [
     cl.ImpactModel(cl.Pair(sphere, plate))
@@ -37,6 +38,39 @@ def run():
         impacts.add_bead(bead, material=sphere)
     steps(space, 20)
     return space, impacts
+
+
+def test_a_flipped_bit_is_refused_or_changes_no_number():
+    """Data, their types and shapes, and attributes have checksums, all but the texts of attributes."""
+
+    def numbers(content):
+        with opened(content) as file:
+            record = read_from(file)
+        return record.rows.tobytes(), [
+            [dataclasses.astuple(body)[1:5] for body in one.pair.given] for one in record.bodies
+        ]
+
+    random, rows = np.random.default_rng(23), np.zeros(40, [(name, IMPACT[name]) for name in ("time", "x", "flags")])
+    rows["time"], rows["x"] = np.sort(random.random((2, 40)))
+    content = cl.Record(rows, [cl.Bodies(MODELS[3].pair, "fem")]).content()
+    with opened(content) as file:
+        places = [file["impacts"][name].id.get_chunk_info(0).byte_offset for name in ("time", "x", "flags", "bodies")]
+    for place in places:
+        with pytest.raises(ValueError, match="is damaged: "):
+            numbers(flipped(content, 8 * place + 19))
+    wanted, refused = numbers(content), 0
+    for bit in random.choice(8 * len(content), 400, replace=False).tolist():
+        try:
+            assert numbers(flipped(content, bit)) == wanted, bit
+        except ValueError:
+            refused += 1
+    assert refused > 200
+
+
+def flipped(content, bit):
+    changed = bytearray(content)
+    changed[bit // 8] ^= 1 << bit % 8
+    return bytes(changed)
 
 
 def test_what_is_saved_is_read(run, tmp_path):
@@ -117,6 +151,33 @@ def test_several_files_of_a_run_are_one(run, tmp_path):
         cl.read_record(first, tmp_path / "3.npy")
     with pytest.raises(TypeError, match="expected the path of a file"):
         cl.read_record()
+
+
+def rows_of(run, start, times):
+    rows = np.zeros(len(times), IMPACT)
+    rows["run"], rows["run_start"], rows["time"] = run, start, times
+    return rows
+
+
+@pytest.mark.parametrize("end", ["h5", "npy"])
+def test_files_of_two_runs_are_one_only_if_one_goes_on_from_the_other(end, tmp_path):
+    runs = {"a": (7, 0.0, [0.1, 0.5, 0.6]), "b": (7, 0.0, [0.2]), "on": (8, 0.5, [0.55]), "anew": (9, 0.0, [0.3])}
+    path = {name: tmp_path / f"{name}.{end}" for name in runs}
+    for name, run in runs.items():
+        cl.Record(rows_of(*run)).save(path[name]) if end == "h5" else np.save(path[name], rows_of(*run))
+    assert cl.read_record(path["b"], path["a"]).rows["time"].tolist() == [0.1, 0.2, 0.5, 0.6]
+    with pytest.warns(UserWarning, match="1 rows are left out: the run that goes on from a restart"):
+        assert cl.read_record(path["on"], path["a"]).rows["time"].tolist() == [0.1, 0.5, 0.55]
+    for files in (("a", "on", "anew"), ("anew", "a")):
+        with pytest.raises(ValueError, match=f"begins at 0 s, too: leave out the files of the earlier .*a.{end}"):
+            cl.read_record(*(path[name] for name in files))
+    old = [name for name in IMPACT.names if not name.startswith("run")]  # of a version without these columns
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", rows_of(*runs[name])[old])
+    assert cl.read_record(tmp_path / "a.npy", tmp_path / "b.npy").rows.size == 4
+    with pytest.raises(ValueError, match=r"new.npy: .*a.npy is of another run.* the earlier one, as .*a.npy"):
+        np.save(tmp_path / "new.npy", rows_of(*runs["anew"]))
+        cl.read_record(tmp_path / "a.npy", tmp_path / "new.npy")
 
 
 def test_every_field_of_a_material_is_kept(tmp_path):

@@ -150,7 +150,7 @@ def test_what_is_no_impact_is_left_out_and_said(folder, tmp_path, capsys):
     assert not list((tmp_path / "out").glob("energy.[vp]*y"))
 
 
-def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path, monkeypatch):
+def test_a_report_that_cannot_be_made_says_why_and_leaves_the_record(run, tmp_path, monkeypatch):
     _, impacts, _ = run
     (tmp_path / "file").write_text("mine")
     with pytest.raises(NotADirectoryError, match="is a file, not a folder"):
@@ -160,6 +160,7 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
     half = attach(pymunk.Space(), cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
     with pytest.raises(ValueError, match="has no impact on a wall yet"):
         half.report(tmp_path / "out")
+    assert not (tmp_path / "out").exists()
     with pytest.raises(ValueError, match="has no column mass, thickness: a report needs"):
         names = [name for name in impacts.collisions().dtype.names if name not in ("mass", "thickness")]
         Run(cl.Record(impacts.collisions()[names]))
@@ -184,7 +185,7 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         patch.setattr("contactlaw.reporting.summary.energies", lambda run: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             impacts.report(tmp_path / "out")
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "out", "record.h5"]  # which is kept
 
 
 def test_parts_of_triangles_cover_them_and_have_their_own_points():

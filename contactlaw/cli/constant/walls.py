@@ -40,8 +40,9 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
     for plate in plates:
         on_it = recorded.thickness == plate
         v, r, _, w = (column[on_it] for column in recorded[:4])
+        mass = None if recorded.mass is None else recorded.mass[on_it]
         with wording.naming_impact(v, r, plate):
-            found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w)))
+            found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w, mass)))
     return found
 
 

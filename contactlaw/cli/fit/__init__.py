@@ -38,12 +38,13 @@ def add(commands: Any) -> None:
         "spin_rad/s; optionally radius_mm, thickness_mm and standard errors, as COR_error. The last "
         "three measurements need angle_deg from the normal too (the speed is then that of the "
         "bead), or sliding_speed_m/s (the speed is then the normal one). Or a row per drop: drop_cm, "
-        "with bounce_cm or the times between its bounces, t1_ms, t2_ms, ... (default: --drop and --bounce)",
+        "with bounce_cm or the times between its bounces, t1_ms, t2_ms, ..., or what phyphox exports of it. Its head "
+        "may have materials, sizes and their errors, as lines of TOML behind # (default: --drop and --bounce)",
     )
     options.add_drop(command, quantities.values, "of a bead, or of all in FILE")
     what = "height of the bounce of each drop [m], or with a unit, without FILE"
     options.add_quantity(command, "--bounce", quantities.HEIGHT, what, quantities.values, metavar="Z")
-    options.add_pair(command, options.OF_RECORD)
+    options.add_pair(command, " (default: that of FILE)")
     options.add_radius(command, "all beads", quantities.value)
     what = "thickness of all plates [m], or with a unit; inf: a half-space"
     options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
@@ -89,14 +90,21 @@ def _prior(text: str) -> tuple[str, float]:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    priors = dict(arguments.prior)
+    priors, sources = dict(arguments.prior), list[str]()
     if (arguments.data is None) == (arguments.bounce is None):
         raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
-    if Path(arguments.data or "").suffix.lower() in (*HDF5, ".npy"):
+    if arguments.data is None:
+        pair = chosen.pair(arguments)
+        names = "radius", "thickness", "friction", "drop", "bounce"
+        noted = {name: size for name, size in vars(arguments).items() if name in names and size is not None}
+        noted["line"] = np.arange(1, len(arguments.bounce) + 1)
+        data = Measurements.of(noted, density=pair.sphere.density)
+    elif Path(arguments.data).suffix.lower() in (*HDF5, ".npy"):
         data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
+        pair = chosen.pair(arguments, known)
     else:
-        data, known = _typed(arguments), None
-    pair = chosen.pair(arguments, known)
+        data, pair, head = rebounds.of_file(arguments)
+        priors, sources = _errors(head, data) | priors, [head.title, head.reference]
     asked: dict[str, Any] = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     for name in ("radius", "thickness"):
         if (size := getattr(arguments, name)) is not None:
@@ -110,19 +118,20 @@ def _run(arguments: argparse.Namespace) -> None:
             numbers = {name: None if size == math.inf else size for name, size in asked.items()}
             print(json.dumps(numbers | printed.record(found), indent=2))
         else:
-            print(in_words(asked), *printed.text(found), "", sep="\n")
+            print(*filter(None, sources), in_words(asked), *printed.text(found), "", sep="\n")
             print(*printed.rows(found), sep="\n")
 
 
-def _typed(arguments: argparse.Namespace) -> Measurements:
-    """Read a table of rebounds, with warnings about what is not used or likely wrong."""
-    sizes = {name: getattr(arguments, name) for name in ("radius", "thickness", "friction", "drop")}
-    density = chosen.pair(arguments).given[0].density
-    if arguments.data is None:
-        given = {name: size for name, size in sizes.items() if size is not None}
-        numbers = np.arange(1, len(arguments.bounce) + 1)
-        return Measurements.of(given | {"bounce": arguments.bounce, "line": numbers}, density=density)
-    return rebounds.completed(rebounds.checked(arguments.data), arguments.data, density, **sizes)
+def _errors(head: rebounds.Conditions, data: Measurements) -> dict[str, float]:
+    """Turn the relative errors of a head into standard errors of the sizes [m]."""
+    errors = {}
+    for name, share in head.errors.items():
+        size = getattr(data, name.removesuffix("_error"))
+        if name == "speed_error":
+            wording.print_warning("speed_error: a fit takes speeds as exact; compare knows their error")
+        elif share and size is not None and np.isfinite(size).all():
+            errors[name.removesuffix("_error")] = share * float(np.median(size))
+    return errors
 
 
 def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[Measurements, Pair | None]:

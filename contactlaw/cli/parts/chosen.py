@@ -47,8 +47,8 @@ def models(arguments: argparse.Namespace) -> list[ImpactModel]:
     return made
 
 
-def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
-    """Materials that the options name, otherwise those of the `known` pair of a record."""
+def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
+    """Materials that the options name, otherwise the `known` sphere and plate of a file."""
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
 
 

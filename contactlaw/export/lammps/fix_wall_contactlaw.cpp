@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -82,6 +83,12 @@ struct Joined {
     }
     void join(int a, int b) { part[root(a)] = root(b); }
 };
+
+/* The run that rows of the record name, one for all fixes: readers refuse files that another one has left. */
+struct {
+    long long number; /* microseconds from 1970 */
+    double start;     /* by LAMMPS's clock [s] */
+} run;
 
 struct Wall {
     double thickness = HUGE_VAL;
@@ -263,7 +270,8 @@ void FixWallContactlaw::Scene::add_edges(int number, size_t first)
         std::for_each(all.back().begin(), all.back().end(), [&](Vector one) { whole.add(one); });
     }
     const Vector wide = whole.size();
-    const double step = CONTACTLAW_MERGED * std::max({ wide[0], wide[1], wide[2], 1e-300 });
+    /* Vertices that round to the same steps are one. Round coordinates must not lie between two steps. */
+    const double step = 0.8647e-6 * std::max({ wide[0], wide[1], wide[2], 1e-300 });
     std::map<std::array<long long, 3>, int> vertices;
     std::map<std::pair<int, int>, std::vector<std::pair<int, int>>> sides; /* facet and corner */
     for (size_t n = 0; n < all.size(); ++n)
@@ -657,6 +665,10 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         if (!s.record)
             error->one(FLERR, "Fix wall/contactlaw: record: {} cannot be written: {}", record, utils::getsyserror());
         std::fwrite(contactlaw_npy, 1, sizeof contactlaw_npy, s.record);
+        const auto now = std::chrono::system_clock::now().time_since_epoch();
+        if (run.number == 0)
+            run = { std::chrono::duration_cast<std::chrono::microseconds>(now).count(), s.base };
+        MPI_Bcast(&run.number, 1, MPI_LONG_LONG, 0, world);
         count_rows();
     }
     grow_arrays(atom->nmax);
@@ -726,7 +738,15 @@ void FixWallContactlaw::look()
     for (int i = 0; i < atom->nlocal; ++i) {
         if (!(atom->mask[i] & groupbit) || s.beads[atom->type[i] - 1] < 0)
             continue;
-        const double speed = size(vector_of(atom->v[i])) * s.length / s.time, r = atom->radius[i] * s.length;
+        const Vector at = s.length * vector_of(atom->x[i]);
+        double wall = 0.0; /* speed of the fastest wall, of one that turns at the place of the bead */
+        for (const contactlaw_frame &one : s.frames) {
+            const Vector arm = at - vector_of(one.hub) - vector_of(one.shift);
+            const double most = size(vector_of(one.velocity)) + one.frequency * size(vector_of(one.amplitude));
+            wall = std::max(wall, std::fabs(one.spin) * size(cross(vector_of(one.axis), arm))
+                            + std::max(most, size(vector_of(one.rate)))); /* regions have a rate alone */
+        }
+        const double speed = size(vector_of(atom->v[i])) * s.length / s.time + wall, r = atom->radius[i] * s.length;
         if (!(speed * update->dt * s.time < r))
             refuse(TOO_FAST, atom->tag[i], -1, speed, r);
         const double mass = atom->rmass[i] * s.mass;
@@ -816,9 +836,11 @@ void FixWallContactlaw::step(bool advancing)
         contactlaw_interact(scene, clock, bead);
         if (s.status.trouble != 0)
             refuse(int(s.status.trouble), atom->tag[i], int(s.status.wall), s.status.value, s.status.limit);
-        for (int n = 0; n < s.status.impacts; ++n)
+        for (int n = 0; n < s.status.impacts; ++n) {
+            s.impacts[n].run = run.number, s.impacts[n].run_start = run.start;
             if (s.impacts[n].kind == contactlaw_IMPACT)
                 vector_atom[i] = head.restitution = s.impacts[n].restitution;
+        }
         if (s.record && s.status.impacts > 0)
             s.written += (long long) std::fwrite(s.impacts, sizeof *s.impacts, size_t(s.status.impacts), s.record);
         s.status.impacts = 0;

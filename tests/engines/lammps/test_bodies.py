@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from dumbbell import Dumbbell, impact
-from lammps_box import PAIR, R, flat, on_two_ranks, quiet
+from lammps_box import ALIKE, PAIR, R, flat, on_two_ranks, quiet
 
 import contactlaw as cl
+from contactlaw.cli import main
 from contactlaw.engines.lammps import attach
 from contactlaw.engines.record import Kind
 
@@ -97,6 +98,25 @@ def test_a_run_may_be_cut_into_pieces():
     assert cut["restitution"] == pytest.approx(whole["restitution"], abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["run.h5", "run.npy", "run.csv"])
+def test_one_constant_is_that_of_the_recorded_impacts(name, tmp_path, capsys):
+    _, walls, rows = thrown(orientations())
+    if name == "run.h5":
+        walls.save(tmp_path / name)
+    elif name == "run.npy":
+        np.save(tmp_path / name, rows)
+    else:
+        np.savetxt(tmp_path / name, rows, delimiter=",", header=",".join(rows.dtype.names))
+    command = ["constant", "--record", str(tmp_path / name), "--csv", "--law", "myc"]
+    pair = ["--sphere", PAIR.sphere.name, "--plate", PAIR.plate.name]
+    assert main(command + pair * (name != "run.h5")) == 0
+    head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
+    energy = rows["mass"] * rows["approach_speed"] ** 2
+    best = np.sqrt(np.average(rows["restitution"] ** 2, weights=energy))
+    assert set(rows["kind"]) == {Kind.OF_BODY} and rows.size == N
+    assert float(row[head.index("restitution")]) == pytest.approx(best, abs=1e-3)
+
+
 def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
     _, _, whole = thrown(orientations()[::6], 0.3, pieces=1, more=f"restart 100 {tmp_path}/at")
     assert (whole["time"] < 100 * DT).all() and (whole["time"] + whole["contact_time"] > 100 * DT).all()
@@ -106,7 +126,7 @@ def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
     lmp.commands_string("fix body all rigid/small molecule\nthermo_style custom step")
     lmp.command("run 1100")
     rows = np.sort(walls.record().rows, order="bead")
-    for name in rows.dtype.names:
+    for name in ALIKE:
         assert rows[name] == pytest.approx(whole[name], rel=1e-9, abs=1e-12), name
 
 

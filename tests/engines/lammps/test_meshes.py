@@ -1,6 +1,7 @@
 """Meshes in LAMMPS: a tessellated wall is the wall, whatever its triangles."""
 
 import math
+import sys
 import time
 import warnings
 
@@ -226,6 +227,82 @@ def test_files_that_are_no_mesh(tmp_path):
         Mesh.read(wrong, 1e-3)
     with pytest.raises(ValueError, match="scale: got .*must be positive"):
         Mesh.read(wrong, 1e-3, scale=0.0)
+
+
+STL = "solid {name}\n" + "".join(
+    "facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {x} {y} 0.0\n" for x, y in corners) + "endloop\nendfacet\n"
+    for corners in (((10.0, 0.0), (15.0, 0.0), (15.0, 5.0)), ((10.0, 0.0), (15.0, 5.0), (10.0, 5.0)))
+)
+STL += "endsolid {name}\n"
+OBJ = "# {name}\nv 10.0 0.0 0.0\ng {name}\nv 15.0 0.0 0.0\nv 15.0 5.0 0.0\nv 10.0 5.0 0.0\nf 1 2 3\nf 1 3 4\n"
+LIST = "10.0 0.0 0.0\n15.0 0.0 0.0\n15.0 5.0 0.0\n10.0 5.0 0.0\n3 0 1 2\n3 0 2 3\n"
+COORDINATES = "".join(f"property float {axis}\n" for axis in "xyz")
+PLY = f"ply\nformat ascii 1.0\ncomment {{name}}\nelement vertex 4\n{COORDINATES}element face 2\n"
+PLY += f"property list uchar int vertex_indices\nend_header\n{LIST}"
+OFF = f"OFF\n# {{name}}\n4 2 0\n{LIST}"
+TEXTS = {"stl": STL, "obj": OBJ, "ply": PLY, "off": OFF}
+PACKED = np.zeros(2, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+PACKED["corners"][..., :2] = [[(10, 0), (15, 0), (15, 5)], [(10, 0), (15, 5), (10, 5)]]
+
+
+def packed(count=2, head=b"solid"):
+    """Binary STL of the same square."""
+    return head.ljust(80) + count.to_bytes(4, "little") + PACKED.tobytes()
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+@pytest.mark.parametrize(
+    "written",
+    [
+        lambda text: text.format(name="Gr\u00f6\u00dfe").encode("latin-1"),
+        lambda text: text.format(name="\u8868").encode("shift-jis"),  # its second byte is a backslash
+        lambda text: text.format(name="\u8868").encode("utf-16"),
+        lambda text: text.format(name="one vertex 1, end of solid").replace("\n", "\r\n").encode("utf-8-sig"),
+        lambda text: text.format(name="part").replace("\n", "\r").encode(),
+        lambda text: text.format(name="part").replace("10.0", "1.0D+01").replace("15.0", "1.5d1").encode(),
+    ],
+    ids=["latin", "shift-jis", "utf-16", "windows", "macintosh", "fortran"],
+)
+def test_texts_of_other_programs_are_read(tmp_path, monkeypatch, written, kind):
+    monkeypatch.setitem(sys.modules, "charset_normalizer", None)  # trimesh does not install it
+    path = tmp_path / f"part.{kind}"
+    path.write_bytes(written(TEXTS[kind]))
+    mesh = Mesh.read(path, 1e-3)
+    assert mesh.area == pytest.approx([12.5, 12.5]) and mesh.vertices.max(axis=0).tolist() == [15.0, 5.0, 0.0]
+
+
+@pytest.mark.parametrize("content", [packed(), packed() + bytes(500), packed(head="Gr\u00f6\u00dfe".encode("latin-1"))])
+def test_binary_stl_is_told_by_its_size(tmp_path, content):
+    (tmp_path / "part.stl").write_bytes(content)
+    assert Mesh.read(tmp_path / "part.stl", 1e-3).area == pytest.approx([12.5, 12.5])
+
+
+@pytest.mark.parametrize(
+    ("kind", "content", "message"),
+    [
+        ("stl", packed()[:150], "cut, or no STL: no endsolid at its end, and 150 bytes in place of 184"),
+        ("stl", packed(1), "184 bytes in place of 134"),
+        ("stl", packed(0), "184 bytes in place of 84"),
+        ("stl", packed(9), "184 bytes in place of 534"),
+        ("stl", packed(0)[:84], "0 triangles, where at least 1"),
+        ("stl", b"", "0 bytes in place of 84"),
+        ("stl", (STL + STL[:100]).encode(), "cut, or no STL"),
+        ("stl", STL.replace(" 5.0", " nan").encode(), "not all coordinates are finite"),
+        ("stl", STL.replace("5.0", "5,0").encode(), "not all coordinates are numbers"),
+        ("obj", OBJ.replace("5.0", "5,0").encode(), "not all coordinates are numbers"),
+        ("obj", OBJ[:60].encode(), "0 triangles, where at least 1"),
+        ("obj", b"", "0 triangles, where at least 1"),
+        ("ply", b"", "Not a ply file"),
+        ("ply", PLY[:-8].encode(), "1 triangles, where at least 2"),
+        ("off", OFF[:-8].encode(), "1 triangles, where at least 2"),
+        ("step", b"ISO-10303", "no mesh that trimesh reads"),
+    ],
+)
+def test_broken_files_are_refused_in_words(tmp_path, kind, content, message):
+    path = tmp_path / f"part.{kind}"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=rf"path: got .*part.{kind}.*{message}.*; write it again, best as a binary"):
+        Mesh.read(path, 1e-3)
 
 
 def test_triangles_that_are_none_are_left_out(model):

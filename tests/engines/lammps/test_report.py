@@ -1,11 +1,13 @@
 """The energy map of a run in LAMMPS, as other programs read it."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
 from lammps_box import ABOVE, above, flat, numbers, scene, square
 
+import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.lammps import Disc, Mesh, Vibration
 from contactlaw.reporting.surface import areas
@@ -107,3 +109,17 @@ def test_a_report_that_fails_on_rank_0_is_an_error(model, tmp_path):
     lmp.command("run 700")
     walls.report(tmp_path / "out")
     assert "1 impact on 1 wall, gamma-alumina on glass" in (tmp_path / "out/index.html").read_text()
+
+
+def test_an_impact_is_recorded_without_scipy_and_matplotlib(model, tmp_path, monkeypatch):
+    for name in ("scipy", "scipy.spatial", "matplotlib"):
+        monkeypatch.setitem(sys.modules, name, None)
+    lmp, walls = scene(model, None, ABOVE)
+    assert walls.record().rows.size == 0
+    lmp.command("run 700")
+    walls.save(tmp_path / "run.h5")
+    with pytest.raises(ImportError, match="a plot needs matplotlib") as caught:
+        walls.report(tmp_path / "out")
+    kept = tmp_path / "out/record.h5"
+    assert f"`contactlaw report {kept} --out {tmp_path / 'out'}`" in caught.value.__notes__[0]
+    assert cl.read_record(kept).rows.tolist() == cl.read_record(tmp_path / "run.h5").rows.tolist() != []
