@@ -70,7 +70,7 @@ def test_the_distance_from_a_plate_is_that_of_the_nearest_point():
     sides = np.array([0.05 * E[0], 0.02 * E[1]])
     facet = framed([Plate(FOOT, *sides, 1e-3)], [0], 1e-3).facets.view(np.recarray)[0]
     for point in FOOT + np.random.default_rng(5).uniform(-0.06, 0.06, (60, 3)):
-        there = FOOT + lsq_linear(sides.T, point - FOOT, (0.0, 1.0)).x @ sides
+        there = FOOT + lsq_linear(sides.T, point - FOOT, (0.0, 1.0), "bvls", 1e-15).x @ sides
         assert -on_facet(facet, tuple(point), 0.0).x == pytest.approx(np.linalg.norm(point - there), abs=1e-9)
 
 
