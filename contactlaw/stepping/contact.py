@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import NO_MEMORY
 from contactlaw.equation.force import room_for
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
@@ -44,7 +45,7 @@ from contactlaw.stepping.softened import (
     softened_of,
     tangential_push,
 )
-from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact
+from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact, with_memory
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -522,6 +523,12 @@ def state_of(row: Any) -> State:
         row.y2,
         row.x3,
         row.y3,
+        row.x4,
+        row.y4,
+        row.x5,
+        row.y5,
+        row.x6,
+        row.y6,
     )
 
 
@@ -573,7 +580,7 @@ def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k
     for j in range(len(bead.contacts)):
         if j != k and bead.contacts[j].force > 0.0:  # at a right angle, where only friction is shared
             row.y3 = max(row.y3, HELD)
-    return State(0.0, now.largest, now.force, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return with_memory(State(0.0, now.largest, now.force, 0.0, 0.0, 0.0), NO_MEMORY)
 
 
 @kernel
@@ -725,7 +732,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     if not softened:
         row.mobility, row.stiffening, row.strength = state.mobility, state.stiffening, state.strength
         row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
-        row.x3, row.y3 = state.x3, state.y3
+        row.x3, row.y3, row.x4, row.y4 = state.x3, state.y3, state.x4, state.y4
+        row.x5, row.y5, row.x6, row.y6 = state.x5, state.y5, state.x6, state.y6
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]
