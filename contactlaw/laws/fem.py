@@ -414,9 +414,10 @@ def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
     return usual, usual._replace(sphere=sphere, plate=plate)
 
 
-def flow_of_losses(given: Given, found: dict[str, Any] | None = None) -> float:
-    """Factor on E*/sigma_Y of bodies with losses, which flow less."""
-    return math.exp(-(found or fitted())["pressure"] * given.relaxation)
+def flowing(given: Given, found: dict[str, Any]) -> Given:
+    """Bodies as they flow: those with losses flow less, as stronger ones would."""
+    weaker = math.exp(-found["pressure"] * given.relaxation)
+    return given._replace(**{name: weaker * getattr(given, name) for name in _STRENGTHS})
 
 
 def comparable(given: Given) -> list[Given]:
@@ -452,7 +453,9 @@ class HardeningCurves(Curves):
 
         # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
         # strength there would stop the flow again, so that its strain begins before yield, too.
-        taken = taken._replace(start=min(taken.start, _LATEST * root * float(stronger(0.0))))
+        latest = _LATEST * root * float(stronger(0.0))
+        self.corner = math.log(taken.start / latest)  # the law has a corner where this changes its sign
+        taken = taken._replace(start=min(taken.start, latest))
         # yield begins where the compression passes that of the strength there
         first = float(bisect(lambda w: w < root * stronger(w), 0.0, _WIDEST))
         self.scale = first**2
@@ -498,10 +501,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
 def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     """Formulas of a pair's law, as `Law.of` takes them."""
     named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
-    if given.loss_factor:
-        weaker = flow_of_losses(given, found)
-        ratios = {name: weaker * getattr(given, name) for name in _STRENGTHS}
-        given = given._replace(**ratios)
+    given = flowing(given, found)
     curves = (HardeningCurves if given.hardens else Curves)(given, found)
     if curves.ratio and curves.scale > _ELASTIC_BEYOND * deepest(curves.ratio):
         # the bodies are so strong that they would yield only where the law ends

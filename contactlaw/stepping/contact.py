@@ -280,7 +280,8 @@ def _begin(
     law: Array, scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int, spring: Spring, u: float
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
-    row, wall, touch, x = bead.contacts[k], contact.wall, contact.touch, contact.touch.x
+    row, wall, touch = bead.contacts[k], contact.wall, contact.touch
+    x = touch.x - row.plate_displacement
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
@@ -660,6 +661,14 @@ def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: Stat
 
 
 @kernel
+def _leave_dent(law: Array, row: Any, spring: Spring, last: State) -> None:
+    """Let a bead that has hopped sideways off its dent meet a new surface, at the depth of the dent."""
+    dent = at_largest(law, spring, last)
+    row.plate_displacement += dent.residual * dent.scale
+    row.largest_compression = row.mobility = row.stiffening = row.strength = row.reported_loss = 0.0
+
+
+@kernel
 def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
@@ -680,6 +689,11 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass)
     last, softened = state_of(row), scene.softening > 1.0
+    if not softened and last.force == 0.0 < last.largest_compression:
+        way = (dot(v, v) - u * u) * row.duration * row.duration
+        if way > 2.0 * bead.r * last.largest_compression:
+            _leave_dent(law, row, spring, last)
+            last = state_of(row)
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
         edge = _near_edge(scene, bead, contact, plate_row, spring, max(row.approach_speed, u))
