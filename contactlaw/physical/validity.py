@@ -23,9 +23,8 @@ from contactlaw.physical.strengths import without_curves
 
 SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _SLENDER_FEM = 5.8  # R/H for "fem"; TARGETS of `validation.accuracy.acceptance` has its errors
-# How much stiffer than the other a body is that flows: from there on the COR is up to 9 % off (of 0.3,
-# if it is lower) where it flows alone, and up to 3 % where the other one flows first, while that of
-# other bodies is within 2 % (`validation.fem.bodies`).
+# How much stiffer than the other a body is that flows: from there on the COR is up to 7 % off (of 0.3,
+# if it is lower) where it flows alone, while that of other bodies is within 2 % (`validation.fem.bodies`).
 _STIFFEST = 12.0
 # V0/V_Y0 from which on yield matters; our choice, between the 1.5 and 3.5 of our finite elements
 _WELL_YIELDED = 2.0
@@ -200,7 +199,7 @@ _WORDS = {
     Validity.UNTRIED_STRENGTH: (
         "a body yields that is weaker or stronger for its stiffness than the finite elements that "
         "the law is made of, or more than 12 times as stiff as the other",
-        "take the values for estimates: of one much stiffer the COR is 0.04 too low to 0.03 too high, of "
+        "take the values for estimates: of one much stiffer the COR is 0.04 too low to 0.02 too high, of "
         "other strengths the error is not known",
     ),
     Validity.SLIDING_FLOW: (
