@@ -17,7 +17,6 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw.equation.edge import KINDS, SIZE
 
-AT_REST = 1e-4  # added in steps to the slowest weight near edges: beads that lie near a held one come to rest
 REACH = 60.0  # w0 T up to which the response of curved walls and foundations was fitted
 
 
@@ -37,7 +36,7 @@ def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
     powers = poissons_ratio ** np.arange(np.shape(one["weights"])[2])
     weights = np.array(one["weights"]) @ powers
     if size not in sizes:
-        weights[:, 0] += AT_REST
+        weights[:, 0] += 1e-4  # a bead that lies near a held edge comes to rest in steps
     return rates, weights
 
 

@@ -124,7 +124,7 @@ class Largest(NamedTuple):
     peak: float
 
 
-PARTED = State(*[0.0] * len(State._fields))
+PARTED = State(*[0.0] * 18)
 
 
 @kernel(inline=True)
