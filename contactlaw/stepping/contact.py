@@ -372,6 +372,18 @@ def _softened_at_largest(soft: Softened, last: State) -> Largest:
 
 
 @kernel
+def _body_due(bead: Bead, body: Any, mass: float, leaves: float, u: float, duration: float, missing: float) -> float:
+    """Energy [J] that leaves the contact of a body the speed of its true impact, else what is missing.
+
+    A body turns further in a softened contact, and its point is thrown up by no more than this.
+    """
+    reach = math.sqrt(body.arm[0] ** 2 + body.arm[1] ** 2 + body.arm[2] ** 2) + bead.r
+    if abs(leaves + u) <= dot(bead.omega, bead.omega) * reach * duration:
+        return 0.5 * mass * (leaves * leaves - u * u)
+    return missing
+
+
+@kernel
 def _end(
     law: Array,
     scene: WallScene,
@@ -415,7 +427,7 @@ def _end(
     put_down = not (row.approach_speed > 0.0 or row.arrival == HIT_BACK)
     if put_down and row.disturbance != SHARING:
         return 0.0, 0.0, 0.0
-    missing = reported - lost - row.wave_energy - row.work
+    missing = due = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
     extra, leaves, size, damped = (0.0, 0.0, 0.0), -u, 0.0, 0.0
     if sharing >= 0:  # the other contact has the energy that this one lacks
@@ -429,7 +441,11 @@ def _end(
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
         if softened:
-            size = settling_kick(missing, contact.mass, u, row.approach_speed, clock.dt)
+            if body is not None and soft.lasting == BOUNCING and _of_body(contact):
+                due = _body_due(
+                    bead, body[0], contact.mass, soft.restitution * row.approach_speed, u, row.duration, due
+                )
+            size = settling_kick(due, contact.mass, u, row.approach_speed, clock.dt)
         else:
             size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
@@ -438,8 +454,9 @@ def _end(
         if sharing >= 0 and len(bead.friction) > 0:
             bead.friction[sharing].work += bead.friction[k].work
         return extra
+    scheme = missing
     if size != 0.0:
-        missing = 0.0
+        scheme, missing = missing - due, 0.0
     if not touch.face and u < 0.0 and row.disturbance == ALONE:
         around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
         leaves = energy.free_speed(leaves, around, bead.r, touch.x)
@@ -471,7 +488,7 @@ def _end(
         plastic = share * gone
         record.other_energy = (1.0 - share) * gone
     record.plastic_energy, record.wave_energy = plastic, wave
-    record.scheme_energy = missing  # with this error of the steps, the energies of a run add up
+    record.scheme_energy = scheme  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
     record.parcel, record.run, record.run_start = scene.parcel, 0, 0.0
