@@ -2,21 +2,23 @@
 
 import functools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar, overload
 
 import numba
-import numba.core.config
 import numpy as np
-from numba.core.ccallback import CFunc
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 from contactlaw._arrays import Array
-from contactlaw._inner import Inner, InnerCompiler
-from contactlaw._kept import keep
+from contactlaw._kept import code_folder, config, warn_once
 
-config: Any = numba.core.config
-normalize_signature: Any = numba.core.sigutils.normalize_signature
+try:
+    from contactlaw import _numba
+
+    private: Any = _numba
+except (ImportError, AttributeError):  # another version of numba: public names serve
+    private = None
 carray: Any = numba.carray  # type: ignore[attr-defined]
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
@@ -49,16 +51,14 @@ def kernel(
         # which fuses a product with a sum: under all of it isnan(nan) is False. Only kernels that
         # users may pass to C need a C function.
         inner = not (cache or entry or switched_off())
-        options: dict[str, Any] = {
-            "error_model": "numpy",
-            "nogil": True,
-            "fastmath": {"contract"},
-            "forceinline": inline,
-            "no_cfunc_wrapper": cache or inner,
-        }
+        options: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}}
+        if private:
+            options |= {"forceinline": inline, "no_cfunc_wrapper": cache or inner}
+        elif inner:
+            return register_jitable(**options)(python)  # type: ignore[no-any-return, no-untyped-call]
         if inner:
             options |= {"nopython": True, "no_cpython_wrapper": True}
-            return Inner(python, targetoptions=options, pipeline_class=InnerCompiler)  # type: ignore[return-value]
+            return private.Inner(python, targetoptions=options, pipeline_class=private.InnerCompiler)  # type: ignore[no-any-return]
         dispatcher: Any = numba.njit(**options)(python)
         if cache:
             _cached.append(dispatcher)
@@ -94,6 +94,29 @@ def enable_caching() -> None:
         keep(dispatcher)
 
 
+def keep(dispatcher: Any) -> None:
+    """Give a kernel the disk cache, in our folder and in files with checksums."""
+    with numbas_cache_in_ours() as is_there:
+        if is_there:
+            dispatcher.enable_caching()
+            if private:
+                private.seal(dispatcher, warn_once)
+
+
+@contextmanager
+def numbas_cache_in_ours() -> Iterator[bool]:
+    """Let numba make its caches in our folder of machine code, if there is one."""
+    folder = None if config.DISABLE_JIT else code_folder()
+    if folder is None:
+        yield False
+        return
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
+    try:
+        yield True
+    finally:
+        config.CACHE_DIR = before
+
+
 def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = False) -> Any:
     """Compile a function for C; its ``address`` is valid as long as the result lives.
 
@@ -104,7 +127,10 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
     """
     if switched_off():
         raise RuntimeError("numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler")
-    made: Any = CFunc(function, normalize_signature(signature), {}, {"error_model": "numpy"})
+    if not private:
+        with numbas_cache_in_ours() as is_there:
+            return numba.cfunc(signature, cache=cache and is_there, error_model="numpy")(function)
+    made: Any = private.CFunc(function, private.normalize_signature(signature), {}, {"error_model": "numpy"})
     if cache:
         keep(made)
     made.compile()
@@ -117,14 +143,10 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     The entry does not check the types of the arguments, which takes a third of the half a
     microsecond of a call: every argument has to have the type that the signature says.
     """
-    if switched_off():
+    if switched_off() or not private:
         return function
     enable_caching()
-    dispatcher: Any = function
-    types, _ = normalize_signature(signature)
-    # by types, as from other kernels: with a string numba's cache would have it twice
-    dispatcher.compile(types)
-    return dispatcher.overloads[types].entry_point  # type: ignore[no-any-return]
+    return private.entry_point(function, signature)  # type: ignore[no-any-return]
 
 
 def as_python(function: _F) -> _F:

@@ -8,86 +8,26 @@ functions that it calls in other files. Laws are data, so no kernel takes a func
 import contextlib
 import functools
 import hashlib
-import io
 import re
 import shutil
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numba
-import numba.core.config
 from llvmlite import binding as llvm
-from numba.core.caching import IndexDataCacheFile
 
 from contactlaw import _folder
 
-config: Any = numba.core.config
+config: Any = numba.config  # type: ignore[attr-defined]
 _UNUSED = 30 * 86400.0  # [s] after which unused code of another version is deleted
 _MARKER = "last_use_by_contactlaw"  # file in each folder of ours; its time says when that was
 
 
-def keep(dispatcher: Any) -> None:
-    """Give a kernel the disk cache, in our folder and in files with checksums."""
-    folder = None if config.DISABLE_JIT else _code_folder()
-    if folder is None:
-        return
-    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
-    try:
-        dispatcher.enable_caching()
-    finally:
-        config.CACHE_DIR = before
-    cache = dispatcher._cache
-    cache._cache_file.__class__ = _SealedFiles
-    cache.save_overload = functools.partial(_save, cache.save_overload)
-
-
-def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:
-    """Keep machine code, or warn if that fails; numba would raise, and no answer be given."""
-    try:
-        save(signature, data)
-    except OSError as error:
-        _warn_once(str(error))
-
-
-class _SealedFiles(IndexDataCacheFile):
-    """Numba's index and data files, each with the SHA-256 of its content at its end.
-
-    Numba executes whatever bytes it reads. A damaged file counts as missing here: the kernel is
-    compiled again, and the file written anew. Unpickling ends where the content does, so that
-    numba reads a sealed file as if the checksum were not there.
-    """
-
-    @contextlib.contextmanager
-    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
-        content = io.BytesIO()
-        yield content
-        with super()._open_for_write(filepath) as file:
-            file.write(content.getvalue() + hashlib.sha256(content.getbuffer()).digest())
-
-    def _load_index(self) -> Any:
-        whole = _is_whole(self._index_path)
-        return super()._load_index() if whole else {}  # type: ignore[no-untyped-call]
-
-    def _load_data(self, name: str) -> Any:
-        if not _is_whole(self._data_path(name)):  # type: ignore[no-untyped-call]
-            raise OSError("damaged")  # which numba takes for a missing file
-        return super()._load_data(name)  # type: ignore[no-untyped-call]
-
-
-def _is_whole(path: str) -> bool:
-    try:
-        content = Path(path).read_bytes()
-    except OSError:
-        return False
-    return hashlib.sha256(content[:-32]).digest() == content[-32:]
-
-
 @functools.cache
-def _code_folder() -> Path | None:
+def code_folder() -> Path | None:
     """Folder of the machine code, made if missing: in NUMBA_CACHE_DIR if set, else in ours."""
     try:
         home = Path(config.CACHE_DIR) if config.CACHE_DIR else _folder.folder()
@@ -110,7 +50,7 @@ def _code_folder() -> Path | None:
                 print(f"contactlaw: {said}; kept in {home}", file=sys.stderr)
         return folder
     except (OSError, RuntimeError) as error:
-        _warn_once(str(error))
+        warn_once(str(error))
         return None
 
 
@@ -144,14 +84,14 @@ def _sources() -> dict[str, bytes]:
     texts = {path.relative_to(package): path.read_bytes() for path in paths}
     home = {path: Path(path.parts[0]).stem.encode() for path in texts}
     kernels = {home[path] for path, text in texts.items() if b"@kernel" in text}
-    imports = re.compile(rb"^from contactlaw(?:\.| import )(\w+)", re.M)
+    imports = re.compile(rb"^ *from contactlaw(?:\.| import )(\w+)", re.M)
     used = [imports.findall(text) for path, text in texts.items() if home[path] in kernels]
     kernels = kernels.union(*used)
     return {path.as_posix(): text for path, text in texts.items() if home[path] in kernels}
 
 
 @functools.cache
-def _warn_once(reason: str) -> None:
+def warn_once(reason: str) -> None:
     warnings.warn(
         f"numba cannot keep compiled code on disk ({reason}), so each process compiles it anew; "
         "set NUMBA_CACHE_DIR to a writable folder with some megabytes left",

@@ -111,6 +111,12 @@ def _state_at(states: State, n: int) -> State:
         states.y2[n],
         states.x3[n],
         states.y3[n],
+        states.x4[n],
+        states.y4[n],
+        states.x5[n],
+        states.y5[n],
+        states.x6[n],
+        states.y6[n],
     )
 
 
@@ -188,6 +194,8 @@ def _advance_all(
         states.stiffening[n], states.strength[n] = state.stiffening, state.strength
         states.x1[n], states.y1[n], states.x2[n] = state.x1, state.y1, state.x2
         states.y2[n], states.x3[n], states.y3[n] = state.y2, state.x3, state.y3
+        states.x4[n], states.y4[n], states.x5[n] = state.x4, state.y4, state.x5
+        states.y5[n], states.x6[n], states.y6[n] = state.y5, state.x6, state.y6
     return -1
 
 

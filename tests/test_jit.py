@@ -1,5 +1,6 @@
 """Without numba's compiler, and without a folder to keep its code in."""
 
+import ast
 import gc
 import json
 import math
@@ -12,6 +13,7 @@ from pathlib import Path
 from warnings import catch_warnings, simplefilter
 
 import needs
+import numba
 import numpy as np
 import pytest
 from command_line import parsers
@@ -19,10 +21,12 @@ from forked import fill_disk, in_child, lose_home
 from places import ROOT
 
 import contactlaw as cl
-from contactlaw import _folder, _jit, _kept, cli
+from contactlaw import _folder, _jit, _kept, cli, laws
+from contactlaw.equation import force
 from contactlaw.softsphere import Contacts
 from dem_demo.cli import scenes
 
+PRIVATE = ROOT / "contactlaw/_numba.py"
 IMPACT = (12.0, 0.9e-3, 1e-3)
 VALUES = ("restitution", "contact_time", "peak_force", "plastic_fraction", "wave_fraction")
 
@@ -115,6 +119,49 @@ def test_without_the_compiler_all_answers_are_there_and_c_functions_are_refused(
         assert line.startswith("numba is switched off (NUMBA_DISABLE_JIT is set), and ")
 
 
+RENAMED = f"""
+import sys
+sys.path.insert(0, {str(ROOT / "tests/shared")!r})
+import renamed_numba
+from contactlaw import _jit, laws
+from contactlaw.equation import force
+print(_jit.private, force.loading(laws.law("myc").data, 2.5))
+"""
+
+
+def test_without_a_private_name_of_numba_public_names_serve(tmp_path):
+    """CI runs more of the tests like this: python -m pytest -p renamed_numba."""
+    private, load = run(RENAMED, tmp_path).split()
+    assert private == "None"
+    assert float(load) == pytest.approx(force.loading(laws.law("myc").data, 2.5), rel=1e-12)
+
+
+def private_names():
+    """What has to be there when `contactlaw._numba` is imported, or public names serve."""
+    for node in ast.walk(ast.parse(PRIVATE.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("numba."):
+            yield from (f"{node.module}.{one.name}" for one in node.names)
+    for method in ("_open_for_write", "_load_index", "_load_data"):
+        yield f"numba.core.caching.IndexDataCacheFile.{method}"
+    yield "numba.core.codegen.CPUCodeLibrary._get_module_for_linking"
+
+
+@pytest.mark.parametrize("name", [*private_names()])
+def test_a_private_name_that_is_missing_is_noticed_at_once(name, monkeypatch):
+    monkeypatch.delattr(name)
+    with pytest.raises((ImportError, AttributeError), match=name.rpartition(".")[2]):
+        runpy.run_path(str(PRIVATE))
+
+
+def test_private_names_are_taken_of_versions_that_were_tested_alone(monkeypatch):
+    """If numba is newer than any that was tested: run all tests, and raise the number in `_numba`."""
+    assert _jit.private
+    version = numba.version_info
+    monkeypatch.setattr(numba, "version_info", version._replace(short=(version.major, version.minor + 1)))
+    with pytest.raises(ImportError, match="newer than contactlaw was tested with"):
+        runpy.run_path(str(PRIVATE))
+
+
 @pytest.fixture
 def twice(tmp_path, monkeypatch):
     """Call a kernel as the next process would, and tell where its machine code is."""
@@ -125,14 +172,14 @@ def twice(tmp_path, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(tmp_path / "kept"))
 
     def called():
-        for cached in (_kept._code_folder, _kept._warn_once, _folder.is_private):
+        for cached in (_kept.code_folder, _kept.warn_once, _folder.is_private):
             cached.cache_clear()
         kernel = _jit.kernel(cache=True)(python)
         assert kernel(21.0) == 42.0
         return kernel.stats
 
     yield called
-    _kept._code_folder.cache_clear()
+    _kept.code_folder.cache_clear()
 
 
 @pytest.mark.parametrize(
@@ -169,7 +216,7 @@ def test_only_machine_code_that_nobody_uses_is_deleted(tmp_path, monkeypatch):
 
     def used_by(version):
         monkeypatch.setattr(_kept, "fingerprint", lambda: 16 * version)
-        return _kept._code_folder.__wrapped__()
+        return _kept.code_folder.__wrapped__()
 
     unused, used, linked, theirs = map(used_by, "abcd")
     if os.geteuid() == 0:

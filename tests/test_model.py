@@ -205,6 +205,18 @@ def test_settings_of_a_finer_table_are_taken(pair, model, tmp_path, monkeypatch)
     assert [path.suffix for path in tmp_path.glob("*.h5")] == [".h5"]
 
 
+@pytest.mark.parametrize("bodies", [("lead", "stainless-steel-304-ball"), ("natural-rubber", "aluminium-2024-t3")])
+@pytest.mark.parametrize("rtol", [1e-13, 1e-10, 1e-6])
+def test_energies_add_up(bodies, rtol):
+    """Of 60 pairs of the catalogue these had the largest errors."""
+    rng, n = np.random.default_rng(0), 200
+    speed, radius = 10 ** rng.uniform(-1.5, 1.5, n), 10 ** rng.uniform(-3.5, -2.0, n)
+    thickness = radius * 10 ** rng.uniform(-0.5, 1.2, n)
+    hit = cl.ImpactModel(cl.Pair(*bodies), outside="solve").solve(speed, radius, thickness, rtol=rtol)
+    energies = hit.restitution**2 + hit.plastic_fraction + hit.wave_fraction + hit.other_fraction
+    np.testing.assert_allclose(energies, 1.0, atol=500 * rtol)
+
+
 @pytest.mark.parametrize("rtol", [0.0, 1e-5, math.nan, -1e-8, "fine"])
 def test_solve_refuses_a_tolerance_out_of_range(model, rtol):
     with pytest.raises(ValueError, match="rtol: got .*must be a float between"):

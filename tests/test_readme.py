@@ -108,7 +108,7 @@ def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys,
     monkeypatch.chdir(tmp_path)
     Path("impacts.csv").write_text("speed_m/s\n0.5\n1.2\n")
     Path("docs/examples").mkdir(parents=True)
-    for name in ("rebounds.csv", "pom_drops.csv"):
+    for name in ("rebounds.csv", "pom_drops.csv", "phyphox.csv"):
         shutil.copy(ROOT / "docs/examples" / name, "docs/examples")
     Path("rain").mkdir()
     write_rain(Path("rain/rain.h5"), pair)

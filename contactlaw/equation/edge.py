@@ -7,10 +7,10 @@ force. Near an edge the wave that the edge sends back is added:
 
 with s the distance from the edge and b = sqrt(D/(rho2 H)), D the plate's bending stiffness. The sum
 stands for the exact response, a function of t/tau for each kind of edge; that of a free one depends
-on the plate's Poisson's ratio, and on its curvature if it is the rim of a hole. Rates p_k and
-weights c_k are fitted to it by `validation.derivations.edges`: twelve for the equation and six for
-time steps, in which each contact has to keep its z_k. `coupling` is the mobility of a thin plate
-over that of the contact: what returns is a bending wave, however thick the plate is.
+on the plate's Poisson's ratio, and on its curvature if it is the rim of a hole. Twelve rates p_k
+and weights c_k are fitted to it by `validation.derivations.edges`. In time steps each contact keeps
+its z_k. `coupling` is the mobility of a thin plate over that of the contact: what returns is a
+bending wave, however thick the plate is.
 
 The z come in blocks of two, which have two real rates p and p', or the real and the imaginary part
 of a complex one, p + i p'.
@@ -29,7 +29,7 @@ from contactlaw._jit import kernel
 Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""
 KINDS: tuple[str, ...] = get_args(Edge)
-SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
+SIZE = 18  # of half of a response, six numbers: their rates, four for each block, and weights
 LONGEST = 50.0  # [T_H]; contacts that end take up to 25 for lambda up to 1
 _AT_ONCE = 2 * SIZE  # place of the number that `near` adds
 _QUICK = 120.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
@@ -47,13 +47,13 @@ class Memory(NamedTuple):
 
 
 class Memories(NamedTuple):
-    """The memory of the equation."""
+    """The whole memory."""
 
     first: Memory
     second: Memory
 
 
-NO_MEMORY = Memory(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_MEMORY = Memories(Memory(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Memory(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 """The memory at first touch."""
 
 
@@ -99,14 +99,17 @@ def near(edges: Edges | None, n: int, unit: float, rtol: float) -> Array | None:
 @kernel
 def at_touch(response: Array | None) -> Memories | None:
     """Memory at first touch; None for an endless plate."""
-    if response is None:
-        return None
-    return Memories(NO_MEMORY, NO_MEMORY)
+    return None if response is None else NO_MEMORY
 
 
 @kernel(inline=True)
-def weighted(r: Array, at: int, m: Memory) -> float:
-    """Sum over a part of the memory with the weights of the response."""
+def weighted(r: Array, m: Memories) -> float:
+    """Sum over the memory with the weights of the response."""
+    return _half(r, 0, m.first) + _half(r, SIZE, m.second)
+
+
+@kernel(inline=True)
+def _half(r: Array, at: int, m: Memory) -> float:
     first = r[at + 12] * m.x1 + r[at + 13] * m.y1 + r[at + 14] * m.x2
     return float(first + r[at + 15] * m.y2 + r[at + 16] * m.x3 + r[at + 17] * m.y3)
 
@@ -116,8 +119,7 @@ def drive(response: Array | None, f: float, memory: Memories | None) -> float:
     """Speed of the plate over its mobility."""
     if response is None or memory is None:
         return f
-    later = weighted(response, 0, memory.first) + weighted(response, SIZE, memory.second)
-    return float(response[_AT_ONCE] * f + later)
+    return float(response[_AT_ONCE] * f + weighted(response, memory))
 
 
 @kernel

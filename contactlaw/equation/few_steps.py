@@ -17,7 +17,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.edge import LONGEST, NO_MEMORY, SIZE
+from contactlaw.equation.edge import LONGEST, NO_MEMORY
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.recall import recalled, remembered
@@ -45,16 +45,14 @@ def restitution_near(law: Array, response: Array, lam: float, y: float, coupling
     beta, pace, until, error = lam * unit, 0.5 * rate / unit, LONGEST * unit, _ERROR * q_scale
     q, u, f, t, dq, du = 0.0, speed, 0.0, 0.0, speed, 0.0
     ddq = ddu = last = 0.0  # second derivatives, and the step over which they are differences
-    first = second = NO_MEMORY
+    memory = NO_MEMORY
     loading, curve, dm = True, NO_CURVE, 0.0
     h = _FIRST * q_scale / speed
     for _ in range(_MOST):
         guess, guess_u = q + h * (dq + 0.5 * h * ddq), u + h * (du + 0.5 * h * ddu)
         time = h * (q + max(guess, 0.0))
-        one = recalled(response, 0, first, f, pace * time)
-        two = recalled(response, SIZE, second, f, pace * time)
-        back = beta * coupling * (one.known + two.known)
-        gain = beta * (1.0 + coupling * (one.per_force + two.per_force))
+        later = recalled(response, memory, f, pace * time)
+        back, gain = beta * coupling * later.known, beta * (1.0 + coupling * later.per_force)
         x, before, gap_before = guess, q, 0.0
         for n in range(20):
             f_new = _force(law, loading, curve, x)
@@ -84,7 +82,7 @@ def restitution_near(law: Array, response: Array, lam: float, y: float, coupling
             continue
         if parts:
             return min(max(-u_new / speed, 0.0), 1.0)
-        first, second = remembered(one, f_new), remembered(two, f_new)
+        memory = remembered(later, f_new)
         du_new = -2.0 * x * f_new
         ddq, ddu, last = (dq_new - dq) / h, (du_new - du) / h, h
         q, u, f, dq, du = x, u_new, f_new, dq_new, du_new

@@ -8,16 +8,16 @@ from typing import NamedTuple
 
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-from contactlaw.equation.edge import Memory, weighted
+from contactlaw.equation.edge import SIZE, Memories, Memory, weighted
 
 
 class Recalled(NamedTuple):
-    """What six numbers add in a step, of which the force at its end is not known yet."""
+    """What the memory adds in a step, of which the force at its end is not known yet."""
 
     known: float  # sum of c z0
     per_force: float  # sum of c q
-    memory: Memory  # z0
-    gain: Memory  # q
+    memory: Memories  # z0
+    gain: Memories  # q
 
 
 @kernel(inline=True)
@@ -35,22 +35,31 @@ def _block(r: Array, at: int, x: float, y: float, f: float, half: float) -> tupl
 
 
 @kernel
-def recalled(r: Array, at: int, m: Memory, force: float, half: float) -> Recalled:
-    """Compute what a contact's six numbers add in a step of 2 half/tau, from the force before it.
-
-    They are those of the response r from place `at` on.
-    """
-    x1, y1, a1, b1 = _block(r, at, m.x1, m.y1, force, half)
-    x2, y2, a2, b2 = _block(r, at + 4, m.x2, m.y2, force, half)
-    x3, y3, a3, b3 = _block(r, at + 8, m.x3, m.y3, force, half)
-    new, gain = Memory(x1, y1, x2, y2, x3, y3), Memory(a1, b1, a2, b2, a3, b3)
-    return Recalled(weighted(r, at, new), weighted(r, at, gain), new, gain)
+def recalled(r: Array, m: Memories, force: float, half: float) -> Recalled:
+    """Compute what a contact's memory adds in a step of 2 half/tau, from the force before it."""
+    first, per_first = _half(r, 0, m.first, force, half)
+    second, per_second = _half(r, SIZE, m.second, force, half)
+    new, gain = Memories(first, second), Memories(per_first, per_second)
+    return Recalled(weighted(r, new), weighted(r, gain), new, gain)
 
 
 @kernel
-def remembered(found: Recalled, force: float) -> Memory:
+def _half(r: Array, at: int, m: Memory, force: float, half: float) -> tuple[Memory, Memory]:
+    x1, y1, a1, b1 = _block(r, at, m.x1, m.y1, force, half)
+    x2, y2, a2, b2 = _block(r, at + 4, m.x2, m.y2, force, half)
+    x3, y3, a3, b3 = _block(r, at + 8, m.x3, m.y3, force, half)
+    return Memory(x1, y1, x2, y2, x3, y3), Memory(a1, b1, a2, b2, a3, b3)
+
+
+@kernel
+def remembered(found: Recalled, force: float) -> Memories:
     """Memory at the end of a step, from the force there."""
     z, q = found.memory, found.gain
+    return Memories(_after(z.first, q.first, force), _after(z.second, q.second, force))
+
+
+@kernel(inline=True)
+def _after(z: Memory, q: Memory, force: float) -> Memory:
     return Memory(
         z.x1 + q.x1 * force,
         z.y1 + q.y1 * force,

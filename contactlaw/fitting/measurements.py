@@ -15,6 +15,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.fitting.drops import NAMES, rebounds_of
 from contactlaw.physical import flight
 from contactlaw.physical.arguments import broadcast, check, within
+from contactlaw.physical.kind import Kind
 from contactlaw.record.file import Record
 
 
@@ -173,7 +174,7 @@ class Measurements:
         a bead of this `density` [kg/m3] in air; without it there is no air.
 
         Of the record of a run these are the COR of its impacts on walls, with the sizes that are
-        not `unknown`; `line` is the number of the row.
+        not `unknown`; `line` is the number of the row. Impacts of clumps are left out with a warning.
 
         Raises
         ------
@@ -185,19 +186,24 @@ class Measurements:
         if isinstance(data, Measurements):
             return data
         if isinstance(data, Record):
-            line = np.flatnonzero(data.impact & (data.rows["plate"] >= 0))
-            names = {"restitution", "radius", "thickness"} & {*(data.rows.dtype.names or ())} - {*unknown}
+            columns = {*(data.rows.dtype.names or ())}
+            of_body = data.rows["kind"] == Kind.OF_BODY if "kind" in columns else False
+            if np.any(of_body):
+                reason = "a fit takes beads as solid spheres"
+                warnings.warn(f"data: {np.sum(of_body)} impacts of rigid bodies are left out: {reason}", stacklevel=4)
+            line = np.flatnonzero(data.impact & (data.rows["plate"] >= 0) & ~np.asarray(of_body))
+            names = {"restitution", "radius", "thickness"} & columns - {*unknown}
             named = {name: data.rows[name][line] for name in names}
             return cls(data.rows["approach_speed"][line], **named, line=line)
         if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
             raise TypeError(f"data: expected Measurements, a Record or a mapping of names, got {data!r}")
         known = [field.name for field in fields(cls)]
-        columns = rebounds_of({str(name): _missing(data[name]) for name in data.keys()}, density)  # noqa: SIM118
-        wrong = [name for name in columns if name not in known]
-        if wrong or "speed" not in columns:
+        named = rebounds_of({str(name): _missing(data[name]) for name in data.keys()}, density)  # noqa: SIM118
+        wrong = [name for name in named if name not in known]
+        if wrong or "speed" not in named:
             what = f"does not know {', '.join(map(repr, wrong))}" if wrong else "lacks 'speed'"
             raise ArgumentError("data", None, f"{what}; names are {', '.join(known)}, {NAMES}")
-        return cls(**columns)
+        return cls(**named)
 
 
 def _missing(values: ArrayLike) -> ArrayLike:

@@ -21,10 +21,11 @@ In deeper contacts flattened spheres and indented plates differ:
 and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear
 in Poisson's ratio and, but for deep contacts, in the modulus of the body that yields, each for
 three cases: the sphere yields, the plate, or both alike. v has one more term, for the waves within
-the sphere that keep it vibrating. Where one body is stronger by a factor 1/z, the answer lies
-between that of both alike and that of the weaker body alone, by a share that falls from 1 at z = 1
-to 0 at z = 0.36: the weaker body presses on the other with at most 3 times its own yield strength,
-and the other yields at a mean pressure of 1.07 times its own. Poisson's ratios are weighted by each
+the sphere that keep it vibrating; it is that of a sphere 6 times as stiff as the plate where the
+sphere is stiffer than that. Where one body is stronger by a factor 1/z, the answer lies between
+that of both alike and that of the weaker body alone, by a share that falls from 1 at z = 1 to 0 at
+z = 0.36: the weaker body presses on the other with at most 3 times its own yield strength, and the
+other yields at a mean pressure of 1.07 times its own. Poisson's ratios are weighted by each
 body's share of the flow, a half at equal strengths, so that nothing jumps where another body
 becomes the weaker one.
 
@@ -200,10 +201,11 @@ class Given(NamedTuple):
         mean = flow["sphere"] * self.poissons_ratio + flow["plate"] * self.plate_poissons_ratio
         return yield_scale(self.ratio, mean)
 
-    def weights(self, blend: float) -> dict[tuple[str, str], float]:
+    def weights(self, blend: float, stiffest: float = 1.0) -> dict[tuple[str, str], float]:
         """Weights of the tables of coefficients, by which body yields and the term of the sum.
 
-        If both yield alike they share the flow, so their moduli have no term.
+        If both yield alike they share the flow, so their moduli have no term. Beyond the modulus
+        share `stiffest` the term of the waves in the sphere falls no more.
         """
         share_both, flow = self.share_both(blend), self.flow(blend)
         own = self.modulus_share if self.weaker == "sphere" else 1.0 - self.modulus_share
@@ -217,7 +219,7 @@ class Given(NamedTuple):
                 for body, nu in ratios.items()
             },
             # a wave crosses the sphere in a share of the contact time that goes as sqrt(E*/E1')
-            ("any", "vibration"): math.sqrt(1.0 - self.modulus_share),
+            ("any", "vibration"): math.sqrt(1.0 - min(self.modulus_share, stiffest)),
         }
 
 
@@ -269,7 +271,7 @@ class Curves:
         self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
-        weights = given.weights(blend)
+        weights = given.weights(blend, found["stiffest"])
         for name, cases in found["curves"].items():
             terms = np.zeros((2, *_POWERS))
             for (case, part), weight in weights.items():
@@ -414,9 +416,10 @@ def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
     return usual, usual._replace(sphere=sphere, plate=plate)
 
 
-def flow_of_losses(given: Given, found: dict[str, Any] | None = None) -> float:
-    """Factor on E*/sigma_Y of bodies with losses, which flow less."""
-    return math.exp(-(found or fitted())["pressure"] * given.relaxation)
+def flowing(given: Given, found: dict[str, Any]) -> Given:
+    """Bodies as they flow: those with losses flow less, as stronger ones would."""
+    weaker = math.exp(-found["pressure"] * given.relaxation)
+    return given._replace(**{name: weaker * getattr(given, name) for name in _STRENGTHS})
 
 
 def comparable(given: Given) -> list[Given]:
@@ -452,7 +455,9 @@ class HardeningCurves(Curves):
 
         # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
         # strength there would stop the flow again, so that its strain begins before yield, too.
-        taken = taken._replace(start=min(taken.start, _LATEST * root * float(stronger(0.0))))
+        latest = _LATEST * root * float(stronger(0.0))
+        self.corner = math.log(taken.start / latest)  # the law has a corner where this changes its sign
+        taken = taken._replace(start=min(taken.start, latest))
         # yield begins where the compression passes that of the strength there
         first = float(bisect(lambda w: w < root * stronger(w), 0.0, _WIDEST))
         self.scale = first**2
@@ -498,10 +503,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
 def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     """Formulas of a pair's law, as `Law.of` takes them."""
     named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
-    if given.loss_factor:
-        weaker = flow_of_losses(given, found)
-        ratios = {name: weaker * getattr(given, name) for name in _STRENGTHS}
-        given = given._replace(**ratios)
+    given = flowing(given, found)
     curves = (HardeningCurves if given.hardens else Curves)(given, found)
     if curves.ratio and curves.scale > _ELASTIC_BEYOND * deepest(curves.ratio):
         # the bodies are so strong that they would yield only where the law ends

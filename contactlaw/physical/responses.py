@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw.equation.edge import KINDS
+from contactlaw.equation.edge import KINDS, SIZE
 
 REACH = 60.0  # w0 T up to which the response of curved walls and foundations was fitted
 
@@ -29,29 +29,28 @@ def _fitted() -> Any:
 @functools.cache
 def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
     """Rates, four for each block, and weights, for all shares."""
-    one = _fitted()["responses"][kind][size]
+    sizes = _fitted()["responses"][kind]
+    one = sizes.get(size, sizes["equation"])
     p, second, turn = np.moveaxis(np.array(one["rates"]), -1, 0)
     rates = np.stack([p, second, turn, np.where(turn > 0.0, turn, second)], axis=-1)
     powers = poissons_ratio ** np.arange(np.shape(one["weights"])[2])
-    return rates, np.array(one["weights"]) @ powers
+    weights = np.array(one["weights"]) @ powers
+    if size not in sizes:
+        weights[:, 0] += 1e-4  # a bead that lies near a held edge comes to rest in steps
+    return rates, weights
 
 
 def response_of(
     kind: str, poissons_ratio: float, share: Any = 0.0, size: Literal["equation", "steps"] = "equation"
 ) -> Array:
-    """Responses in units of tau, in parts of `SIZE`: for the equation two, else one.
+    """Responses in units of tau, in parts of `SIZE`: two, or of curved walls in steps one.
 
     Kinds are those of edges, "sphere" and "cylinder".
-    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge. For steps
-    the response is that of the nearest of the shares that were fitted, each with its own rates.
+    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge.
     """
     rates, weights = _table(kind, poissons_ratio, size)
     shares, given = np.array(_fitted()["shares"]), np.asarray(share, float)
-    if size == "steps":
-        middles = 0.5 * (shares[2:-1] + shares[1:-2]) if kind == "free" else []
-        place = np.searchsorted(np.append(0.5 * shares[1:2], middles)[: len(weights) - 1], given)
-        rates, each = rates[place], weights[place]
-    elif kind == "free":  # a hole without radius is none
+    if kind == "free":  # a hole without radius is none
         weights = np.vstack([weights, np.zeros_like(weights[:1])])
         each = np.stack([np.interp(given, shares, column) for column in weights.T], axis=-1)
     else:
@@ -72,6 +71,5 @@ RESPONSES = CYLINDER + 1
 def responses_of(poissons_ratio: float) -> Array:
     """Responses in steps: near a straight edge of each kind, near rims of holes, of curved walls."""
     straight = [response_of(kind, poissons_ratio, size="steps") for kind in KINDS]
-    rims = [response_of("free", poissons_ratio, share, "steps") for share in RIMS]
-    curved = [response_of(kind, poissons_ratio, size="steps") for kind in ("sphere", "cylinder")]
-    return np.array(straight + rims + curved)
+    curved = [np.pad(response_of(kind, poissons_ratio, size="steps"), (0, SIZE)) for kind in ("sphere", "cylinder")]
+    return np.array([*straight, *response_of("free", poissons_ratio, RIMS, "steps"), *curved])

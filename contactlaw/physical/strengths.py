@@ -188,10 +188,10 @@ def knots(
         last = bisect(lambda one: _yields(pair, one), least, last)
     logs = np.linspace(least, last, 2 + int((last - least) / _TRIED))
     inner: list[float] = []
-    for values in np.array([_corners(pair, one) for one in logs]).T:
-        (before,) = np.nonzero(values[:-1] * values[1:] < 0.0)
-        share = values[before] / (values[before] - values[before + 1])
-        inner += (logs[before] + share * (logs[1] - logs[0])).tolist()
+    values = np.array([_corners(pair, one) for one in logs])
+    for n, k in np.argwhere(values[:-1] * values[1:] < 0.0):
+        before = functools.partial(_same_sign, pair, k, values[n, k])
+        inner.append(bisect(before, logs[n], logs[n + 1]))
     flows = rate.flows(pair)
     starts = {round(math.log(flow.factor(one.rate0)), 9) for one in flows}
     ends = [least, last, *(one for one in starts if least + _CLOSE < one < last - _CLOSE)]
@@ -217,13 +217,16 @@ def _yields(pair: Pair, log_factor: float) -> bool:
     return formulas_at(pair, log_factor)["yield_coefficient"] is not None
 
 
+def _same_sign(pair: Pair, k: int, value: float, log_factor: float) -> bool:
+    return _corners(pair, log_factor)[k] * value > 0.0
+
+
 def _corners(pair: Pair, log_factor: float) -> list[float]:
     """Numbers that change their signs at corners of the law."""
-    found, given = [], _given(pair, log_factor)
-    weaker = [1.0, fem.flow_of_losses(given)] if given.loss_factor else [1.0]
+    given = fem.flowing(_given(pair, log_factor), fem.fitted())
+    found = [fem.HardeningCurves(given).corner] if given.hardens else []
     for one in fem.comparable(given):
-        limits = [at / factor for at in (*RATIOS, *_DEEPEST) for factor in weaker]
-        found += [math.log(one.ratio / at) for at in limits]
+        found += [math.log(one.ratio / at) for at in (*RATIOS, *_DEEPEST)]
         if min(one[:2]) > 0.0:
             found += [math.log(one[0] / one[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
     return found

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import NO_MEMORY
 from contactlaw.equation.force import room_for
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
@@ -44,7 +45,7 @@ from contactlaw.stepping.softened import (
     softened_of,
     tangential_push,
 )
-from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact
+from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact, with_memory
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -279,7 +280,8 @@ def _begin(
     law: Array, scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int, spring: Spring, u: float
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
-    row, wall, touch, x = bead.contacts[k], contact.wall, contact.touch, contact.touch.x
+    row, wall, touch = bead.contacts[k], contact.wall, contact.touch
+    x = touch.x - row.plate_displacement
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
@@ -370,6 +372,18 @@ def _softened_at_largest(soft: Softened, last: State) -> Largest:
 
 
 @kernel
+def _body_due(bead: Bead, body: Any, mass: float, leaves: float, u: float, duration: float, missing: float) -> float:
+    """Energy [J] that leaves the contact of a body the speed of its true impact, else what is missing.
+
+    A body turns further in a softened contact, and its point is thrown up by no more than this.
+    """
+    reach = math.sqrt(body.arm[0] ** 2 + body.arm[1] ** 2 + body.arm[2] ** 2) + bead.r
+    if abs(leaves + u) <= dot(bead.omega, bead.omega) * reach * duration:
+        return 0.5 * mass * (leaves * leaves - u * u)
+    return missing
+
+
+@kernel
 def _end(
     law: Array,
     scene: WallScene,
@@ -413,7 +427,7 @@ def _end(
     put_down = not (row.approach_speed > 0.0 or row.arrival == HIT_BACK)
     if put_down and row.disturbance != SHARING:
         return 0.0, 0.0, 0.0
-    missing = reported - lost - row.wave_energy - row.work
+    missing = due = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
     extra, leaves, size, damped = (0.0, 0.0, 0.0), -u, 0.0, 0.0
     if sharing >= 0:  # the other contact has the energy that this one lacks
@@ -427,7 +441,11 @@ def _end(
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
         if softened:
-            size = settling_kick(missing, contact.mass, u, row.approach_speed, clock.dt)
+            if body is not None and soft.lasting == BOUNCING and _of_body(contact):
+                due = _body_due(
+                    bead, body[0], contact.mass, soft.restitution * row.approach_speed, u, row.duration, due
+                )
+            size = settling_kick(due, contact.mass, u, row.approach_speed, clock.dt)
         else:
             size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
@@ -436,8 +454,9 @@ def _end(
         if sharing >= 0 and len(bead.friction) > 0:
             bead.friction[sharing].work += bead.friction[k].work
         return extra
+    scheme = missing
     if size != 0.0:
-        missing = 0.0
+        scheme, missing = missing - due, 0.0
     if not touch.face and u < 0.0 and row.disturbance == ALONE:
         around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
         leaves = energy.free_speed(leaves, around, bead.r, touch.x)
@@ -469,7 +488,7 @@ def _end(
         plastic = share * gone
         record.other_energy = (1.0 - share) * gone
     record.plastic_energy, record.wave_energy = plastic, wave
-    record.scheme_energy = missing  # with this error of the steps, the energies of a run add up
+    record.scheme_energy = scheme  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
     record.parcel, record.run, record.run_start = scene.parcel, 0, 0.0
@@ -522,6 +541,12 @@ def state_of(row: Any) -> State:
         row.y2,
         row.x3,
         row.y3,
+        row.x4,
+        row.y4,
+        row.x5,
+        row.y5,
+        row.x6,
+        row.y6,
     )
 
 
@@ -573,7 +598,7 @@ def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k
     for j in range(len(bead.contacts)):
         if j != k and bead.contacts[j].force > 0.0:  # at a right angle, where only friction is shared
             row.y3 = max(row.y3, HELD)
-    return State(0.0, now.largest, now.force, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return with_memory(State(0.0, now.largest, now.force, 0.0, 0.0, 0.0), NO_MEMORY)
 
 
 @kernel
@@ -653,6 +678,14 @@ def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: Stat
 
 
 @kernel
+def _leave_dent(law: Array, row: Any, spring: Spring, last: State) -> None:
+    """Let a bead that has hopped sideways off its dent meet a new surface, at the depth of the dent."""
+    dent = at_largest(law, spring, last)
+    row.plate_displacement += dent.residual * dent.scale
+    row.largest_compression = row.mobility = row.stiffening = row.strength = row.reported_loss = 0.0
+
+
+@kernel
 def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
@@ -673,6 +706,11 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass)
     last, softened = state_of(row), scene.softening > 1.0
+    if not softened and last.force == 0.0 < last.largest_compression:
+        way = (dot(v, v) - u * u) * row.duration * row.duration
+        if way > 2.0 * bead.r * last.largest_compression:
+            _leave_dent(law, row, spring, last)
+            last = state_of(row)
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
         edge = _near_edge(scene, bead, contact, plate_row, spring, max(row.approach_speed, u))
@@ -725,7 +763,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     if not softened:
         row.mobility, row.stiffening, row.strength = state.mobility, state.stiffening, state.strength
         row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
-        row.x3, row.y3 = state.x3, state.y3
+        row.x3, row.y3, row.x4, row.y4 = state.x3, state.y3, state.x4, state.y4
+        row.x5, row.y5, row.x6, row.y6 = state.x5, state.y5, state.x6, state.y6
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]

@@ -1,6 +1,6 @@
 """The memory of a plate near an edge, step by step; see `contactlaw.equation.edge`.
 
-The six numbers z of a contact follow the force as in `contactlaw.equation.recall`. The edge adds
+The numbers z of a contact follow the force as in `contactlaw.equation.recall`. The edge adds
 alpha dt sum(c (z + z'))/2 to the displacement of the plate, alpha that of a thin one.
 """
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import recall
-from contactlaw.equation.edge import KINDS, NO_MEMORY, Memory
+from contactlaw.equation.edge import KINDS, NO_MEMORY, Memories
 from contactlaw.equation.edge import weighted as weighted_sum
 from contactlaw.equation.recall import Recalled
 from contactlaw.physical.materials import Material
@@ -54,7 +54,7 @@ def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
 
 @kernel
 def place_of(kind: int, distance: float, hole: float, thickness: float) -> int:
-    """Place among the responses in steps of the nearest share; the kind is its number in `KINDS`.
+    """Place of the nearest share among `responses_of`; the kind is its number in `KINDS`.
 
     Most neighbours differ by a quarter in the radius, so that the COR errs by up to 1 %.
     """
@@ -71,19 +71,19 @@ def place_of(kind: int, distance: float, hole: float, thickness: float) -> int:
 
 
 @kernel
-def weighted(near: EdgeEcho | None, m: Memory) -> float:
+def weighted(near: EdgeEcho | None, m: Memories) -> float:
     """Speed that the edge adds, over the mobility of a thin plate [N]."""
     if near is None:
         return 0.0
-    return weighted_sum(near.response, 0, m)
+    return weighted_sum(near.response, m)
 
 
 @kernel
-def recalled(near: EdgeEcho | None, m: Memory, force: float, step: float) -> Recalled:
+def recalled(near: EdgeEcho | None, m: Memories, force: float, step: float) -> Recalled:
     """Say what the memory adds at both ends of a step [s], from the force at its beginning."""
     if near is None:
         return NOTHING
     if near.rate == 0.0:
         return NOTHING
-    after = recall.recalled(near.response, 0, m, force, 0.5 * step * near.rate)
+    after = recall.recalled(near.response, m, force, 0.5 * step * near.rate)
     return Recalled(weighted(near, m) + after.known, after.per_force, after.memory, after.gain)

@@ -56,7 +56,7 @@ PLATE_ROW = np.dtype(
     + [("thickness", "f8")]
     + [(name, "i8" if "int" in str(kind) else "f8") for name, kind in Limits.__annotations__.items()]
     # how a plate's edges act, see `responses_of`, and by what its bending waves scale [m/s]
-    + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8"), ("shell_speed", "f8")]
+    + [("responses", "f8", (RESPONSES, 2 * SIZE)), ("wave_path", "f8"), ("shell_speed", "f8")]
     # frequency [1/s] and response of what swings on flat facets; what flags of layers need
     + [("swing", "f8"), ("swing_place", "i8"), *((name, "f8") for name in ("top", "softest", "pitch", "wave_of_all"))]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates

@@ -160,7 +160,10 @@ def advance_softened(
     if now.force > 0.0 and state.force == 0.0:  # a new impact, perhaps in the dent of another
         work, lost, damped = 0.0, (1.0 - restitution * restitution) * state.stored, 0.0
     damped = 1.0 if now.damped else damped
-    work -= 0.5 * (state.force + now.force) * path
+    if state.largest > 0.0 or state.overlap < 0.0:
+        work -= 0.5 * (state.force + now.force) * path
+    if state.work == 0.0:  # the gap before the first step was unknown: its path follows from the second's
+        work -= 0.5 * state.force * (path + step * step * state.force / mass)
     stored, kick = state.stored, 0.0
     if now.largest > state.largest:
         stored = lost - work + 0.5 * mass * u * (u - step * now.force / mass)

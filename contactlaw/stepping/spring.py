@@ -1,7 +1,7 @@
 """Normal force of a sphere on a plate, step by step.
 
 In each step an engine knows the overlap of the sphere with the undeformed plate; `advance` gives
-the force and keeps five numbers per contact, `State`, and near an edge of the plate six more
+the force and keeps five numbers per contact, `State`, and near an edge of the plate twelve more
 (`contactlaw.stepping.edge`). The plate's displacement u2 is advanced by the trapezoidal rule,
 implicit in the force F' at the end of the step,
 
@@ -43,7 +43,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
-from contactlaw.equation.edge import Memory
+from contactlaw.equation.edge import Memories, Memory
 from contactlaw.equation.force import UnloadingCurve, at_strength, growth_at, room_for
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import (
@@ -92,6 +92,12 @@ class State(NamedTuple):
     y2: Any = 0.0
     x3: Any = 0.0
     y3: Any = 0.0
+    x4: Any = 0.0
+    y4: Any = 0.0
+    x5: Any = 0.0
+    y5: Any = 0.0
+    x6: Any = 0.0
+    y6: Any = 0.0
 
 
 class Spring(NamedTuple):
@@ -118,12 +124,13 @@ class Largest(NamedTuple):
     peak: float
 
 
-PARTED = State(*[0.0] * 12)
+PARTED = State(*[0.0] * 18)
 
 
 @kernel(inline=True)
-def with_memory(state: State, m: Memory) -> State:
+def with_memory(state: State, m: Memories) -> State:
     """State with this memory of the plate."""
+    one, two = m.first, m.second
     return State(
         state.plate_displacement,
         state.largest_compression,
@@ -131,19 +138,28 @@ def with_memory(state: State, m: Memory) -> State:
         state.mobility,
         state.stiffening,
         state.strength,
-        m.x1,
-        m.y1,
-        m.x2,
-        m.y2,
-        m.x3,
-        m.y3,
+        one.x1,
+        one.y1,
+        one.x2,
+        one.y2,
+        one.x3,
+        one.y3,
+        two.x1,
+        two.y1,
+        two.x2,
+        two.y2,
+        two.x3,
+        two.y3,
     )
 
 
 @kernel(inline=True)
-def memory_of(state: State) -> Memory:
+def memory_of(state: State) -> Memories:
     """Memory of the plate."""
-    return Memory(state.x1, state.y1, state.x2, state.y2, state.x3, state.y3)
+    return Memories(
+        Memory(state.x1, state.y1, state.x2, state.y2, state.x3, state.y3),
+        Memory(state.x4, state.y4, state.x5, state.y5, state.x6, state.y6),
+    )
 
 
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:

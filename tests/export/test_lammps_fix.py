@@ -209,7 +209,7 @@ def test_a_restart_goes_on_in_mid_contact(ranks, built, deck, tmp_path):
 
 def test_files_that_a_run_on_more_ranks_has_left_are_refused(built, deck, tmp_path):
     text = script("deck", deck, "friction 0.3", STEPS // 3)
-    found(built, tmp_path, text, ranks=2)
+    found(built, tmp_path, text.replace("region box", "processors 2 1 1\nregion box"), ranks=2)
     with pytest.raises(ValueError, match=r"hits.1.npy: .*hits.0.npy is of another run.* earlier one, as .*hits.1.npy"):
         found(built, tmp_path, text)
 

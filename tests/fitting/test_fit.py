@@ -25,6 +25,7 @@ from contactlaw.fitting.measurements import Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
 from contactlaw.physical.law import law_of
+from contactlaw.record.columns import IMPACT
 from validation.inverse import coverage, elements, model
 
 
@@ -410,6 +411,15 @@ def test_things_that_are_no_data():
         cl.fit(STEEL, [1.0, 2.0], "thickness")
     with pytest.raises(TypeError, match="pair: expected"):
         cl.fit(("steel", "glass"), {}, "thickness")
+
+
+def test_of_a_record_clumps_are_left_out():
+    """Their COR is that of the mass at the contact, which a fit does not take."""
+    rows = np.ones(3, IMPACT)
+    rows["kind"], rows["plate"], rows["restitution"] = [0, 6, 0], 0, [0.5, 0.6, 0.7]
+    with pytest.warns(UserWarning, match="data: 1 impacts of rigid bodies are left out"):
+        measured = cl.Measurements.of(cl.Record(rows))
+    assert measured.restitution.tolist() == [0.5, 0.7] and measured.line.tolist() == [0, 2]
 
 
 def test_numbers_of_rebounds_are_listed():

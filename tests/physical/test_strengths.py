@@ -11,7 +11,7 @@ from contactlaw.equation import force
 from contactlaw.laws.fem import RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import law_for_pair
-from contactlaw.physical.strengths import COARSE, USUAL, by_strength, knots
+from contactlaw.physical.strengths import COARSE, USUAL, by_strength, formulas_at, knots
 
 COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", rate=(0.025, 1.0))
 HARD = cl.Material("hard", 200e9, 0.3, 7800, 3e9, kind="metal", rate=(0.2, 1.0))
@@ -83,6 +83,35 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
         exact = cl.ImpactModel(rate.strengthened(pair, factor)).solve(v[n], r[n], 2.0 * r[n])
         assert found.restitution[n] == pytest.approx(exact.restitution, abs=2e-6)
         assert found.flags[n] == exact.flags
+
+
+@pytest.mark.parametrize(
+    ("sphere", "plate"),
+    [
+        # The strain begins before yield at small strengths, and not at larger ones.
+        (
+            metal(2.1235e9, 0.2356, 2889, 4.8614e6, rate=(0.04933, 0.01037)),
+            metal(5.9647e9, 0.3594, 1332, 6.9909e6, hardening=(8.7117e6, 0.482), loss_factor=(0.01086, 1e3)),
+        ),
+        # The strengths are alike at three places within 0.003.
+        (
+            metal(41.7e9, 0.296, 9687, 62.72e6, hardening=(48.39e6, 0.6367), rate=(0.00507, 0.00328)),
+            metal(40.53e9, 0.2916, 1192, 55.6e6, hardening=(183.5e6, 0.666), rate=(0.05375, 0.00355)),
+        ),
+    ],
+    ids=["start", "alike"],
+)
+def test_no_corner_is_missed(sphere, plate):
+    pair = cl.Pair(sphere, plate)
+    model = cl.ImpactModel(pair, outside="solve")
+    law, laws = model.force_law, by_strength(pair, model.force_law)
+    for strength in np.linspace(0.0, force.tops(laws)[-1], 300):
+        scale = formulas_at(pair, strength)["scale"]
+        assert force.growth_at(laws, strength) * law.scale == pytest.approx(scale, rel=2e-5)
+    speed = np.geomspace(0.03, 20.0, 60)
+    hit = model.solve(speed, 1e-3, 5e-3)
+    energies = hit.restitution**2 + hit.plastic_fraction + hit.wave_fraction + hit.other_fraction
+    np.testing.assert_allclose(energies, 1.0, atol=1e-6)
 
 
 def test_a_table_may_end_next_to_a_corner():

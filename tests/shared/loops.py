@@ -3,7 +3,7 @@
 import numba
 import numpy as np
 
-from contactlaw import _kept
+from contactlaw import _jit
 from contactlaw.stepping import Bead, Clock, interact
 from contactlaw.walls import move
 
@@ -11,7 +11,7 @@ from contactlaw.walls import move
 def loop(function):
     """Compile a loop that calls contactlaw alone: the folder's name is a hash of its sources."""
     made = numba.njit(function)
-    _kept.keep(made)
+    _jit.keep(made)
     return made
 
 

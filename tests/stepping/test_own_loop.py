@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from loops import loop, press
+from loops import fly, loop, press
 from places import ROOT
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT
 from contactlaw.stepping import WallContacts
-from contactlaw.walls import Mesh, Plate
+from contactlaw.walls import Mesh, Plate, Sphere
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
@@ -94,6 +94,20 @@ def test_an_impact_in_a_dent_does_not_know_the_last_ones_friction():
     assert depth > 1e-6
     assert len(walls.collisions()) == 2
     assert along == 0.0
+
+
+def test_a_bead_that_hops_along_does_not_come_down_in_its_dent():
+    """Its hops along the inside of a sphere soon are lower than its first dent is deep."""
+    model, r, a, dt = cl.ImpactModel(cl.Pair("lead", "glass"), outside="solve"), 1e-3, 0.02, 8e-7
+    walls = WallContacts([Sphere((0.0, 0.0, 0.0), a, 2e-3)], model, r, np.zeros(99, IMPACT))
+    mass, still = 4 / 3 * math.pi * r**3 * model.pair.sphere.density, np.zeros(3)
+    x, v = np.array([0.0, 0.0, -0.98 * (a - r)]), np.array([2.0, 0.0, 0.0])
+    memory = (rows for (rows,) in walls.memory(1))
+    fly(walls.scene, *memory, x, v, np.zeros(3), mass, r, still, dt, 3750, still, -1)
+    rows = walls.collisions()[:3]
+    hit = model.solve(rows["approach_speed"], r, 2e-3)
+    assert rows["approach_speed"][2] < 0.03
+    assert rows["restitution"] == pytest.approx(hit.restitution, abs=0.06)
 
 
 @pytest.mark.parametrize("speed", [0.0, 1e-20, 1e-300])

@@ -278,7 +278,7 @@ def test_a_folder_that_others_may_write_is_not_used(place, expected, monkeypatch
     monkeypatch.setattr(_kept.config, "CACHE_DIR", "")
     with pytest.warns(UserWarning, match=f"{place} is not used.*chmod go-w") as said:
         assert same(cache.cached(MYC, SMALL), expected)
-        assert cache.folder() is None and _kept._code_folder.__wrapped__() is None
+        assert cache.folder() is None and _kept.code_folder.__wrapped__() is None
     assert len(said) == 1 and list(place.iterdir()) == []
 
 
@@ -286,12 +286,12 @@ def test_the_folder_of_machine_code_is_the_users_alone(tmp_path, monkeypatch):
     """It may be in one for all, as /tmp, where nobody else can replace it."""
     tmp_path.chmod(0o1777)
     monkeypatch.setattr(_kept.config, "CACHE_DIR", str(tmp_path))
-    folder = _kept._code_folder.__wrapped__()
+    folder = _kept.code_folder.__wrapped__()
     assert folder.stat().st_mode & 0o777 == 0o700
     folder.chmod(0o770)
     _folder.is_private.cache_clear()
     with pytest.warns(UserWarning, match=f"{folder} is not used"):
-        assert _kept._code_folder.__wrapped__() is None
+        assert _kept.code_folder.__wrapped__() is None
 
 
 def test_progress_is_quiet_without_a_terminal(capfd):

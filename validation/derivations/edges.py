@@ -56,7 +56,6 @@ RADII = (
 _TIMES = np.linspace(0.02, 1.0, 50)  # over the duration
 _FORCE = np.sin(math.pi * _TIMES) ** 2
 RATIOS = 0.0, 0.25, 0.5  # Poisson's ratios of the fit; between them weights are parabolas
-_LARGEST = 60.0  # radius of a hole with six numbers of its own
 _DAMPED = 0.3  # least real part of a complex rate, over its imaginary part
 _NODES = np.polynomial.legendre.leggauss(400)
 
@@ -224,8 +223,8 @@ def weights(rates: list[complex], kind: str, poisson: float, radius: float) -> t
     return found, matrix @ found - wanted
 
 
-def fitted_rates(kind: str, rates: list[complex], radius: float = math.inf) -> list[complex]:
-    """Rates by least squares of the errors; of a free edge at all ratios."""
+def fitted_rates(kind: str, rates: list[complex]) -> list[complex]:
+    """Rates of a straight edge by least squares of the errors; of a free one at all ratios."""
     turns = [bool(rate.imag) for rate in rates]
     ratios = RATIOS if kind == "free" else RATIOS[:1]
 
@@ -235,7 +234,7 @@ def fitted_rates(kind: str, rates: list[complex], radius: float = math.inf) -> l
 
     def errors(logs: Array) -> Array:
         now = unpacked(logs)
-        return np.concatenate([weights(now, kind, nu, radius)[1] for nu in ratios])
+        return np.concatenate([weights(now, kind, nu, math.inf)[1] for nu in ratios])
 
     start, least = [], []
     for rate in rates:
@@ -256,40 +255,23 @@ def _blocks(rates: list[complex]) -> list[list[float]]:
     return [[float(f"{one:.6g}") for one in row] for row in found]
 
 
-def numbers(kind: str, blocks: Any, own_rates: bool) -> dict[str, Any]:
-    """Rates, and weights at all radii and as polynomials of Poisson's ratio.
-
-    The rates are those of a straight edge, or each radius has its own. Six numbers cannot follow
-    the longest forces near the largest holes, and would drive the plate: these are as smaller ones.
-    """
+def numbers(kind: str, blocks: Any) -> dict[str, Any]:
+    """Rates of a straight edge, and weights at all radii and as polynomials of Poisson's ratio."""
     radii: tuple[float, ...] = RADII if kind == "free" else RADII[:1]
-    if own_rates:
-        radii = tuple(min(radius, _LARGEST) if radius < math.inf else radius for radius in radii)
     rates = fitted_rates(kind, rates_of(blocks))
-    each_rates = [rates] * len(radii)
-    for n in range(1, len(radii) if own_rates else 1):
-        each_rates[n] = fitted_rates(kind, each_rates[n - 1], radii[n])
     ratios = RATIOS if kind == "free" else RATIOS[:1]
     powers = np.vander(ratios, increasing=True)
-    each = [
-        np.linalg.solve(powers, [weights(own, kind, nu, radius)[0] for nu in ratios]).T
-        for own, radius in zip(each_rates, radii, strict=True)
-    ]
-    return {
-        "rates": [_blocks(own) for own in each_rates] if own_rates else _blocks(rates),
-        "weights": np.round(each, 5).tolist(),
-    }
+    each = [np.linalg.solve(powers, [weights(rates, kind, nu, radius)[0] for nu in ratios]).T for radius in radii]
+    return {"rates": _blocks(rates), "weights": np.round(each, 5).tolist()}
 
 
 def main() -> None:
     """Write the numbers, beginning with the rates that the file has."""
     known = json.loads(FILE.read_text())
     for kind in KINDS:
-        sizes = known["responses"][kind]
-        for size, one in sizes.items():
-            own = size == "steps"
-            sizes[size] = numbers(kind, one["rates"][0] if own else one["rates"], own)
-            print(kind, size, sizes[size]["rates"], flush=True)
+        of_one = known["responses"][kind]
+        of_one["equation"] = numbers(kind, of_one["equation"]["rates"])
+        print(kind, of_one["equation"]["rates"], flush=True)
     known["shares"] = [round(1.0 / (1.0 + radius), 6) for radius in RADII] + [1.0]
     FILE.write_text(json.dumps(known, indent=None, separators=(",", ":")).replace("},", "},\n"))
 

@@ -102,7 +102,7 @@ def main() -> None:
         real = [rate.real for rate in rates if not rate.imag]
         blocks = [[one.real, one.real, one.imag] for one in rates if one.imag] + ([[*real, 0.0]] if real else [])
         assert len(rates_of(blocks)) == len(rates)
-        of_one = {"rates": [blocks] if size == "steps" else blocks, "weights": [[[one] for one in weights.tolist()]]}
+        of_one = {"rates": blocks, "weights": [[[one] for one in weights.tolist()]]}
         known["responses"].setdefault(kind, {})[size] = of_one
         print(f"{kind}, {size}: largest error {error:.1e}", flush=True)
     FILE.write_text(json.dumps(known, indent=None, separators=(",", ":")).replace("},", "},\n"))

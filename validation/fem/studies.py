@@ -373,7 +373,7 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "campaign_impact": campaign.blows,
     **{name: functools.partial(census.compute, name) for name in (*census.SEEDS, census.THIN)},
     **{name: functools.partial(metals.compute, name) for name in metals.SEEDS},
-    **{name: functools.partial(bodies.compute, name) for name in bodies.SETS},
+    **{name: functools.partial(bodies.compute, name) for name in (*bodies.SETS, bodies.STIFF)},
     **{name: functools.partial(polymers.compute, name) for name in polymers.SEEDS},
     hollow.NAME: hollow.compute,
 }

@@ -12,7 +12,7 @@ import numpy as np
 
 from contactlaw import laws, quantities
 from contactlaw.cli.compare import figure
-from contactlaw.cli.parts import chosen, impacts, options, rebounds
+from contactlaw.cli.parts import chosen, impacts, options
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 from contactlaw.comparison import Comparison, compare
 from contactlaw.physical.materials import NoYieldStrengthError
@@ -51,7 +51,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    data, pair, known = rebounds.of_file(arguments)
+    data, pair, known = chosen.of_file(arguments)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:

@@ -90,7 +90,7 @@ def _prior(text: str) -> tuple[str, float]:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    priors, sources = dict(arguments.prior), list[str]()
+    priors = dict(arguments.prior)
     if (arguments.data is None) == (arguments.bounce is None):
         raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
     if arguments.data is None:
@@ -103,8 +103,8 @@ def _run(arguments: argparse.Namespace) -> None:
         data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
         pair = chosen.pair(arguments, known)
     else:
-        data, pair, head = rebounds.of_file(arguments)
-        priors, sources = _errors(head, data) | priors, [head.title, head.reference]
+        data, pair, head = chosen.of_file(arguments)
+        priors = _errors(head, data) | priors
     asked: dict[str, Any] = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     for name in ("radius", "thickness"):
         if (size := getattr(arguments, name)) is not None:
@@ -118,7 +118,7 @@ def _run(arguments: argparse.Namespace) -> None:
             numbers = {name: None if size == math.inf else size for name, size in asked.items()}
             print(json.dumps(numbers | printed.record(found), indent=2))
         else:
-            print(*filter(None, sources), in_words(asked), *printed.text(found), "", sep="\n")
+            print(in_words(asked), *printed.text(found), "", sep="\n")
             print(*printed.rows(found), sep="\n")
 
 

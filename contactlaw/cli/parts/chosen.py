@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,8 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import own, plots, wording
+from contactlaw.cli.parts import own, plots, rebounds, wording
+from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
@@ -50,6 +52,16 @@ def models(arguments: argparse.Namespace) -> list[ImpactModel]:
 def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
     """Materials that the options name, otherwise the `known` sphere and plate of a file."""
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
+
+
+def of_file(arguments: argparse.Namespace) -> tuple[Measurements, Pair, rebounds.Conditions]:
+    """Read a table of rebounds; options come before what the head of the file says."""
+    read = rebounds.checked(arguments.data)
+    with wording.reading(arguments.data):
+        known = rebounds.conditions(read, arguments.materials)
+    bodies = pair(arguments, SimpleNamespace(**known.bodies))
+    options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
+    return rebounds.completed(read, arguments.data, bodies.sphere.density, **known.values | options), bodies, known
 
 
 def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:

@@ -1,6 +1,5 @@
 """Measured rebounds from a table of named columns with units, and the conditions in its head."""
 
-import argparse
 import dataclasses
 import difflib
 import itertools
@@ -9,7 +8,6 @@ import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,14 +16,13 @@ from contactlaw import quantities
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import line
-from contactlaw.cli.parts import chosen, columns, own, wording
+from contactlaw.cli.parts import columns, own, wording
 from contactlaw.cli.parts.columns import Located, TextColumn
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import is_height_or_time
 from contactlaw.fitting.measurements import INPUTS
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, find, spelled_out
-from contactlaw.physical.pair import Pair
 from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME, Quantity
 
 _KINDS = {
@@ -199,7 +196,7 @@ class Conditions(NamedTuple):
 
 _TEXTS = "title", "reference", "provenance", "reading", "missing"
 _SIZES = "speed_error", "radius_error", "thickness_error"
-_OF_ALL = "radius", "diameter", "thickness", "friction", "drop", "time_error", "drop_error", "bounce_error"
+OF_ALL = "radius", "diameter", "thickness", "friction", "drop", "time_error", "drop_error", "bounce_error"
 
 
 def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
@@ -208,25 +205,15 @@ def conditions(found: Read, materials: Mapping[str, Material]) -> Conditions:
         given = tomllib.loads(found.head if "=" in found.head else "")
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f'the lines with # above its table are no TOML, as title = "...": {error}') from None
-    _check_keys(given, (*_TEXTS, *_SIZES, *_OF_ALL, "sphere", "plate"))
+    _check_keys(given, (*_TEXTS, *_SIZES, *OF_ALL, "sphere", "plate"))
     bodies: dict[str, Material] = {
         role: _body(role, given[role], materials) for role in ("sphere", "plate") if role in given
     }
     errors = {name: quantities.value(str(given[name]), SHARE) for name in _SIZES if name in given}
-    values = {n: quantities.value(str(given[n]), _COLUMNS[n].quantity or SHARE) for n in _OF_ALL if n in given}
+    values = {n: quantities.value(str(given[n]), _COLUMNS[n].quantity or SHARE) for n in OF_ALL if n in given}
     columns.halve_diameters(values)
     title, reference = (line(str(given.get(name, ""))) for name in _TEXTS[:2])
     return Conditions(title, reference, bodies, errors, values)
-
-
-def of_file(arguments: argparse.Namespace) -> tuple[Measurements, Pair, Conditions]:
-    """Read the file of a command; its options come before what the head of the file says."""
-    read = checked(arguments.data)
-    with wording.reading(arguments.data):
-        known = conditions(read, arguments.materials)
-    pair = chosen.pair(arguments, SimpleNamespace(**known.bodies))
-    sizes = known.values | {n: size for n, size in vars(arguments).items() if n in _OF_ALL and size is not None}
-    return completed(read, arguments.data, pair.sphere.density, **sizes), pair, known
 
 
 def _check_keys(given: Mapping[str, Any], known: tuple[str, ...]) -> None:

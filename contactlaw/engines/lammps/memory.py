@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 from contactlaw._jit import kernel
@@ -69,7 +68,7 @@ def _call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
     """Call a C function with a tuple of addresses; its result has the type of `result`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        values = cgutils.unpack_tuple(builder, arguments[2])  # type: ignore[no-untyped-call]
+        values = [builder.extract_value(arguments[2], n) for n in range(len(signature.args[2]))]
         kind = context.get_value_type(signature.args[1])
         function = ir.FunctionType(kind, [value.type for value in values]).as_pointer()
         return builder.call(builder.inttoptr(arguments[0], function), values)

@@ -9,7 +9,7 @@ from contactlaw import Validity
 from validation.accuracy import acceptance, halfspace
 from validation.accuracy.acceptance import TARGETS, Errors, Member, Row
 from validation.bench import census as bench
-from validation.fem import census
+from validation.fem import bodies, census
 from validation.fem.__main__ import main as command
 
 # What was measured, one line a row: how many impacts there are, how many carry a flag of accuracy,
@@ -22,7 +22,7 @@ MEASURED = {
     # the two impacts beyond a bound flow deeply, or on a plate that bends
     "bodies": (40, 7, 0, (0.95, 0.975, 0.975, 1.0), 0.02697),
     # the one impact beyond a bound has a contact time 11 % too long, for 5 %, at a COR of 0.17
-    "polymers": (24, 1, 1, (1.0, 0.958, 1.0, 1.0), 0.00684),
+    "polymers": (24, 1, 1, (1.0, 0.958, 1.0, 1.0), 0.00666),
 }
 # Where `explain` says how wrong the COR is: law, flag, flags beside it, impacts, ends of its error.
 WRONG = [
@@ -34,7 +34,7 @@ WRONG = [
     ("myc", Validity.OTHER_LAW, 6, 290, -0.237, 0.146),
     ("fem", Validity.DEEP_CONTACT, 2, 4, -0.067, 0.046),
     ("fem", Validity.BENT_PLATE, 0, 12, 0.001, 0.031),
-    ("fem", Validity.UNTRIED_STRENGTH, 0, 26, -0.039, 0.027),
+    ("fem", Validity.UNTRIED_STRENGTH, 0, 26, -0.039, 0.021),
     ("myc", Validity.THIN_PLATE, 2, 9, 0.008, 0.028),
 ]
 MOST_FLAGGED = 0.1  # largest share of everyday impacts with a flag
@@ -64,6 +64,13 @@ def test_flags_say_how_wrong_the_cor_is(law, flag, beside, count, least, largest
     (words,) = cl.explain(flag)
     ends = (f"{abs(end):.2f}" for end in (found[0], found[-1]) if abs(end) >= 0.025)
     assert all(end in words for end in ends)
+
+
+def test_spheres_much_stiffer_than_the_plate():
+    """The waves in the sphere go on costing energy: without that, two were 4 and 5 % too high."""
+    off = [one.errors.restitution for one in acceptance._of_study(bodies.STIFF, "fem", 0.3)]
+    assert len(off) == 6
+    assert off == pytest.approx([0.0] * 6, abs=0.025)
 
 
 def test_bounds_are_those_that_were_agreed():

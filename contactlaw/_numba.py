@@ -1,19 +1,38 @@
-"""Kernels that only kernels call, compiled by what numba keeps to itself.
+"""All of contactlaw that uses private names of numba, which any version of numba may change.
 
-With what numba offers to all, first processes would take half as long again.
+If numba lacks one of the names, or is newer than the versions that the tests have run with, this
+module cannot be imported, and public names serve instead (see `private` in `contactlaw._jit`). A
+first process then takes 34 s of CPU for 23 s, time steps take up to 1.5 times as long, and files of
+machine code have no checksums.
 """
 
-from typing import Any
+import contextlib
+import hashlib
+import io
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Any
 
 import numba
 from llvmlite import binding as llvm
+from numba.core.caching import IndexDataCacheFile
+from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import AnalysisPass, register_pass
 from numba.core.extending import _Intrinsic
 from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import NopythonTypeInference
+from numba.np.arrayobj import np_cfarray
 
+__all__ = ["CFunc", "Inner", "InnerCompiler", "entry_point", "normalize_signature", "np_cfarray", "seal"]
+_TESTED = 0, 68  # last version of numba that all tests have run with: another may change meanings
+if numba.version_info.short > _TESTED:
+    raise ImportError(f"numba {numba.__version__} is newer than contactlaw was tested with")
+# Methods that are overridden below; by another name numba would no longer call them.
+IndexDataCacheFile._open_for_write, IndexDataCacheFile._load_index, IndexDataCacheFile._load_data  # noqa: B018
+JITCodeLibrary.finalize, JITCodeLibrary._get_module_for_linking  # noqa: B018
 _VIEWS = "getitem", "static_getitem", "getiter", "iternext"  # of arrays that others keep alive
 
 
@@ -106,3 +125,62 @@ class Inner(CPUDispatcher):
         self.overloads[tuple(result.signature.args)] = result
         target: Any = self.targetctx
         target.insert_user_function(result.entry_point, result.fndesc, [result.library])
+
+
+def entry_point(dispatcher: Any, signature: str) -> Any:
+    """Compile a kernel for a signature and return its bare entry, as numba's dispatcher calls it."""
+    types, _ = normalize_signature(signature)  # type: ignore[no-untyped-call]
+    # by types, as from other kernels: with a string numba's cache would have it twice
+    dispatcher.compile(types)
+    return dispatcher.overloads[types].entry_point
+
+
+def seal(dispatcher: Any, warn: Callable[[str], None]) -> None:
+    """Let a kernel keep its machine code in files with checksums.
+
+    Where it cannot be kept, there is a warning; numba would raise, and no answer be given.
+    """
+    cache = dispatcher._cache
+    cache._cache_file.__class__ = _SealedFiles
+    save = cache.save_overload
+
+    def save_or_warn(signature: Any, data: Any) -> None:
+        try:
+            save(signature, data)
+        except OSError as error:
+            warn(str(error))
+
+    cache.save_overload = save_or_warn
+
+
+class _SealedFiles(IndexDataCacheFile):
+    """Numba's index and data files, each with the SHA-256 of its content at its end.
+
+    Numba executes whatever bytes it reads. A damaged file counts as missing here: the kernel is
+    compiled again, and the file written anew. Unpickling ends where the content does, so that
+    numba reads a sealed file as if the checksum were not there.
+    """
+
+    @contextlib.contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
+        content = io.BytesIO()
+        yield content
+        with super()._open_for_write(filepath) as file:
+            file.write(content.getvalue() + hashlib.sha256(content.getbuffer()).digest())
+
+    def _load_index(self) -> Any:
+        whole = _is_whole(self._index_path)
+        return super()._load_index() if whole else {}  # type: ignore[no-untyped-call]
+
+    def _load_data(self, name: str) -> Any:
+        if not _is_whole(self._data_path(name)):  # type: ignore[no-untyped-call]
+            raise OSError("damaged")  # which numba takes for a missing file
+        return super()._load_data(name)  # type: ignore[no-untyped-call]
+
+
+def _is_whole(path: str) -> bool:
+    try:
+        content = Path(path).read_bytes()
+    except OSError:
+        return False
+    return hashlib.sha256(content[:-32]).digest() == content[-32:]
