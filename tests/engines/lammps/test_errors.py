@@ -27,7 +27,7 @@ def test_too_large_a_step_names_the_one_that_would_do(model):
 @pytest.mark.parametrize(
     ("position", "speed", "dt", "commands", "words"),
     [
-        ((0, 0, 0.02), 5.0, 1e-3, "", "further than its radius.*take 0.00018 s at most"),
+        *(((0, 0, 0.02), 5.0, dt, "", "further than its radius.*take 0.00018 s at most") for dt in (1e-3, 1.9e-4)),
         (ABOVE, 5.0, 1e-7, "set group all density 900", "density: its mass.*set group all density"),
         *(
             ((0, 0, height * R), speed, 1e-7, "", "m deep in the plate.*place it outside")
