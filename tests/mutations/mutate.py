@@ -15,7 +15,9 @@ with what became of an edit:
 - open: no test notices it;
 - wrong: its text does not occur once, or its test does not pass without it.
 
-All runs are in a temporary copy of the tree, one process after the other.
+All runs are in a temporary copy of the tree, one process after the other. On two cores that other
+work shared, an edit took about 6 s without the compiler and 30 to 240 s with it: more than an hour in
+all, where nothing else runs about half of that (estimated, not measured).
 """
 
 import argparse

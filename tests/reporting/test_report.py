@@ -17,7 +17,7 @@ from contactlaw.record.file import Surface
 from contactlaw.reporting import summary, surface
 from contactlaw.reporting.figures import energy, impacts, places
 from contactlaw.reporting.figures.impacts import angle
-from contactlaw.reporting.run import CAUSES, Run
+from contactlaw.reporting.run import CAUSES, Run, by_cause
 
 PLATES = {0.5e-3: "glass", 1e-3: "glass", 3e-3: "carbon-steel-1020"}
 WIDE = "[...document.querySelectorAll('*')].filter((e) => e.scrollWidth > innerWidth).length"
@@ -97,6 +97,12 @@ def test_a_parcel_counts_for_its_beads():
     rows["approach_speed"], rows["radius"], rows["thickness"], rows["mass"] = 1.0, 1e-3, 1e-3, 1e-5
     rows["parcel"] = 2.0, 1.0, 2.0
     assert summary.counts(Run(cl.Record(rows))).startswith("3 impacts on 1 wall, which stand for 17 of true beads, ")
+
+
+def test_what_friction_gives_back_is_taken_off_its_loss():
+    rows = np.zeros(2, IMPACT)
+    rows["friction_energy"] = 3e-6, -1e-6
+    assert by_cause(rows).tolist() == pytest.approx([0.0, 0.0, 0.0, 2e-6])
 
 
 @pytest.mark.parametrize("beads", [1, 5])
