@@ -8,7 +8,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-long test-engines extras matrix coverage lint docs package validation bench \
+.PHONY: demo test test-long test-engines extras matrix mutations coverage lint docs package validation bench \
   pictures release clean
 
 demo: $(VENV)/demo.done  ## rain beads on thin plates; the page is rain/index.html
@@ -50,6 +50,9 @@ matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is
 	      PART="$(QUICK)" || exit 1; \
 	  else echo "Python $$version is not on PATH: not tested"; fi; \
 	done
+
+mutations: $(VENV)/test.done  ## make faults in a copy, one by one, and see tests fail; of some rooms: ROOMS="laws walls"
+	$(BIN)/python tests/mutations/mutate.py $(ROOMS)
 
 coverage: $(VENV)/coverage.done  ## print which lines of contactlaw `make test` reaches, but for compiled kernels
 	$(PYTEST) -m "not long" --cov=contactlaw --cov-report=term:skip-covered $(PART)

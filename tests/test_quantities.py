@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from contactlaw._readable import in_unit
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.quantities import ANGLE, FRICTION, LENGTH, SPEED, value, values
+from contactlaw.quantities import ANGLE, FRICTION, LENGTH, MASS, SPEED, STRESS, TIME, value, values
 
 POWERS = {"m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
@@ -111,9 +111,9 @@ def test_one_value_where_one_is_needed():
         value("1,2", LENGTH)
 
 
-@given(st.floats(1e-9, 1e3))
-def test_what_is_written_can_be_read(length):
-    assert value(in_unit(length, "m"), LENGTH) == pytest.approx(length, rel=1e-5)
+@given(st.floats(1e-9, 1e3), st.sampled_from([LENGTH, TIME, MASS, STRESS]))
+def test_what_is_written_can_be_read(size, quantity):
+    assert value(in_unit(size, quantity.si), quantity) == pytest.approx(size, rel=1e-5)
 
 
 @pytest.mark.parametrize(

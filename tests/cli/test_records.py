@@ -84,6 +84,10 @@ def test_a_record_of_an_engine(tmp_path):
     assert found.plate.tolist() == [1, 0]
     assert found.radius.tolist() == [RADIUS[0], RADIUS[2]]
     assert found.thickness.tolist() == [1e-3, math.inf]
+    rows["parcel"], rows["mass"], rows["thickness"] = [2.0, 1.0, 3.0], [8.0, 1.0, 54.0], 1e-3
+    cl.Record(rows).save(tmp_path / "impacts.h5")
+    found = one(tmp_path / "impacts.h5")  # a parcel stands for as many beads as fit into it
+    assert found.weights.tolist() == [8.0, 27.0] and found.mass.tolist() == [1.0, 2.0]
 
 
 def recorded(path, kinds):
@@ -286,6 +290,7 @@ DAMAGES = [
     *((vast, place, f"{place} has 100000000000 rows, expected") for place in COLUMNS),
     (put([1, 1]), "impacts/plate", "impacts/plate has 2 rows, expected 4 as in the other columns"),
     (another(9), "impacts/bodies", "impacts/bodies has 9 in row 0, expected a whole number"),
+    (another(2), "impacts/bodies", "impacts/bodies has 2 in row 0, expected a whole number from 0 to 1"),
     (another(0.5), "impacts/bodies", "impacts/bodies has 0.5 in row 0"),
     (another(math.nan), "impacts/plate", "plate of row 0 is nan, expected a whole number"),
     (another(math.nan), "impacts/approach_speed", "speed: got nan"),

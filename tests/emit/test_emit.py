@@ -2,6 +2,7 @@
 
 import ctypes
 import inspect
+import itertools
 import math
 import subprocess
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program, add
+from contactlaw.emit import DOUBLE, INT, Array, C, JavaScript, Known, Program, add
 from contactlaw.walls.memory import array_at
 
 FACTOR = 3
@@ -139,6 +140,37 @@ def gathered(rows, pages, way):
     return total
 
 
+def compiled(source, folder):
+    (folder / "made.c").write_text(source)
+    gcc = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-shared", "-fPIC"]
+    done = subprocess.run([*gcc, "made.c", "-o", "made.so"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    library = ctypes.CDLL(str(folder / "made.so"))
+    library.run.restype = ctypes.c_double
+    return library
+
+
+def nested(a, b, c):
+    """Brackets and operators, each where another order gives another number."""
+    n = int(a) >> 1
+    if (a > b or b > c) and c > a:
+        n = n + 100
+    return a - (b - c) * (a - (b - 2.0 * c)) / (c - a / (b - 3.0)) + (int(a) + int(b)) // 2 * (n - (n + 3) % 2)
+
+
+def test_operators_bind_as_in_python(tmp_path):
+    program = Program(C("k_"))
+    add(program, nested, DOUBLE, DOUBLE, DOUBLE)
+    run = compiled(
+        f"{program.text()}\ndouble run(double a, double b, double c) {{ return k_nested(a, b, c); }}", tmp_path
+    ).run
+    for given in itertools.permutations((5.0, 7.0, 12.0)):
+        assert run(*map(ctypes.c_double, given)) == nested(*given)
+    program = Program(JavaScript("$"))
+    add(program, nested, DOUBLE, DOUBLE, DOUBLE)
+    assert "Math.floor((Math.trunc(a) + Math.trunc(b)) / 2)" in " ".join(program.text().split())
+
+
 def test_rows_are_read_as_in_python(tmp_path):
     program = Program(C("k_"), names={ROW: "row", gathered: "gathered"})
     row = program.row(ROW)
@@ -148,12 +180,7 @@ def test_rows_are_read_as_in_python(tmp_path):
     call = "return k_gathered((k_row_rows){ rows, 3 }, (k_row_matrix){ pages, 2, 2 }, (k_f0_f1_f2){ 3.0, 5.0, 7.0 });"
     call = call.replace("k_f0_f1_f2", f"k_{way.name}")
     source = f"{new}{program.text()}\ndouble run(k_row *rows, k_row *pages)\n{{\n{call}\n}}\n"
-    (tmp_path / "rows.c").write_text(source)
-    gcc = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-shared", "-fPIC"]
-    done = subprocess.run([*gcc, "rows.c", "-o", "rows.so"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    library = ctypes.CDLL(str(tmp_path / "rows.so"))
-    library.run.restype = ctypes.c_double
+    library = compiled(source, tmp_path)
     numbers = np.array([[2.0, 3.0], [11.0, 13.0]])
     rows, pages = np.zeros(3, ROW), np.zeros((2, 2), ROW)
     rows["v"], pages["x"] = np.arange(9.0).reshape(3, 3), [[17.0, 19.0], [23.0, 29.0]]

@@ -11,7 +11,7 @@ import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
-from contactlaw.record.file import opened, read_from
+from contactlaw.record.file import flagged, opened, read_from
 
 MODELS = [
     cl.ImpactModel(cl.Pair(sphere, plate))
@@ -139,7 +139,8 @@ def test_several_files_of_a_run_are_one(run, tmp_path):
     order = np.lexsort((whole.rows["bead"], whole.rows["time"]))
     whole.part(order[4:]).save(first)
     whole.rows["flags"][order[4]] |= cl.Validity.SHARED_PLATE  # which the first save could not know
-    whole.part(order[:5]).save(second)
+    half = whole.part(order[:5])  # whose materials are in another order
+    dataclasses.replace(half, bodies=half.bodies[::-1], which=len(half.bodies) - 1 - half.which).save(second)
     dataclasses.replace(whole.part(order[:0]), bodies=[]).save(nothing := tmp_path / "0.h5")  # nothing has hit yet
     for paths in ((first, second), (second, first, nothing), (nothing, first, second)):
         found = cl.read_record(*paths)
@@ -178,6 +179,18 @@ def test_files_of_two_runs_are_one_only_if_one_goes_on_from_the_other(end, tmp_p
     with pytest.raises(ValueError, match=r"new.npy: .*a.npy is of another run.* the earlier one, as .*a.npy"):
         np.save(tmp_path / "new.npy", rows_of(*runs["anew"]))
         cl.read_record(tmp_path / "a.npy", tmp_path / "new.npy")
+
+
+@pytest.mark.parametrize(
+    ("share", "plates", "shared"), [(0.15, (0, 0), True), (0.07, (0, 0), False), (0.5, (0, 1), False)]
+)
+def test_two_beads_share_a_plate_from_a_tenth_of_motion_on(share, plates, shared):
+    rows = np.zeros(2, IMPACT)
+    rows["mass"], rows["approach_speed"], rows["thickness"] = 2e-6, 3.0, 1e-3
+    rows["wave_energy"], rows["contact_time"], rows["peak_force"] = share * 0.5 * 2e-6 * 3.0**2, 1e-5, 20.0
+    rows["plate"], rows["x"] = plates, (0.0, 3e-3)
+    found = flagged(cl.Record(rows, [cl.Bodies(cl.Pair("glass", "glass"), "fem")]))
+    assert (found.rows["flags"] == int(cl.Validity.SHARED_PLATE) * shared).all()
 
 
 def test_every_field_of_a_material_is_kept(tmp_path):

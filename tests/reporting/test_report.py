@@ -12,6 +12,7 @@ from pymunk_room import make_bead, make_plate, make_space, steps
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
+from contactlaw.engines.record import IMPACT
 from contactlaw.record.file import Surface
 from contactlaw.reporting import summary, surface
 from contactlaw.reporting.figures import energy, impacts, places
@@ -89,6 +90,13 @@ def test_a_rebound_of_next_to_nothing_has_no_long_number(run):
     rows["restitution"] = 0.0, 0.3
     rows["plate"], rows["thickness"], rows["kind"] = 0, 0.5e-3, 0
     assert summary.impacts(Run(cl.Record(rows)))[1][6] == ">1000%"
+
+
+def test_a_parcel_counts_for_its_beads():
+    rows = np.zeros(3, IMPACT)
+    rows["approach_speed"], rows["radius"], rows["thickness"], rows["mass"] = 1.0, 1e-3, 1e-3, 1e-5
+    rows["parcel"] = 2.0, 1.0, 2.0
+    assert summary.counts(Run(cl.Record(rows))).startswith("3 impacts on 1 wall, which stand for 17 of true beads, ")
 
 
 @pytest.mark.parametrize("beads", [1, 5])

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from loops import loop
+from scipy.optimize import lsq_linear
 from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.engines.record import IMPACT
@@ -63,6 +64,14 @@ def test_distance_and_normal_are_those_of_the_nearest_point(name):
         if touch.face:
             assert abs(touch.s) == -touch.x
     assert 5 < faces and (faces < 60 or name == "sphere")
+
+
+def test_the_distance_from_a_plate_is_that_of_the_nearest_point():
+    sides = np.array([0.05 * E[0], 0.02 * E[1]])
+    facet = framed([Plate(FOOT, *sides, 1e-3)], [0], 1e-3).facets.view(np.recarray)[0]
+    for point in FOOT + np.random.default_rng(5).uniform(-0.06, 0.06, (60, 3)):
+        there = FOOT + lsq_linear(sides.T, point - FOOT, (0.0, 1.0), "bvls", 1e-15).x @ sides
+        assert -on_facet(facet, tuple(point), 0.0).x == pytest.approx(np.linalg.norm(point - there), abs=1e-9)
 
 
 @pytest.mark.parametrize("name", WALLS)
