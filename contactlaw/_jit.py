@@ -55,7 +55,7 @@ def kernel(
         if private:
             options |= {"forceinline": inline, "no_cfunc_wrapper": cache or inner}
         elif inner:
-            return register_jitable(**options)(python)  # type: ignore[no-any-return, no-untyped-call]
+            return register_jitable(**options)(python)
         if inner:
             options |= {"nopython": True, "no_cpython_wrapper": True}
             return private.Inner(python, targetoptions=options, pipeline_class=private.InnerCompiler)  # type: ignore[no-any-return]

@@ -21,7 +21,7 @@ from llvmlite import binding as llvm
 
 from contactlaw import _folder
 
-config: Any = numba.config  # type: ignore[attr-defined]
+config: Any = numba.config
 _UNUSED = 30 * 86400.0  # [s] after which unused code of another version is deleted
 _MARKER = "last_use_by_contactlaw"  # file in each folder of ours; its time says when that was
 

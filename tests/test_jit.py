@@ -5,6 +5,7 @@ import gc
 import json
 import math
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -144,6 +145,11 @@ def private_names():
     for method in ("_open_for_write", "_load_index", "_load_data"):
         yield f"numba.core.caching.IndexDataCacheFile.{method}"
     yield "numba.core.codegen.CPUCodeLibrary._get_module_for_linking"
+
+
+def test_private_names_of_numba_stand_in_one_file():
+    sources = {path: path.read_text() for path in (ROOT / "contactlaw").rglob("*.py")}
+    assert {path for path, text in sources.items() if re.search(r"numba\.(core|misc|np)\b", text)} == {PRIVATE}
 
 
 @pytest.mark.parametrize("name", [*private_names()])

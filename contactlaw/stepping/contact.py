@@ -372,18 +372,6 @@ def _softened_at_largest(soft: Softened, last: State) -> Largest:
 
 
 @kernel
-def _body_due(bead: Bead, body: Any, mass: float, leaves: float, u: float, duration: float, missing: float) -> float:
-    """Energy [J] that leaves the contact of a body the speed of its true impact, else what is missing.
-
-    A body turns further in a softened contact, and its point is thrown up by no more than this.
-    """
-    reach = math.sqrt(body.arm[0] ** 2 + body.arm[1] ** 2 + body.arm[2] ** 2) + bead.r
-    if abs(leaves + u) <= dot(bead.omega, bead.omega) * reach * duration:
-        return 0.5 * mass * (leaves * leaves - u * u)
-    return missing
-
-
-@kernel
 def _end(
     law: Array,
     scene: WallScene,
@@ -427,9 +415,9 @@ def _end(
     put_down = not (row.approach_speed > 0.0 or row.arrival == HIT_BACK)
     if put_down and row.disturbance != SHARING:
         return 0.0, 0.0, 0.0
-    missing = due = reported - lost - row.wave_energy - row.work
+    missing = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
-    extra, leaves, size, damped = (0.0, 0.0, 0.0), -u, 0.0, 0.0
+    due, extra, leaves, size, damped = missing, (0.0, 0.0, 0.0), -u, 0.0, 0.0
     if sharing >= 0:  # the other contact has the energy that this one lacks
         bead.contacts[sharing].work -= missing
         missing = 0.0
@@ -442,9 +430,11 @@ def _end(
     else:
         if softened:
             if body is not None and soft.lasting == BOUNCING and _of_body(contact):
-                due = _body_due(
-                    bead, body[0], contact.mass, soft.restitution * row.approach_speed, u, row.duration, due
-                )
+                # A body turns further than in the true impact, which throws its point up by this at most.
+                arm, up = body[0].arm, soft.restitution * row.approach_speed
+                reach = math.sqrt(arm[0] ** 2 + arm[1] ** 2 + arm[2] ** 2) + bead.r
+                if abs(up + u) <= dot(bead.omega, bead.omega) * reach * row.duration:
+                    due = 0.5 * contact.mass * (up * up - u * u)
             size = settling_kick(due, contact.mass, u, row.approach_speed, clock.dt)
         else:
             size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
@@ -678,14 +668,6 @@ def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: Stat
 
 
 @kernel
-def _leave_dent(law: Array, row: Any, spring: Spring, last: State) -> None:
-    """Let a bead that has hopped sideways off its dent meet a new surface, at the depth of the dent."""
-    dent = at_largest(law, spring, last)
-    row.plate_displacement += dent.residual * dent.scale
-    row.largest_compression = row.mobility = row.stiffening = row.strength = row.reported_loss = 0.0
-
-
-@kernel
 def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
@@ -706,11 +688,13 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass)
     last, softened = state_of(row), scene.softening > 1.0
-    if not softened and last.force == 0.0 < last.largest_compression:
-        way = (dot(v, v) - u * u) * row.duration * row.duration
-        if way > 2.0 * bead.r * last.largest_compression:
-            _leave_dent(law, row, spring, last)
-            last = state_of(row)
+    moved = (dot(v, v) - u * u) * row.duration * row.duration
+    if last.force == 0.0 and not softened and moved > 2.0 * bead.r * last.largest_compression > 0.0:
+        # The bead has hopped off its dent: it meets a new surface, at the depth of the dent.
+        dent = at_largest(law, spring, last)
+        row.plate_displacement += dent.residual * dent.scale
+        row.largest_compression = row.mobility = row.stiffening = row.strength = row.reported_loss = 0.0
+        last = state_of(row)
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
         edge = _near_edge(scene, bead, contact, plate_row, spring, max(row.approach_speed, u))

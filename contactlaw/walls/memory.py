@@ -23,7 +23,7 @@ def _array_at(typing_context: Any, address: Any, shape: Any, kind: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         start, size, _ = arguments
-        to = types.CPointer(kind.dtype)
+        to = types.CPointer(kind.dtype)  # type: ignore[no-untyped-call]
         pointer = builder.inttoptr(start, context.get_value_type(to))
         made = array(to, shape), (pointer, size)
         if private:
