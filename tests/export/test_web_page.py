@@ -77,6 +77,7 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     mass *= model.pair.sphere.density * 4 / 3 * math.pi * radius**3
     expected = model.oblique(normal, along, radius, thickness, friction, method="solve", mass=mass)
     np.testing.assert_array_equal(rows["flags"], expected.flags)
+    np.testing.assert_allclose(rows["normal_share"], normal**2 / speed**2, rtol=1e-12)
     rows["friction_energy"] = rows["friction_share"] * 0.5 * mass * speed**2
     share, slide = BETWEEN.get(pair, (1e-12, 1e-12))
     for name in ("peak_force", "peak_compression", "contact_time"):

@@ -2,17 +2,26 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 import contactlaw as cl
 from contactlaw.equation import tangential, zener
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.laws.fem import friction_loss
 from contactlaw.physical.scaling import modulus_growth
 from validation.fem.viscoelastic import ELASTIC_TIME, power_law, rebound, wave
 
 SOFT = cl.Material("soft", 3e6, 0.35, 1200.0, kind="polymer")
 HARD = cl.Material("hard", 3e11, 0.35, 9000.0)
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.3, 0.45])
+def test_bodies_of_one_material_do_not_slip_on_each_other(nu):
+    """Their surfaces stretch alike, so friction takes only the part that no mismatch makes."""
+    alike = SimpleNamespace(modulus_share=0.5, poissons_ratio=nu, plate_poissons_ratio=nu)
+    assert friction_loss(alike, [0.002, 0.0, 0.05]) == pytest.approx(0.002, rel=1e-12)
 
 
 def solved(loss, lam, plate_loss):
