@@ -42,6 +42,7 @@ from contactlaw.stepping.softened import (
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
+    RELAXATION,
     Spring,
     State,
     advance,
@@ -356,8 +357,9 @@ class Contacts:
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
-        self._near = edge_echo(model.pair.plate, h, edge, *near)
         unit = unit_spring(model, 1.0)
+        relaxation = unit.relaxation * r
+        self._near = edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME))
         enable_caching()
         self._law = law_of(model)
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
@@ -367,7 +369,7 @@ class Contacts:
             stiffness=unit.stiffness * np.sqrt(r),
             mobility=plate_mobility(model.pair.plate, h),
             scale=unit.scale * r,
-            relaxation=unit.relaxation * r,
+            relaxation=relaxation,
             ratio=r / h,
             plate=unit.plate,
         )

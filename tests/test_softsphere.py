@@ -200,6 +200,17 @@ def test_contacts_near_edges_remember_with_twelve_numbers(pair, kind, distance, 
         assert found == pytest.approx(0.0600, abs=1.2e-3)
 
 
+@pytest.mark.parametrize("distance", [0.0, 2e-5, 1e-4, 2e-4, 1e-3])
+def test_contacts_right_at_the_rim_of_a_hole_are_as_in_the_equation(model, distance):
+    """Nearer than contacts for which the response was fitted, they are at the distance of these."""
+    near = {"edge": "free", "edge_distance": distance, "hole_radius": 2.5e-3}
+    r, h = 2e-3, 1e-3
+    dt = float(model.solve(1.0, r, h).contact_time) / 100
+    assert fallen(Contacts(model, r, h, **near), 1.0, dt) == pytest.approx(
+        model.solve(1.0, r, h, **near).restitution, abs=2e-4
+    )
+
+
 @pytest.mark.parametrize("gap_known", [True, False])
 def test_a_softened_contact_may_begin_anywhere_in_its_first_step(gap_known):
     model, v, r, h = cl.ImpactModel(cl.Pair("nylon-66", "zirconia")), 0.839, 0.594751e-3, 2.492565e-3

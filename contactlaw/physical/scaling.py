@@ -205,6 +205,21 @@ def wave_rate(path: float, thickness: Any, distance: Any) -> Any:
     return path / (share * share * thickness)
 
 
+@kernel
+def least_from_rim(path: float, thickness: Any, time: Any) -> Any:
+    """Distance [m] from the rim of a hole at which the response was fitted for contacts of T_H [s]."""
+    return np.sqrt(path * thickness * time / _LONGEST)
+
+
+def from_rim(plate: Material, thickness: Array, distance: Array, hole_radius: Array, time: Array) -> Array:
+    """Distance from an edge [m] that an impact with this T_H [s] has in the equation.
+
+    Right at the rim of a hole a contact is as long in tau as any that the response was fitted for.
+    """
+    least = least_from_rim(wave_path(plate), thickness, time)
+    return np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
+
+
 def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
     """s/(s + a) at distances s from rims of holes of radius a [m]; 0 near straight edges.
 
@@ -226,12 +241,10 @@ def edges_of(
 ) -> Edges:
     """Edges at these distances [m] from impacts, as the equation has them.
 
-    The radius of a hole is that of the rim, inf for a straight edge [m]. Right at the rim of a hole
-    a contact is as long in tau as any that the response was fitted for.
+    The radius of a hole is that of the rim, inf for a straight edge [m].
     """
     thickness = impact.thickness
-    least = np.sqrt(wave_path(plate) * thickness * units.time / _LONGEST)
-    distance = np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
+    distance = from_rim(plate, thickness, distance, hole_radius, units.time)
     rate = wave_rate(wave_path(plate), thickness, distance) * units.time
     response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
     return Edges(response, _coupling(plate, constants, units, impact), rate, np.zeros(rate.size))

@@ -21,7 +21,7 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.responses import CYLINDER, SPHERE
-from contactlaw.physical.scaling import wave_rate
+from contactlaw.physical.scaling import least_from_rim, wave_rate
 from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of, layer_flags
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
@@ -556,8 +556,9 @@ def _near_edge(
     place, swing = plate_row.swing_place, plate_row.swing
     if contact.curvature != 0.0:
         place, swing = SPHERE if contact.domed else CYLINDER, plate_row.shell_speed * abs(contact.curvature)
+    lasting = spring.relaxation / RELAXATION * math.pow(max(speed, _SLOWEST), -0.2)
     if swing > 0.0:
-        swing = min(swing, _SWINGS * RELAXATION / spring.relaxation * math.pow(max(speed, _SLOWEST), 0.2))
+        swing = min(swing, _SWINGS / lasting)
     if facet.edge_count == 0:
         return NearestEdge(place, swing, math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
@@ -570,8 +571,10 @@ def _near_edge(
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
     if not distance < reach:
         return NearestEdge(place, swing, distance)
-    rate = wave_rate(path, thickness, distance)
-    return NearestEdge(place_of(kind, distance, hole, thickness), rate, distance)
+    away = distance
+    if hole < math.inf:
+        away = max(distance, least_from_rim(path, thickness, lasting / CONTACT_TIME))
+    return NearestEdge(place_of(kind, away, hole, thickness), wave_rate(path, thickness, away), distance)
 
 
 @kernel

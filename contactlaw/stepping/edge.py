@@ -19,7 +19,7 @@ from contactlaw.equation.edge import weighted as weighted_sum
 from contactlaw.equation.recall import Recalled
 from contactlaw.physical.materials import Material
 from contactlaw.physical.responses import RIMS, response_of
-from contactlaw.physical.scaling import SOFT_RIM, share_of, wave_path, wave_rate
+from contactlaw.physical.scaling import SOFT_RIM, from_rim, share_of, wave_path, wave_rate
 
 Array = NDArray[np.float64]
 
@@ -36,11 +36,12 @@ REACH = 10.0  # square of the distance over b t beyond which an edge changes not
 
 
 def edge_echo(
-    plate: Material, thickness: Array, kind: str, distance: Array | None, hole_radius: Array | None
+    plate: Material, thickness: Array, kind: str, distance: Array | None, hole_radius: Array | None, time: Array
 ) -> EdgeEcho | None:
-    """Edges at these distances [m] from contacts; None where no plate has any."""
+    """Edges at these distances [m] from contacts with this T_H [s]; None where no plate has any."""
     if distance is None or hole_radius is None:
         return None
+    distance = from_rim(plate, thickness, distance, hole_radius, time)
     share = share_of(distance, hole_radius, thickness)
     return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance))
 
