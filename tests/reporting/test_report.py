@@ -14,7 +14,7 @@ from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
 from contactlaw.record.file import Surface
-from contactlaw.reporting import summary, surface
+from contactlaw.reporting import meshes, summary, surface
 from contactlaw.reporting.figures import energy, impacts, places
 from contactlaw.reporting.figures.impacts import angle
 from contactlaw.reporting.run import CAUSES, Run, by_cause
@@ -236,3 +236,11 @@ def test_many_walls_are_counted_and_their_names_have_room(run, walls):
     assert min(box.x0 for box in boxes) >= 0.0
     names = [text.get_text() for text in impacts.draw(many).legends[0].get_texts()]
     assert len(names) == len(set(names)) == 5
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_contacts_on_either_side_of_a_mesh_are_of_one_that_moves(side):
+    """The record alone does not say so; it shows in the map, which such a wall has not."""
+    surface = Surface(np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]]), np.zeros(1, int), np.zeros(1, int), None)
+    assert meshes._still(surface, np.array([[0.2, 0.2, 0.0]]), 1e-3)
+    assert not meshes._still(surface, np.array([[0.2, 0.2, side * 0.01]]), 1e-3)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import MASS, PAIR, PLATE, R, attach, dropped, flat, make, scene, state
+from lammps_box import ALIKE, MASS, PAIR, PLATE, R, attach, dropped, flat, make, scene, state
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
@@ -227,7 +227,7 @@ def test_a_wall_on_a_foundation_swings_back_as_in_solve(name, softening):
             MYC.solve(5.0, R, bed).restitution, abs=1e-3
         )
     for nothing in (cl.Foundation(0.5e-3, 0.0), cl.Shell(0.5e-3, math.inf)):
-        assert bounce(FLAT[name](nothing), softening) == bounce(FLAT[name](0.5e-3), softening)
+        assert bounce(FLAT[name](nothing), softening)[ALIKE] == bounce(FLAT[name](0.5e-3), softening)[ALIKE]
 
 
 @pytest.mark.parametrize("softening", [1.0, 5.0])
