@@ -422,7 +422,7 @@ def _valid_triangles(vertices: Floats, triangles: Integers) -> tuple[Integers, I
     for n in flat[np.argsort(-longest[flat])]:
         end, middle, start = np.roll(triangles[n], -side_lengths(vertices[triangles[n]]).argmax())
         triangles[n] = middle  # without area
-        beside = np.flatnonzero(np.isin(triangles, (start, end)).sum(axis=1) == 2)
+        beside = np.flatnonzero((triangles == start).any(axis=1) & (triangles == end).any(axis=1))
         if len(beside) == 1:
             whole = triangles[beside]
             triangles[n] = np.where(whole == start, middle, whole)

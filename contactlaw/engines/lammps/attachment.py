@@ -580,7 +580,8 @@ class LammpsPlates:
                 "plates, friction",
                 None,
                 "beads are in contact with other plates, as a restart file has it; attach the "
-                "same plates in the same order, and friction or none as before",
+                "same plates in the same order, and friction or none as before; with a file of another "
+                "version of contactlaw, start from one without contacts",
             )
         for softening, parcel in sum(self._comm.allgather(before), [])[:1]:
             reason = f"beads are in contact with softening {softening:g}, parcel {parcel:g}; attach with these again"
