@@ -214,6 +214,14 @@ def test_files_that_a_run_on_more_ranks_has_left_are_refused(built, deck, tmp_pa
         found(built, tmp_path, text)
 
 
+def test_a_simulation_after_clear_is_another_run(built, deck, tmp_path):
+    text = script("deck", deck, "friction 0.3", STEPS // 3)
+    done = run(built, tmp_path, f"{text}\nclear\n{text.replace('hits.%', 'again.%')}")
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    with pytest.raises(ValueError, match=r"again.0.npy: .*hits.0.npy is of another run, which begins at 0 s"):
+        cl.read_record(tmp_path / "hits.0.npy", tmp_path / "again.0.npy")
+
+
 def touching(folder, step):
     """Whether a bead is in contact after so many steps, by the record of a run."""
     rows = cl.read_record(folder / "hits.0.npy").rows

@@ -88,6 +88,7 @@ struct Joined {
 struct {
     long long number; /* microseconds from 1970 */
     double start;     /* by LAMMPS's clock [s] */
+    int fixes;        /* that write a record now; the first one begins a run */
 } run;
 
 struct Wall {
@@ -666,8 +667,8 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
             error->one(FLERR, "Fix wall/contactlaw: record: {} cannot be written: {}", record, utils::getsyserror());
         std::fwrite(contactlaw_npy, 1, sizeof contactlaw_npy, s.record);
         const auto now = std::chrono::system_clock::now().time_since_epoch();
-        if (run.number == 0)
-            run = { std::chrono::duration_cast<std::chrono::microseconds>(now).count(), s.base };
+        if (run.fixes++ == 0)
+            run.number = std::chrono::duration_cast<std::chrono::microseconds>(now).count(), run.start = s.base;
         MPI_Bcast(&run.number, 1, MPI_LONG_LONG, 0, world);
         count_rows();
     }
@@ -683,7 +684,7 @@ FixWallContactlaw::~FixWallContactlaw()
     if (modify->get_fix_by_id(id))
         atom->delete_callback(id, Atom::GROW), atom->delete_callback(id, Atom::RESTART);
     if (scene_->record)
-        count_rows(), std::fclose(scene_->record);
+        --run.fixes, count_rows(), std::fclose(scene_->record);
     memory->destroy(history_);
     memory->destroy(vector_atom);
 }
