@@ -18,7 +18,8 @@ from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import inverse
-from contactlaw.cli.parts import bands, chosen, figure, impacts, layout, options, wording
+from contactlaw.cli.parts import bands, chosen, impacts, layout, options, wording
+from contactlaw.cli.parts import old_figure as figure
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain

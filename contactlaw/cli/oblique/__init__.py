@@ -12,7 +12,8 @@ from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
-from contactlaw.cli.parts import chosen, figure, impacts, layout, options, wording
+from contactlaw.cli.parts import chosen, impacts, layout, options, wording
+from contactlaw.cli.parts import old_figure as figure
 from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT

@@ -7,7 +7,7 @@ import csv
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple, TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
 from contactlaw.cli.parts import wording
+from contactlaw.cli.parts.table import Column as Column
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
@@ -24,17 +25,6 @@ from contactlaw.physical.validity import Validity, count_flags, explain
 _MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 
 
-class Column(NamedTuple):
-    """A column of a table of impacts."""
-
-    name: str
-    unit: str  # SI unit, as in CSV
-    title: str = ""  # name on a terminal; a column without one is not shown there
-    shown: str = "-"  # unit on a terminal
-    scale: float = 1.0  # number of these units in one SI unit
-    to: str = ""  # another column, up to which this one is the lower end of a range on a terminal
-
-
 _SHOWN: dict[str, Any] = {  # title, unit and number of these in one SI unit on a terminal
     "restitution": ("COR",),
     "contact_time": ("time", "us", 1e6),
@@ -42,9 +32,9 @@ _SHOWN: dict[str, Any] = {  # title, unit and number of these in one SI unit on 
     **{f"{channel}_fraction": (channel,) for channel in Losses._fields},
 }
 COLUMNS = (
-    Column("speed", "m/s", "speed", "m/s"),
-    Column("radius", "m", "radius", "mm", 1e3),
-    Column("thickness", "m", "thickness", "mm", 1e3),
+    Column("speed", "m/s", "speed", "m/s", is_input=True),
+    Column("radius", "m", "radius", "mm", 1e3, is_input=True),
+    Column("thickness", "m", "thickness", "mm", 1e3, is_input=True),
     *(Column(n, one.unit.strip("1"), *_SHOWN.get(n, ())) for n, one in FIELDS.items()),
     Column("yield_speed", "m/s", "yield at", "m/s"),
 )
