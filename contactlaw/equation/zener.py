@@ -133,7 +133,7 @@ def follow_impact(
         ends = event != TIME and (event != LEVEL or level == leg.level)
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
-            going = longest < MAX_STEPS and not (event == LEVEL and legs.is_last(leg))
+            going = longest < MAX_STEPS and not (event == LEVEL and not loading)
             here = noted if going else marks
         if turns:
             top, going = state, going and goal != TO_THE_TOP

@@ -8,7 +8,7 @@ is a line of constant chi. A later kink is a curve chi_k(lambda), and segments b
 that curve. An impact that turns beyond a kink of the loading curve by some share p has spent a time
 there that grows as the root of p: its outcome has a term in p^(3/2) where the slope of the curve
 jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uniform in the root of
-p, in which these terms are smooth; so they are behind all kinks of a capped law.
+p, in which these terms are smooth.
 """
 
 import dataclasses
@@ -231,7 +231,7 @@ def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tup
             line = np.log(_overloads(law, kink, lam, elastic))
         if line.max() < end - _ROOM:
             lines.append(line)
-            graded.append(law.capped or kink in (*law.loading_kinks, law.range[1]))
+            graded.append(kink in (*law.loading_kinks, law.range[1]))
     return [*lines, np.full(lam.size, end)], graded
 
 

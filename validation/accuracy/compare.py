@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from validation.fem import store
 from validation.fem.cases import elastic_plate
-from validation.paper import closed_form, setting, turning_point
+from validation.paper import closed_form, setting, stronge, turning_point
 
 Array = NDArray[np.float64]
 
@@ -194,7 +194,9 @@ def force_at(name: str, compression: Array, *, loading: bool = True) -> Array:
 
 
 def loading_errors(compression: Array) -> dict[str, Array]:
-    """Error of the loading force of `setting.all_laws`, relative to the indentation to 30 d_Y [-].
+    """Error of the loading force of each law, relative to the indentation to 30 d_Y [-].
+
+    The laws are those of `setting.all_laws`, and Stronge's.
 
     Parameters
     ----------
@@ -207,7 +209,9 @@ def loading_errors(compression: Array) -> dict[str, Array]:
     True
     """
     fem, laws = force_at("30", compression), setting.all_laws()
-    return {name: setting.force(law, compression) / fem - 1.0 for name, law in laws.items()}
+    forces = {name: setting.force(law, compression) for name, law in laws.items()}
+    forces["stronge"] = stronge.force(compression)
+    return {name: force / fem - 1.0 for name, force in forces.items()}
 
 
 def returned(compression: Array, force: Array, top: int) -> float:
