@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from validation.fem import store
 from validation.fem.cases import elastic_plate
-from validation.paper import closed_form, setting, stronge, turning_point
+from validation.paper import closed_form, setting, turning_point
 
 Array = NDArray[np.float64]
 
@@ -209,9 +209,8 @@ def loading_errors(compression: Array) -> dict[str, Array]:
     True
     """
     fem, laws = force_at("30", compression), setting.all_laws()
-    forces = {name: setting.force(law, compression) for name, law in laws.items()}
-    forces["stronge"] = stronge.force(compression)
-    return {name: force / fem - 1.0 for name, force in forces.items()}
+    found = {name: setting.force(law, compression) / fem - 1.0 for name, law in laws.items()}
+    return found | {"stronge": closed_form.stronge(compression) / fem - 1.0}
 
 
 def returned(compression: Array, force: Array, top: int) -> float:
