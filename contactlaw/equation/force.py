@@ -343,6 +343,16 @@ def stiffening(law: Array) -> float:
     return float(law[at + 4]) if same else 0.0
 
 
+@kernel(inline=True)
+def work_at_yield(law: Array) -> float:
+    """Compute the loading work up to yield, from the first piece, a polynomial in q [F_Y d_Y]."""
+    row, work = row_of(law, 0), 0.0
+    at = int(law[row + AT])
+    for n in range(int(law[row + DEGREE]) + 1):
+        work += 2.0 * law[at + n] / (n + 2.0)
+    return work
+
+
 @kernel
 def returned(law: Array) -> tuple[float, float, float]:
     """Shares of compression and work that bodies with losses give back, 1 and 1 without losses.
