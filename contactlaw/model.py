@@ -241,7 +241,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             Within 5e-4 of `solve`, relatively, contact times within 5e-3, and within 1e-5 as a
             rule; its restitution as in `restitution`. Just above yield plastic share and residual
             compression begin as (chi - 1)^2 or faster: there `solve` needs an rtol below
-            1e-5 (chi - 1) to be as accurate, and with ``"stronge"`` these two are within 1e-3.
+            1e-5 (chi - 1) to be as accurate.
 
         Examples
         --------

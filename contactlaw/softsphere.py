@@ -616,9 +616,9 @@ def time_step(
         Step [s]: the contact, or an elastic one with a half-space if that is shorter, in
         (0.9/error)^0.4 steps and at least 20. Measured for lambda to 2 and speeds to 7 times the
         yield speed; other laws have corners in their force, by which the error may be 1.3 times
-        that (``"jackson_green"``, ``"kogut_etsion"``), with ``"stronge"`` 4 times at 20 steps and
-        9 times at 100. Bodies with losses that flow keep the yield compression of an impact at
-        3 m/s: at other speeds their COR errs by up to 0.04 tan delta more from 1 to 10 m/s.
+        that (``"jackson_green"``, ``"kogut_etsion"``). Bodies with losses that flow keep the yield
+        compression of an impact at 3 m/s: at other speeds their COR errs by up to 0.04 tan delta
+        more from 1 to 10 m/s.
 
     Raises
     ------

@@ -43,7 +43,7 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": (
-        "force outcome tangential corrections edge recall numbers plate legs losses motion integrator zener few_steps"
+        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator zener few_steps"
     ),
     "table": "lookup axes grid splines shapes sweep certificate nodes slides file cache",
     "answers": (
@@ -348,7 +348,7 @@ from contactlaw.softsphere import Contacts
 model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')
 law = model.force_law.data
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0],
-      force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1, 1e-9)[1],
+      force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1),
       model.lookup(12.0, 0.9e-3, 1e-3).peak_force,
       model.force_history(5.0, 0.9e-3, 1e-3).force.max(),
       Contacts(model, 0.9e-3, 1e-3).advance(np.array([1e-6]), 1e-9)[0])

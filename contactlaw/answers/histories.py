@@ -53,8 +53,7 @@ class Histories:
         -------
         ForceHistory
             Arrays with the samples along the last axis, and flags. By ``"table"`` within 1e-4 of
-            the peak force of those by ``"solve"``. Contacts that unload along a capped law's
-            loading curve (``"stronge"`` up to 2.15 yield compressions) are integrated either way.
+            the peak force of those by ``"solve"``.
 
         Raises
         ------

@@ -18,7 +18,6 @@ MODEL_ERRORS = {
     "jackson_green": ((0.0208, 0.0176, 0.0241), (0.294, 0.0344, 0.121)),
     "kogut_etsion": ((0.0195, 0.0177, 0.0222), (0.299, 0.0361, 0.135)),
     "myc": ((0.0196, 0.0193, 0.0215), (0.332, 0.136, 0.214)),
-    "stronge": ((0.0410, 0.0962, 0.152), (0.320, 0.135, 0.185)),
     "thornton": ((0.261, 0.140, 0.263), (0.440, 0.637, 0.466)),
 }
 # The same of law fem for 72 impacts with hardening and rate, without a flag: the targets "metals"

@@ -80,7 +80,7 @@ class Oblique:
         ObliqueRebound
             By ``"table"`` the sliding speed is within 2e-3 of friction times speed of that by
             ``"solve"``, which is within 1e-3 of the limit of many springs. With a restitution below
-            0.05, an overload above 50, or the law ``"stronge"`` it is within 7e-3.
+            0.05 or an overload above 50 it is within 7e-3.
 
         Raises
         ------

@@ -9,16 +9,12 @@ each (dm - 1)^power times a polynomial in t = scale dm - offset: what begins at 
 keeps its digits. With dm below the first piece the contact unloads along the loading curve without
 a loss.
 
-A law may be capped: where the unloading curve would lie above the loading curve, from the
-compression `cap_high` down to `cap_low`, the contact unloads along the loading curve.
-
 The array begins with a header, then come the starts of the pieces, the rows, and the coefficients
 from the constant one up:
 
     PIECES  number of pieces of loading      UNLOADINGS     number of pieces of unloading
     STARTS  index of the q of their starts   FAMILY_STARTS  index of the dm of their starts
     CURVE   index of their rows              FAMILY         index of their rows
-                                             CAPPED         1 for a capped law
 
     row of loading     SCALE, OFFSET  of t, and DEGREE and AT, the index of its coefficients
                        FIRST, NEXT    pieces that begin at the kink below, and at that above
@@ -53,22 +49,22 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 
-PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
+PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, HEADER = range(7)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
 FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
-FUNCTIONS = 6
+FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
 TOP, CENTRE, PER, BEGINS, POWERS, WIDTH, STRENGTHS = range(7)
 LOG_SCALE, LOG_ONSET, HEADS = range(3)  # numbers after those of a law
 LONGEST, FIRST_ROW = 1, 2
 # functions of dm, in the order of a row
-RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(FUNCTIONS)
+RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
 UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * FUNCTION
 
 HERTZ: Array = np.array(
-    [1, 0, HEADER, HEADER + 2, HEADER + 2 + PIECE, HEADER + 3 + PIECE, 0]
+    [1, 0, HEADER, HEADER + 2, HEADER + 2 + PIECE, HEADER + 3 + PIECE]
     + [0, math.inf]
     + [1, 0, 3, HEADER + 3 + PIECE, 0, 1]
     + [math.inf]
@@ -84,8 +80,6 @@ class UnloadingCurve(NamedTuple):
     residual: float  # dr
     stiffness: float  # a; 0 where the contact unloads along the loading curve
     exponent: float  # b
-    cap_low: float  # from cap_high down to cap_low it unloads along loading; equal: nowhere
-    cap_high: float
 
 
 @kernel
@@ -349,6 +343,16 @@ def stiffening(law: Array) -> float:
     return float(law[at + 4]) if same else 0.0
 
 
+@kernel(inline=True)
+def work_at_yield(law: Array) -> float:
+    """Compute the loading work up to yield, from the first piece, a polynomial in q [F_Y d_Y]."""
+    row, work = row_of(law, 0), 0.0
+    at = int(law[row + AT])
+    for n in range(int(law[row + DEGREE]) + 1):
+        work += 2.0 * law[at + n] / (n + 2.0)
+    return work
+
+
 @kernel
 def returned(law: Array) -> tuple[float, float, float]:
     """Shares of compression and work that bodies with losses give back, 1 and 1 without losses.
@@ -379,7 +383,7 @@ def unloading(law: Array, dm: float) -> UnloadingCurve:
     """Find the unloading curve from dm."""
     row = _unloading_row(law, dm)
     if row == 0:
-        return UnloadingCurve(0.0, 0.0, 3.0, 0.0, 0.0)
+        return UnloadingCurve(0.0, 0.0, 3.0)
     left = _function(law, row, RESIDUAL, dm)
     exponent = _function(law, row, EXPONENT, dm)
     span = dm - left
@@ -387,12 +391,7 @@ def unloading(law: Array, dm: float) -> UnloadingCurve:
         reach = span * math.sqrt(span)
     else:
         reach = math.pow(span, 0.5 * exponent)
-    low = high = 0.0
-    if law[CAPPED] > 0.0:
-        # next to yield, the rounding error of the lower cap is larger than the cap itself
-        low = max(_function(law, row, CAP_LOW, dm), left)
-        high = _function(law, row, CAP_HIGH, dm)
-    return UnloadingCurve(left, loading(law, math.sqrt(dm)) / reach, exponent, low, high)
+    return UnloadingCurve(left, loading(law, math.sqrt(dm)) / reach, exponent)
 
 
 @kernel(inline=True)
@@ -408,10 +407,7 @@ def unloading_force(law: Array, curve: UnloadingCurve, q: float) -> float:
     """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:
         return loading(law, q)
-    force = power_force(curve.stiffness, curve.exponent, q)
-    if law[CAPPED] > 0.0 and q > 0.0:
-        force = min(force, loading(law, math.sqrt(curve.residual + q * q)))
-    return force
+    return power_force(curve.stiffness, curve.exponent, q)
 
 
 def strongest(laws: Array) -> float:

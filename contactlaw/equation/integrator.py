@@ -268,9 +268,9 @@ def after(
     elif legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
         dm = state.q * state.q
         curve = force.unloading(contact.law, dm)
-        leg = legs.first_down(contact.law, curve, dm)
+        leg = legs.down(contact.law, curve, dm)
     else:
-        leg = legs.following(contact.law, curve, leg)
+        leg = legs.up(contact.law, leg.last + 1)
     return curve, leg, _to_leg(contact, leg, residual, state)
 
 

@@ -1,8 +1,7 @@
 """The path of a contact, cut into legs on each of which the force is one smooth function of q.
 
-Loading goes up the loading curve from kink to kink, then the contact goes down the unloading curve.
-With a capped law it goes down in up to three parts: the unloading curve, the loading curve from
-kink to kink, the unloading curve again.
+Loading goes up the loading curve from kink to kink, then the contact goes down the unloading curve,
+or down the loading curve if nothing has been lost.
 
 Legend: d compression, dr residual compression, dm largest compression, q root compression,
 sqrt(d - dr).
@@ -17,17 +16,16 @@ from contactlaw.equation import force
 from contactlaw.equation.force import UnloadingCurve
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
-# loading; unloading above, along and below the cap
-_LOADING, _ABOVE_CAP, _ALONG_CAP, _BELOW_CAP = range(4)
+_LOADING, _UNLOADING = range(2)
 FIRST = 0  # index of the first piece of a loading curve
-NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0, 0.0, 0.0)
+NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0)
 """Placeholder of the unloading curve while a contact loads."""
 
 
 class Leg(NamedTuple):
     """Part of a contact's path on which the force is one smooth function of q."""
 
-    part: int  # _LOADING, _ABOVE_CAP, _ALONG_CAP or _BELOW_CAP
+    part: int  # _LOADING or _UNLOADING
     level: float  # root compression at which it ends
     residual: float  # d = residual + q^2
     kind: int  # CUBIC, PIECES or POWER
@@ -37,7 +35,7 @@ class Leg(NamedTuple):
     c1: float
     c2: float
     c3: float
-    exponent: float  # exponent of a power, whose stiffness is c3
+    exponent: float  # of the unloading curve, whose stiffness is c3; 0 on the loading curve
 
 
 @kernel(inline=True)
@@ -47,15 +45,9 @@ def is_loading(leg: Leg) -> bool:
 
 
 @kernel(inline=True)
-def is_last(leg: Leg) -> bool:
-    """Whether a contact ends with a leg."""
-    return leg.part != _LOADING and leg.level == 0.0
-
-
-@kernel(inline=True)
 def unloads(leg: Leg) -> bool:
-    """Whether a leg is the part of the unloading curve that a contact ends with."""
-    return leg.part == _BELOW_CAP
+    """Whether a leg is on the unloading curve, not on the loading curve."""
+    return leg.exponent > 0.0
 
 
 @kernel(inline=True)
@@ -81,15 +73,8 @@ def _along_loading(law: Array, part: int, first: int, last: int, level: float) -
         c1 = law[at + 1] if degree > 0 else 0.0
         c2 = law[at + 2] if degree > 1 else 0.0
         c3 = law[at + 3] if degree > 2 else 0.0
-        return Leg(part, level, 0.0, CUBIC, first, last, law[at], c1, c2, c3, 3.0)
-    return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 3.0)
-
-
-@kernel
-def _on_unloading_curve(part: int, curve: UnloadingCurve, level: float) -> Leg:
-    """Leg on the unloading curve."""
-    kind = CUBIC if curve.exponent == 3.0 else POWER
-    return Leg(part, level, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
+        return Leg(part, level, 0.0, CUBIC, first, last, law[at], c1, c2, c3, 0.0)
+    return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -107,35 +92,12 @@ def up_again(law: Array, q: float) -> Leg:
 
 
 @kernel
-def _down(law: Array, curve: UnloadingCurve, below: float) -> Leg:
-    """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
-    k = 0
-    while force.start_of(law, k + 1) < below:
+def down(law: Array, curve: UnloadingCurve, dm: float) -> Leg:
+    """Leg of unloading from dm, with which the contact ends."""
+    if curve.stiffness > 0.0:
+        kind = CUBIC if curve.exponent == 3.0 else POWER
+        return Leg(_UNLOADING, 0.0, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
+    k, q = FIRST, math.sqrt(dm)
+    while force.start_of(law, k + 1) < q:
         k += 1
-    first = int(law[force.row_of(law, k) + force.FIRST])
-    low = 0.0 if curve.stiffness == 0.0 else math.sqrt(curve.cap_low)
-    level = max(low, force.start_of(law, first))
-    return _along_loading(law, _ALONG_CAP, first, k, level)
-
-
-@kernel
-def first_down(law: Array, curve: UnloadingCurve, dm: float) -> Leg:
-    """Leg on which unloading from dm begins."""
-    if curve.stiffness > 0.0 and curve.cap_low >= curve.cap_high:
-        return _on_unloading_curve(_BELOW_CAP, curve, 0.0)
-    if curve.stiffness > 0.0 and curve.cap_high < dm:
-        level = math.sqrt(curve.cap_high - curve.residual)
-        return _on_unloading_curve(_ABOVE_CAP, curve, level)
-    return _down(law, curve, math.sqrt(dm))
-
-
-@kernel
-def following(law: Array, curve: UnloadingCurve, leg: Leg) -> Leg:
-    """Leg after one that has ended at its level; the last leg of a contact ends at level 0."""
-    if leg.part == _LOADING:
-        return up(law, leg.last + 1)
-    if leg.part == _ABOVE_CAP:
-        return _down(law, curve, math.sqrt(curve.cap_high))
-    if curve.stiffness > 0.0 and leg.level <= math.sqrt(curve.cap_low):
-        return _on_unloading_curve(_BELOW_CAP, curve, 0.0)
-    return _down(law, curve, leg.level)
+    return _along_loading(law, _UNLOADING, FIRST, k, 0.0)

@@ -76,9 +76,6 @@ def stiffness_at(law: Array, y: float, unit: float, largest: float, d: float, f:
     Bodies with losses unload along a steeper curve than the radius of their contact says: k is that
     of the curve along which they would unload without losses. Bodies that flow have less energy
     left at the largest compression, of which a part is lost before, and so give more of it back.
-
-    Where a capped law unloads along its loading curve, k is that of the curve beside it: the radius
-    of a contact does not jump as the slope does there.
     """
     exponent, left = 1.5, 0.0
     if largest > y * force.leaves_hertz(law):

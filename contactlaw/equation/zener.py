@@ -12,7 +12,6 @@ w compression, w_m that of an elastic impact, s strength; a law is its data.
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import Any, NamedTuple
 
@@ -20,10 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
-from contactlaw._jit import at_first_as_python, kernel, switched_off
-from contactlaw.equation import edge, force, integrator, legs, losses, motion
+from contactlaw._jit import at_first_as_python, kernel
+from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.force import HERTZ
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.losses import Losses
@@ -31,17 +29,11 @@ from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 from contactlaw.equation.plate import PlateMobility
 
-_FEW = 20  # impacts whose w_m Python integrates one by one in less time than it makes the series
-_SECANT, _STEEPEST = 1e-6, 0.9  # last relative step for w_m; largest slope over y
-# Degrees of a series of w_m in lam/(2 + lam) and in s/(s + 1.2), s the stiffening of a law, and
-# how far it reaches: within 1e-11.
-_DEGREES, _THINNEST, _STIFFEST, _HALF, _POLE = (26, 11), 6.0, 0.8, 2.0, 1.2
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
-OK, TOO_MANY_STEPS, BAD_INPUT, NOT_FOUND = range(4)  # status of a solution
+OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
     BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
-    NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
 # How far `_integrate` goes, and where it notes points.
 TO_THE_TOP, TO_THE_END, AT_TIMES, _AT_COMPRESSIONS = range(4)
@@ -133,7 +125,7 @@ def follow_impact(
         ends = event != TIME and (event != LEVEL or level == leg.level)
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
-            going = longest < MAX_STEPS and not (event == LEVEL and legs.is_last(leg))
+            going = longest < MAX_STEPS and not (event == LEVEL and not loading)
             here = noted if going else marks
         if turns:
             top, going = state, going and goal != TO_THE_TOP
@@ -264,73 +256,12 @@ def shape(
     return found.status, notes.time, notes.speed
 
 
-def elastic_compression(
-    law: Array, lam: Any, rtol: float, few: bool = False, strength: ArrayLike = 0.0
-) -> tuple[Any, Any]:
-    """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
-
-    If the law is Hertz's up to yield, all elastic impacts have the same (Fig. 4 of the paper). If
-    not, w_m depends a little on the speed: it is the y whose largest compression is y itself, found
-    by the secant method.
-    """
-    hertz, y = force.room_for(law) == 0 and force.is_hertz(law), np.ones(np.size(lam))
-    before = peak_before = y
-    for _ in range(100):
-        own = HERTZ if hertz else law
-        found = _run(TO_THE_TOP, own, lam, y, rtol, few=few, strength=strength)
-        peak = found.peak_compression
-        # next to the solution a difference is rounding, and no slope is needed
-        step = np.where(abs(y - before) > _SECANT * y, y - before, math.inf)
-        slope = np.clip((peak - peak_before) / step, -_STEEPEST, _STEEPEST)
-        before, peak_before, y = y, peak, peak + slope * (peak - y) / (1.0 - slope)
-        # steps shrink faster and faster: one more would be below 1e-11
-        moved = ~(abs(y - before) < _SECANT * before)
-        if hertz or found.status.any() or not moved.any():
-            break
-    else:
-        found.status[moved] = NOT_FOUND
-    w_m = peak if hertz else y
-    return (found.status, w_m) if np.ndim(lam) else (found.status.item(), w_m.item())
-
-
-@functools.lru_cache(maxsize=1)
-def _just_yielding() -> Array:
-    """Chebyshev series of ln w_m, a row for each degree in s/(s + 1.2)."""
-    nodes = [np.cos(math.pi * (np.arange(n + 1) + 0.5) / (n + 1)) for n in _DEGREES]
-    ends = _THINNEST / (_HALF + _THINNEST), _STIFFEST / (_POLE + _STIFFEST)
-    x, u = (0.5 * end * (1.0 + t) for end, t in zip(ends, nodes, strict=True))
-    logs = []
-    for s in (_POLE * u / (1.0 - u)).tolist():
-        law = np.append(HERTZ, [s, 0.0, 0.0, 0.0])
-        law[force.row_of(law, 0) + force.DEGREE] = 4.0
-        logs.append(np.log(elastic_compression(law, _HALF * x / (1.0 - x), 1e-13)[1]))
-    inverse = [np.linalg.inv(np.polynomial.chebyshev.chebvander(t, n)) for t, n in zip(nodes, _DEGREES, strict=True)]
-    return np.asarray(inverse[1] @ np.array(logs) @ inverse[0].T)
-
-
-@kernel
-def _sum(coefficients: Array, t: float) -> float:
-    """Sum a Chebyshev series by Clenshaw's recurrence."""
-    one = two = 0.0
-    for n in range(coefficients.size - 1, 0, -1):
-        one, two = coefficients[n] + 2.0 * t * one - two, one
-    return float(coefficients[0] + t * one - two)
-
-
-@kernel(cache=True)
-def _by_series(laws: Array, lam: Array, s: Array, series: Array, out: Array) -> None:
-    """Write w_m of laws that are q^3 (1 + s q) up to yield; NaN of others and beyond the series."""
-    room, rows = np.empty(force.room_for(laws)), np.empty(series.shape[0])
-    for n in range(lam.size):
-        law = laws if room.size == 0 else force.at_strength(laws, s[n], room)
-        stiffening, out[n] = force.stiffening(law), math.nan
-        begins = (stiffening > 0.0 or force.is_hertz(law)) and force.start_of(law, 1) >= 1.0
-        if begins and stiffening <= _STIFFEST and lam[n] <= _THINNEST:
-            x = 2.0 * (1.0 + _HALF / _THINNEST) * lam[n] / (_HALF + lam[n]) - 1.0
-            u = 2.0 * (1.0 + _POLE / _STIFFEST) * stiffening / (_POLE + stiffening) - 1.0
-            for k in range(rows.size):
-                rows[k] = _sum(series[k], x)
-            out[n] = math.exp(_sum(rows, u))
+def elastic_compression(law: Array, lam: ArrayLike, strength: ArrayLike = 0.0) -> Any:
+    """Largest compression w_m [V0 T_H] of impacts that just yield, see `contactlaw.equation.elastic`."""
+    lams, strengths = (np.array(one, np.float64) for one in np.broadcast_arrays(lam, strength))
+    w_m = np.empty(lams.shape)
+    elastic.fill(law, lams.ravel(), strengths.ravel(), w_m.reshape(-1))
+    return w_m if w_m.shape else w_m.item()
 
 
 def _scale(y: Array) -> Array:
@@ -355,32 +286,14 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: E
     one = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
     if one.status.any():
         return failure(one.status)
-    w_m = one.peak_compression.copy()
-    # near edges, too, w_m is that of an endless plate: it makes the overload, and nothing else
-    leaves = 0.0 if force.room_for(law) else force.leaves_hertz(law)
-    beyond = (w_m > leaves * y) | (edges is not None)
-    if np.count_nonzero(beyond) > (_FEW if switched_off() else 0) and not few:
-        known = np.empty(np.count_nonzero(beyond))
-        _by_series(law, lam[beyond], s[beyond], _just_yielding(), known)
-        w_m[beyond] = known
-        beyond &= np.isnan(w_m)
-    if beyond.any():
-        status, w_m[beyond] = elastic_compression(law, lam[beyond], rtol, few, s[beyond])
-        if status.any():
-            failed, n = failure(status)
-            return failed, int(np.flatnonzero(beyond)[n])
-    _put(one, w_m, out)
+    _put(one, elastic_compression(law, lam, s), out)  # of an endless plate, near edges, too
     return OK, 0
 
 
 def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> tuple[int, int]:
-    """Solve like `solve_all`, at overloads chi = w_m/y; impacts that differ by chi share w_m."""
+    """Solve like `solve_all`, at overloads chi = w_m/y."""
     lam, s = out.inelasticity, out.strength
-    given, which = np.unique(lam + 1j * s, return_inverse=True)
-    status, each = elastic_compression(law, given.real.copy(), rtol, strength=given.imag)
-    if status.any():
-        return failure(status[which])
-    w_m = each[which]
+    w_m = elastic_compression(law, lam, s)
     out.yield_ratio[:] = y = w_m / overload
     order = np.argsort(s, kind="stable")  # the law of a strength is made once
     found = np.empty((len(Solution._fields), s.size))

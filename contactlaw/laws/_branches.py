@@ -53,9 +53,6 @@ class Unloading:
     order, loss_order : float, optional
         Powers of dm - 1 with which residual and loss begin at yield; 2 for most laws. With 0 they
         are not divided, and the law follows them to 1e-13 of dm and of the loading work.
-    cap : tuple of callable, optional
-        Functions of dm: lower and upper compression between which the contact unloads along the
-        loading curve, which lies below the unloading curve there. The upper one may be None: dm.
     """
 
     start: float
@@ -65,7 +62,6 @@ class Unloading:
     other: Formula | None = None
     order: float = 0.0
     loss_order: float = 0.0
-    cap: tuple[Formula, Formula | None] | None = None
 
 
 def bisect(above: Callable[[Any], Any], low: Any, high: Any) -> Any:

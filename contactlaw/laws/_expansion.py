@@ -387,14 +387,8 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
     else:
         # divided by its power of dm - 1, a loss does not vanish and is its own size
         parts.append(_Function("loss", branch.loss, None if branch.loss_order else lost))
-    low, high = branch.cap or (None, None)
-    parts.append(0.0 if low is None else _Function("cap", low, np.positive))
-    if high is None:
-        parts.append(0.0 if low is None else math.inf)
-    else:
-        parts.append(_Function("cap", high, np.positive))
     parts.append(0.0 if branch.other is None else _Function("other loss", branch.other, lost))
-    powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0, 0.0)
+    powers = (branch.order, 0.0, branch.loss_order, 0.0)
     # the loss has kinks where the loading curve has them
     inner = [kink for kink in curve.kinks if branch.start < kink < end]
     return [
@@ -414,13 +408,12 @@ def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
     at_zero = force - slope * end
     up = np.array([work - at_zero * end - 0.5 * slope * end**2, at_zero, 0.5 * slope])
     down = np.array([0.0, at_zero, slope]) * (2.0 * (1.0 - share) / (exponent + 2.0))
-    rest = np.zeros(1)
     # plastic work stays the same share of the loading work
     lost = float(values[_force.LOSS]) * (end - 1.0) ** last.powers[_force.LOSS]
     other = up - down - (lost - float(values[_force.OTHER])) / work * up
     if not last.other:
         other = np.zeros(1)
-    parts = [np.array([0.0, share]), np.array([exponent]), up - down, rest, rest, other]
+    parts = [np.array([0.0, share]), np.array([exponent]), up - down, other]
     return _Row(_Piece(end, 1.0, 0.0, parts), (0.0,) * len(parts), last.other)
 
 
@@ -429,7 +422,6 @@ class Expanded(NamedTuple):
 
     curve: LoadingCurve
     rows: list[_Row]  # of the unloading curves
-    capped: bool
 
 
 def expanded(name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, cuts: Cuts) -> Expanded:
@@ -441,7 +433,7 @@ def expanded(name: str, loading: Sequence[Loading], unloading: Sequence[Unloadin
         _check_joints(name, curve, unloading, 1e3 * cuts.vanished)
     if rows:
         rows.append(_beyond(curve, rows[-1]))
-    return Expanded(curve, rows, any(branch.cap for branch in unloading))
+    return Expanded(curve, rows)
 
 
 def packed(laws: Sequence[Expanded]) -> list[Array]:
@@ -469,7 +461,7 @@ def _packed(law: Expanded, loading: Sequence[int], terms: Sequence[int]) -> Arra
     family_starts_at = curve_at + len(pieces) * _force.PIECE
     family_at = family_starts_at + len(family_starts)
     at = family_at + len(rows) * _force.UNLOADING_ROW
-    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, law.capped]
+    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at]
     coefficients: list[Array] = []
 
     def put(part: Array, length: int) -> list[float]:

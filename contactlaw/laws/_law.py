@@ -189,11 +189,6 @@ class Law:
         return self.waves is None
 
     @property
-    def capped(self) -> bool:
-        """Whether some unloading runs along the loading curve, see `Unloading`."""
-        return bool(self.data[_force.CAPPED])
-
-    @property
     def at_any_strength(self) -> Array:
         """The data of this law, or of all its strengths."""
         return self.data if self.strengths is None else self.strengths.data

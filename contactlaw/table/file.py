@@ -37,7 +37,7 @@ from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, shape_grid
 
 FORMAT = "contactlaw table"
-SCHEMA = 6
+SCHEMA = 7
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: 700 times the packaged table, and a PC can hold it
 

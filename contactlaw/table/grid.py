@@ -8,7 +8,7 @@ is a line of constant chi. A later kink is a curve chi_k(lambda), and segments b
 that curve. An impact that turns beyond a kink of the loading curve by some share p has spent a time
 there that grows as the root of p: its outcome has a term in p^(3/2) where the slope of the curve
 jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uniform in the root of
-p, in which these terms are smooth; so they are behind all kinks of a capped law.
+p, in which these terms are smooth.
 """
 
 import dataclasses
@@ -124,7 +124,7 @@ def on_demand(law: Law) -> Settings:
     """Choose settings of a table that is built when it is first needed."""
     if math.isinf(law.range[1]):
         return Settings(log_overload_step=_STEP, rtol=1e-11)
-    w_m = zener.elastic_compression(law.data, 0.0, 1e-11, few=True)[1]
+    w_m = zener.elastic_compression(law.data, 0.0)
     deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11, few=True)
     return Settings(
         largest_inelasticity=largest_inelasticity(law),
@@ -177,7 +177,7 @@ def grid(law: Law, settings: Settings) -> TableGrid:
         raise ArgumentError("law", law.name, reason)
     inelasticity = inelasticity_axis(settings)
     lam = series_values(inelasticity)
-    elastic = elastic_compressions(law, lam, settings.rtol)
+    elastic = elastic_compressions(law, lam)
     lines, graded = _kink_lines(law, settings, lam, elastic)
     segments = tuple(
         _with_nodes(Segment(start, end, np.empty(0), root), settings.log_overload_step)
@@ -198,7 +198,7 @@ def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
     along = inelasticity_axis(settings).values(chebyshev_nodes(ROWS - ELASTIC))
     every = np.append(places, 0.0)  # the last one is the slow pair, which the others are beside
     lam, s = np.tile(along, every.size), np.repeat(every, along.size)
-    elastic = elastic_compressions(law, lam, settings.rtol, s)
+    elastic = elastic_compressions(law, lam, s)
     end = np.ones((every.size, along.size))
     if has_end:
         kink = np.repeat([_end(data, one) for one in every.tolist()], along.size)
@@ -231,7 +231,7 @@ def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tup
             line = np.log(_overloads(law, kink, lam, elastic))
         if line.max() < end - _ROOM:
             lines.append(line)
-            graded.append(law.capped or kink in (*law.loading_kinks, law.range[1]))
+            graded.append(kink in (*law.loading_kinks, law.range[1]))
     return [*lines, np.full(lam.size, end)], graded
 
 
@@ -248,11 +248,6 @@ def _overloads(law: Law, kink: Array | float, lam: Array, elastic: Array, streng
     raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {np.unique(kink)} d_Y")
 
 
-def elastic_compressions(law: Law, lam: Array, rtol: float, strength: Array | float = 0.0) -> Array:
+def elastic_compressions(law: Law, lam: Array, strength: Array | float = 0.0) -> Array:
     """Largest compressions w_m of impacts that just yield."""
-    data = law.at_any_strength
-    status, w_m = zener.elastic_compression(data, lam, rtol, strength=strength)
-    if status.any():
-        status, n = zener.failure(status)
-        raise RuntimeError(f"w_m({lam[n]:.6g}) did not solve: {zener.MESSAGES[status]}")
-    return np.asarray(w_m)
+    return np.asarray(zener.elastic_compression(law.at_any_strength, lam, strength))

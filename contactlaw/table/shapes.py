@@ -7,9 +7,6 @@ the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f. Wit
 either side of the top the force is within 3e-5 of its peak, up to lam = 5, and within 6e-5 where
 the loading curve has corners.
 
-The unloading curve of a capped law has corners, where the cubics would err by 3e-3: contacts that
-unload along the cap are integrated.
-
 Times and speeds at given shares are smooth in lam and ln chi. They need fewer nodes than COR does:
 the grid here is coarser than the table's, with the same segments between kinks.
 
@@ -25,9 +22,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._arrays import Array, Mask
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-from contactlaw.equation import force, outcome, zener
+from contactlaw.equation import force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
@@ -43,7 +40,6 @@ SIZE = 2 * STATES - 1  # states between touch and separation, which are known th
 ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
 STEP = 0.08  # largest distance of two nodes in ln chi
 COARSER = 3  # factor on distances in ln k
-_RTOL = 1e-10  # rtol for contacts that are integrated
 
 
 def pack(grid: TableGrid, states: Singles) -> Shapes:
@@ -89,20 +85,9 @@ def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float)
     return force.unloading_force(law, curve, q) * (y * math.sqrt(y))
 
 
+@kernel(cache=True)
 def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
-    along_cap = np.zeros(out.time.shape[0], dtype=np.bool_)
-    _sample(law, shapes, found, along_cap, out)
-    if along_cap.any():
-        part = outcome.history(int(along_cap.sum()), out.time.shape[1])
-        zener.histories(law, outcome.part(found, along_cap), _RTOL, part)
-        for values, integrated in zip(out, part, strict=True):
-            values[along_cap] = integrated
-
-
-@kernel(cache=True)
-def _sample(law: Array, shapes: Shapes, found: Outcome, along_cap: Mask, out: History) -> None:
-    """Sample contacts; mark those in `along_cap` that unload along the cap, and skip them."""
     samples, room = out.time.shape[1], np.empty(force.room_for(law))
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
@@ -123,9 +108,6 @@ def _sample(law: Array, shapes: Shapes, found: Outcome, along_cap: Mask, out: Hi
         else:
             curve = force.unloading(own, top / y)
             residual = curve.residual * y
-        if curve.cap_low < curve.cap_high:
-            along_cap[n] = True
-            continue
         for k in range(STATES):
             d[k + 1] = top * SHARES[k] ** 2
             d[SIZE - k] = residual + (top - residual) * SHARES[k] ** 2

@@ -30,7 +30,7 @@ ANSWERED = [
     f"{PAIR} --thickness 0.12mm --speed 12",
     f"{STEEL} --thickness 1mm,10mm --speed 0.01,1",
     "cor --sphere glass --plate glass --radius 1mm --thickness 2mm --speed 3",
-    *(f"{PAIR} --thickness 1mm --speed 12 --law {law}" for law in ("myc", "hertz", "jackson_green", "stronge")),
+    *(f"{PAIR} --thickness 1mm --speed 12 --law {law}" for law in ("myc", "hertz", "jackson_green", "thornton")),
 ]
 REFUSED = [
     f"{PAIR} --thickness 0.05mm --speed 12",

@@ -35,7 +35,7 @@ READING = {
     for kernel in (kernel for module in MODULES for kernel in vars(module).values())
     if hasattr(kernel, "py_func") and READ & kernel.py_func.__annotations__.keys()
 }
-INNER = "following", "locate", "cor_at"  # take a leg that has ended, or a place in the table
+INNER = "locate", "cor_at"  # take a place in the table
 FLOATS = st.sampled_from([np.nan, np.inf, 0.5, 1.5]) | st.floats()
 CALLED = set()
 
@@ -62,7 +62,7 @@ def attempt(data):
         force.at_strength(STRENGTHS, strength, np.empty(force.room_for(STRENGTHS)).view(Strict))
     for row in many[12:].reshape(8, 12):
         curve, loads = force.unloading(law, row[0]), bool(row[2] > 0.0)
-        leg = legs.up_again(law, row[1]) if loads else legs.first_down(law, curve, row[1])
+        leg = legs.up_again(law, row[1]) if loads else legs.down(law, curve, row[1])
         known = {"law": law, "table": table, "response": EDGE, "kind": leg.kind}
         typed = {"Array": many[0, 0], "Outcome": outcome.at(*many[1, :2]), "bool": loads}
         typed |= {"Extremes": outcome.extremes(4), "UnloadingCurve": curve, "Leg": leg}

@@ -78,18 +78,6 @@ def test_table_within_a_ten_thousandth_of_the_peak(model, case):
         assert np.max(model.lookup(speed, radius, thickness).inelasticity) > 4.0
 
 
-def test_a_way_back_with_corners(model):
-    """Stronge's unloading is in part its loading curve, up to 2.2 yield compressions."""
-    stronge = cl.ImpactModel(model.pair, law="stronge")
-    radius, thickness = R, R / np.linspace(0.0, 6.0, 20)[1:]
-    speed = stronge.yield_speed(radius, thickness) * np.linspace(1.01, 3.5, 12)[:, None]
-    inside = stronge.lookup(speed, radius, thickness).inelasticity < 4.9
-    table, solved = (
-        stronge.force_history(speed, radius, thickness, 101, method).force[inside] for method in ("table", "solve")
-    )
-    assert (np.abs(table - solved).max(axis=1) / solved.max(axis=1)).max() < 1e-4
-
-
 @pytest.mark.parametrize("method", ["table", "solve"])
 def test_impulse(model, method):
     """Integral of the force, up to lambda = 5, where the force has a long tail."""

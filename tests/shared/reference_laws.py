@@ -5,13 +5,12 @@ to far more digits than a double has, next to yield too.
 """
 
 import functools
-import itertools
 from dataclasses import dataclass
 from typing import Any
 
 from mpmath import diff, exp, findroot, inf, linspace, log, mp, mpf, pi, quad, sqrt
 
-mp.dps = 60  # `stronge` loses 1e-32 of the work at 1e-9 above yield
+mp.dps = 60
 END = 100_000  # compression from which a law continues along its tangent
 
 
@@ -59,7 +58,6 @@ class Reference:
     residual_at: Any = None
     exponent_at: Any = None
     corners: tuple = ()  # largest compressions at which unloading changes its formula, yield first
-    capped: bool = False
 
     def __post_init__(self):
         if self.residual_at is None:
@@ -96,53 +94,15 @@ class Reference:
 
     def unloading(self, d, dm):
         """Force of unloading from dm."""
-        printed = self.printed(d, dm)
-        return min(printed, self.loading(d)) if self.capped else printed
-
-    def printed(self, d, dm):
         left = self.residual(dm)
         return self.loading(dm) * (max(d - left, mpf(0)) / (dm - left)) ** self.exponent(dm)
 
     def loss(self, dm):
         """Loading work less unloading work."""
-        left, exponent = self.residual(dm), self.exponent(dm)
-
-        def back(d):
-            """Work of the printed unloading curve up to d."""
-            return self.printed(d, dm) * (d - left) / (exponent + 1)
-
-        if not self.capped:
-            return self.work(dm) - back(dm)
-        edges = [left, *self.crossings(dm), dm]
-        lost = self.work(left)
-        for low, high in itertools.pairwise(edges):
-            middle = (low + high) / 2
-            if self.printed(middle, dm) < self.loading(middle):
-                lost += self.work(high) - self.work(low) - (back(high) - back(low))
-        return lost
-
-    def crossings(self, dm):
-        """Compressions at which the printed unloading curve crosses the loading curve below dm."""
-        found = []
-        left = self.residual(dm)
-        ratio = self.printed(2 * left, dm) ** (mpf(2) / 3) / left  # k^(2/3)
-        if ratio > 1 and left * ratio / (ratio - 1) < 1:
-            found.append(left * ratio / (ratio - 1))  # k (d - dr)^1.5 = d^1.5
-
-        def gap(d):
-            """A crossing at dm itself divided out."""
-            return (self.printed(d, dm) - self.loading(d)) / (dm - d)
-
-        end = dm - (dm - 1) * mpf(10) ** -20
-        places = [*linspace(max(mpf(1), left), dm - (dm - 1) / 100, 20), end]
-        values = [gap(d) for d in places]
-        for n in range(20):
-            if values[n] * values[n + 1] < 0:
-                found.append(root(gap, places[n], places[n + 1]))
-        return found
+        return self.work(dm) - self.loading(dm) * (dm - self.residual(dm)) / (self.exponent(dm) + 1)
 
 
-FAMILIES = {"hertz", "myc", "thornton", "stronge", "kogut_etsion", "jackson_green"}
+FAMILIES = {"hertz", "myc", "thornton", "kogut_etsion", "jackson_green"}
 
 
 @functools.cache
@@ -179,37 +139,6 @@ def thornton():
         lambda dm: dm - (3 * dm - 1) / 2 / sqrt(dm),
         lambda dm: mpf("1.5"),
         (1,),
-    )
-
-
-def stronge():
-    """Chapter 6, with d_p by continuity; unloading follows the lower of the two curves."""
-    rise, plastic = mpf("3.3"), mpf("2.8") / mpf("1.1")
-    d_p = (exp(rise * (plastic - 1)) + 1) / 2
-
-    def force(d):
-        return (2 * d - 1) * (1 + log(2 * d - 1) / rise)
-
-    def integral(d):
-        s = 2 * d - 1
-        return (s**2 / 2 + (s**2 * log(s) / 2 - s**2 / 4) / rise) / 2
-
-    def start(dm):
-        """Slope of the printed unloading curve at dm, less that of the loading curve."""
-        slope = 2 * (1 + log(2 * dm - 1) / rise) + 2 / rise
-        return mpf("1.5") * force(dm) / sqrt(2 * dm - 1) - slope
-
-    def at_yield(dm):
-        """Printed unloading curve at d = 1, less the loading curve."""
-        return force(dm) * ((1 - dm + sqrt(2 * dm - 1)) / sqrt(2 * dm - 1)) ** mpf("1.5") - 1
-
-    return Reference(
-        (mpf("3.3") / 4) ** 2,
-        [HERTZ, Branch(mpf(1), force, integral), line(d_p, mpf("0.5"), mpf(0), 2 * plastic)],
-        lambda dm: dm - sqrt(2 * dm - 1),
-        lambda dm: mpf("1.5"),
-        (1, root(start, "1.01", "2.2"), root(at_yield, "1.01", 3)),
-        capped=True,
     )
 
 

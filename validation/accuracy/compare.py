@@ -194,7 +194,9 @@ def force_at(name: str, compression: Array, *, loading: bool = True) -> Array:
 
 
 def loading_errors(compression: Array) -> dict[str, Array]:
-    """Error of the loading force of `setting.all_laws`, relative to the indentation to 30 d_Y [-].
+    """Error of the loading force of each law, relative to the indentation to 30 d_Y [-].
+
+    The laws are those of `setting.all_laws`, and Stronge's.
 
     Parameters
     ----------
@@ -207,7 +209,8 @@ def loading_errors(compression: Array) -> dict[str, Array]:
     True
     """
     fem, laws = force_at("30", compression), setting.all_laws()
-    return {name: setting.force(law, compression) / fem - 1.0 for name, law in laws.items()}
+    found = {name: setting.force(law, compression) / fem - 1.0 for name, law in laws.items()}
+    return found | {"stronge": closed_form.stronge(compression) / fem - 1.0}
 
 
 def returned(compression: Array, force: Array, top: int) -> float:

@@ -27,7 +27,7 @@ from validation.hostile.headers import compiled
 FULL = 1_600_000
 _EACH = 8_000  # impacts per pair
 _OUTSIDE: tuple[Outside, ...] = ("raise", "clamp", "solve")
-_LAWS = ("fem", "fem", "fem", "myc", "hertz", "stronge")
+_LAWS = ("fem", "fem", "fem", "myc", "hertz", "kogut_etsion")
 _SOLVED = 40  # impacts per pair that are integrated, which takes the longest
 _CLOSE = 1e-5  # error of COR that the table of a pair promises
 _ROUNDING = 1e-12  # difference of COR between two ways to read one table

@@ -20,7 +20,7 @@ PAIRS = (
     ("gamma-alumina", "glass", "myc"),
     ("bearing-steel-52100", "steel-s235", "fem"),  # both flow, by rates
     ("bearing-steel-52100", "aluminium-6061-t6", "jackson_green"),
-    ("copper", "steel-s235", "stronge"),
+    ("copper", "steel-s235", "thornton"),
     ("nylon-66", "steel-s235", "fem"),  # with losses
 )
 pytestmark = pytest.mark.filterwarnings("ignore:softening. an impact:UserWarning")  # meant to be fast
