@@ -29,14 +29,14 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.rebound import Rebound, rebound
-from contactlaw.physical.scaling import log_overload, yield_share
+from contactlaw.physical.scaling import yield_share
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
-from contactlaw.table.lookup import NO_MASSES
-from contactlaw.table.nodes import Table
+from contactlaw.table.lookup import NO_MASSES, STRETCH
+from contactlaw.table.table import Table
 
 Outside = Literal["raise", "solve", "clamp"]
 TableArgument = Table | Settings | str | os.PathLike[str] | None  # what users may give as a table
@@ -86,17 +86,17 @@ def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     """Say why the first of some impacts is outside a table."""
     numbers = beyond.inelasticity, beyond.yield_ratio, beyond.strength
     lam, y, s = (float(one[0]) for one in numbers)
-    limit, most = lookup.lam_max(table), lookup.strongest(table)
+    axes = lookup.axes_of(table)
+    limit, most = axes.x_max * STRETCH / (1.0 - axes.x_max), lookup.strongest(table, axes)
     if lam > limit:
         raise OutsideTableError(0, too_thin(lam, limit))
-    if s > most:
-        times = f"{math.exp(s):.4g} times stronger, above {math.exp(most):.4g}"
+    if math.exp(s) > most:
+        times = f"{math.exp(s):.4g} times stronger, above {most:.4g}"
         raise OutsideTableError(0, f"its rate makes the bodies {times}")
-    chi = math.exp(lookup.log_elastic_compression(table, lam, s)) / y
     border = outcome.part(beyond, slice(1))
     lookup.fields(table, True, border)
-    fastest = (border.elastic_compression / border.yield_ratio).item()
-    raise OutsideTableError(0, too_fast(chi, fastest))
+    elastic = border.elastic_compression.item()
+    raise OutsideTableError(0, too_fast(elastic / y, elastic / border.yield_ratio.item()))
 
 
 class TableLookup:
@@ -130,9 +130,11 @@ class TableLookup:
         return lookup.with_plate(self.table.packed, self.bodies.constants)
 
     @functools.cached_property
-    def shapes(self) -> Table:
-        """The table with shapes of force histories, which a first one takes a second to add."""
-        return cache.cached_shapes(self.table)
+    def shapes(self) -> Array:
+        """The shapes of force histories, which a first one takes a second to add to the table."""
+        found = cache.cached_shapes(self.table).histories
+        assert found is not None
+        return found
 
     @functools.cached_property
     def slides(self) -> Array:
@@ -149,7 +151,7 @@ class TableLookup:
         """Largest lambda of the table; for the law's own, known before the table is made."""
         if self.given is None:
             return grid.largest_inelasticity(_law_with_table(self.bodies.law))
-        return lookup.lam_max(self.table.packed)
+        return self.table.settings.largest_inelasticity
 
     def given_for(self, law: Law) -> Table | None:
         """Table that the user gave, if it fits another law, too, as that of two spheres."""
@@ -200,7 +202,7 @@ class TableLookup:
                 own = histories(self.bodies.data, part, samples)
             else:
                 own = outcome.history(some.size, samples)
-                shapes.sample(self.bodies.data, self.shapes.packed_shapes, part, own)
+                shapes.sample(self.bodies.data, self.shapes, part, own)
             for values, more in zip(contacts, own, strict=True):
                 values[some] = more
         units = self.bodies.numbers(self.bodies.impact(impacts))
@@ -216,10 +218,10 @@ class TableLookup:
         out = np.full(impacts.radius.size, math.inf)
         share = yield_share(self.bodies.pair, self.bodies.law)
         if share < math.inf:
-            c_chi = log_overload(self.bodies.constants, share)
-            lookup.yield_speeds(self.packed, c_chi, impacts.radius, impacts.thickness, out)
+            scale = (self.bodies.constants.time / share) ** 0.25
+            lookup.yield_speeds(self.packed, scale, impacts.radius, impacts.thickness, out)
             if np.isnan(out).any():
-                refuse_to_yield(impacts, np.isnan(out), lookup.lam_max(self.packed))
+                refuse_to_yield(impacts, np.isnan(out), self.table.settings.largest_inelasticity)
         return out
 
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
@@ -267,7 +269,7 @@ class TableLookup:
 
     def _rebound(self, impacts: Impacts, known: _LookedUp) -> Rebound:
         found = known.outcome, known.flags
-        return rebound(self.bodies, impacts, known.time, known.unclamped, *found)
+        return rebound(self.bodies, impacts, known.time, known.unclamped, *found, interpolated=True)
 
 
 class _LookedUp(NamedTuple):

@@ -1,7 +1,6 @@
 """``contactlaw table``: lookup tables, to build, describe and check."""
 
 import argparse
-import math
 import secrets
 from dataclasses import asdict
 from pathlib import Path
@@ -30,7 +29,7 @@ def add(commands: Any) -> None:
         action.add_argument("--law", default="myc", metavar="LAW", help="force law of the table (default: %(default)s)")
         options.add_pair(action, "; for laws with a table per pair")
     check.add_argument(
-        "--points", type=int, default=10_000, metavar="N", help="number of points, at least 100 (default: %(default)s)"
+        "--points", type=int, default=20_000, metavar="N", help="number of points, at least 100 (default: %(default)s)"
     )
     check.add_argument("--seed", type=int, metavar="S", help="seed of the points (default: a fresh one)")
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
@@ -40,9 +39,10 @@ def _info(arguments: argparse.Namespace) -> None:
     found = _stored(arguments)
     print(f"law {found.law.family}: {found.law.source}")
     lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
-    strengths = found.law.strengths
-    more = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
-    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {more}{found.grid.shape}")
+    rungs = found.grid.rungs[:, 0]
+    more = f", {rungs.size} strengths to {rungs[-1]:.4g}" if rungs.size > 1 else ""
+    columns = sum(found.grid.axes[2:5])
+    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {found.settings.rows} by {columns:g} cells{more}")
     for name, value in asdict(found.settings).items():
         print(f"  {name:22s} {value:g}")
     _print_certificate(found.certificate, table.bounds(found.law))

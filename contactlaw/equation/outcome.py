@@ -48,44 +48,38 @@ class Field(NamedTuple):
 
     words: str
     unit: str  # in SI; 1: none
-    error: float  # of a finished table: of COR absolute, of the others relative
-    of_pair: float  # the same of a table made for one pair, which is coarser
+    error: float  # of a table: of COR absolute, of the others over their largest value
 
 
-# A contact time errs by 1e-4 where COR is not nearly 0, as it is with lambda above 4.
 FIELDS = {
-    "restitution": Field("rebound speed over impact speed", "1", 1e-6, 1e-5),
-    "contact_time": Field("from touch to separation", "s", 1e-5, 5e-3),
-    "peak_force": Field("largest contact force", "N", 1e-5, 5e-4),
-    "peak_compression": Field("largest approach of the bodies since touch", "m", 1e-5, 5e-4),
-    "residual_compression": Field("left after the impact", "m", 1e-5, 5e-4),
-    "plastic_fraction": Field("share lost to plastic flow at the contact", "1", 1e-5, 5e-4),
-    "wave_fraction": Field("share carried off by waves in the plate", "1", 1e-5, 5e-4),
-    "other_fraction": Field("share left in vibration and locked-in stress", "1", 1e-5, 5e-4),
-    "inelasticity": Field("lambda of the modified Zener model", "1", 0.0, 0.0),
-    "overload": Field("largest elastic compression over the yield compression", "1", 0.0, 0.0),
+    "restitution": Field("rebound speed over impact speed", "1", 5e-5),
+    "contact_time": Field("from touch to separation", "s", 2e-3),
+    "peak_force": Field("largest contact force", "N", 1e-3),
+    "peak_compression": Field("largest approach of the bodies since touch", "m", 1e-3),
+    "residual_compression": Field("left after the impact", "m", 1e-3),
+    "plastic_fraction": Field("share lost to plastic flow at the contact", "1", 1e-3),
+    "wave_fraction": Field("share carried off by waves in the plate", "1", 1e-3),
+    "other_fraction": Field("share left in vibration and locked-in stress", "1", 1e-3),
+    "inelasticity": Field("lambda of the modified Zener model", "1", 0.0),
+    "overload": Field("largest elastic compression over the yield compression", "1", 0.0),
 }
 """Fields of `contactlaw.Rebound`, but for its flags. Two are given, and no table errs in them."""
 
 
-class Stored(NamedTuple):
-    """A field of `Outcome` that tables keep: its description in the file, and its limits."""
-
-    description: str
-    least: float
-    largest: float
-
-
-# Our limits: a number outside was never computed. For lambda to 10 and chi to 1e6 the laws give
-# contact times of 2.5 to 443, wave rates of 0.007 to 4.3 and compression ratios of 0.7 to 854; the
-# weakest body, with chi to 2e18, has ratios to 3e4.
-STORED = {
-    "restitution": Stored("rebound speed over impact speed [-]", 0.0, 1.0),
-    "contact_time": Stored("time from touch to separation [T_H]", 0.1, 1e4),
-    "wave_rate": Stored("share of the energy in the bending wave, over lambda [-]", 0.0, 100.0),
-    "compression_ratio": Stored("largest compression over the elastic one [-]", 0.01, 1e6),
-}
+STORED = (
+    "1 - rebound speed over impact speed [-]",
+    "1 over the time from touch to separation [1/T_H]",
+    "share of the energy in the bending wave, over lambda [-]",
+    "largest compression over the elastic one [-]",
+)
 """Fields that tables keep, in the order in which their splines are packed."""
+
+
+def balance(restitution: Array, lost: Array) -> Array:
+    """Factor of the shares of energy lost, by which they and that of the rebound add up to 1."""
+    factor = np.ones_like(lost)
+    np.divide(1.0 - restitution * restitution, lost, out=factor, where=lost > 0.0)
+    return factor
 
 
 def empty(count: int) -> Outcome:

@@ -5,7 +5,6 @@ The functions are the kernels of `contactlaw.export.functions`, written in C by 
 """
 
 import hashlib
-import math
 import os
 import re
 import string
@@ -31,11 +30,8 @@ from contactlaw.stepping.softened import SoftState
 from contactlaw.stepping.spring import Spring, State
 from contactlaw.table import Table
 from contactlaw.table.lookup import V_MAX
-from contactlaw.table.nodes import thinned
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
-ERROR = 4e-6  # largest of COR against the model's table, to be within 1e-5 of the equation
-RATED_ERROR = 1e-4  # the same of a pair with a rate, whose table has a third axis
 _WIDTH = 96
 _TABLE = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 # The text is C, but for what GPUs need before each function and each constant.
@@ -77,9 +73,7 @@ def header(
     model : ImpactModel
         Pair, law and table.
     table : {"cor", "none"}, optional
-        Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
-        than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
-        model's own table; that of a pair with a rate of strain is within 1e-4 of it.
+        Whether the header has the model's table of COR, and with it ``contactlaw_restitution``.
     prefix : str, optional
         What the names in the header begin with, in lower case: headers of several pairs live in one
         source file if each has its own, as in ``steel_on_glass_step``.
@@ -116,8 +110,7 @@ def header(
     if not (isinstance(prefix, str) and _PREFIX.fullmatch(prefix)):
         reason = "must be lower-case words and digits joined by _, as 'steel_on_glass'"
         raise ArgumentError("prefix", prefix, reason)
-    thin = thin_table(model) if table == "cor" else None
-    content = _text(model, thin, prefix).encode()
+    content = _text(model, model.table if table == "cor" else None, prefix).encode()
     if len(content) > LARGEST:
         raise ArgumentError(
             "table",
@@ -126,11 +119,6 @@ def header(
             "model with coarser Settings, or one with a rate for one of two bodies alone",
         )
     _atomic.write(path, content)
-
-
-def thin_table(model: ImpactModel) -> Table:
-    """Coarser table for a header."""
-    return thinned(model.table, RATED_ERROR if model.table.law.strengths else ERROR)
 
 
 def kernels(bodies: Bodies) -> str:
@@ -219,7 +207,7 @@ def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
         return
     certificate, settings = table.certificate, table.settings
     assert certificate is not None
-    strength = math.exp(float(table.grid.axes[-1].largest)) if len(table.grid.axes) > 2 else 1.0
+    strength = table.grid.rungs[-1, 0]
     stronger = f" and strengths to {strength:.4g}" if strength > 1.0 else ""
     yield from _comment(
         f"table of COR, lambda to {settings.largest_inelasticity:g} and chi to "

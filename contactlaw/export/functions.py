@@ -94,9 +94,15 @@ class Collision(NamedTuple):
 
 
 @kernel
-def plain_log_and_root(v: float) -> tuple[float, float]:
-    """Logarithm and fifth root."""
-    return math.log(v), math.pow(v, 0.2)
+def plain_log(v: float) -> float:
+    """Logarithm."""
+    return math.log(v)
+
+
+@kernel
+def plain_root(v: float) -> float:
+    """Fifth root."""
+    return math.pow(v, 0.2)
 
 
 @kernel
@@ -112,7 +118,12 @@ def plain_exp(x: float) -> float:
 
 
 # What is quick in compiled Python by other ways than those of a language's library.
-INSTEAD: dict[Any, Any] = {lookup.log_and_root: plain_log_and_root, lookup.series_at: series_of, lookup.exp: plain_exp}
+INSTEAD: dict[Any, Any] = {
+    lookup.log: plain_log,
+    lookup.fifth_root: plain_root,
+    lookup.series_at: series_of,
+    lookup.exp: plain_exp,
+}
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"
 NOTHING = Answer(*[math.nan] * len(Answer._fields))
@@ -137,15 +148,16 @@ def rounded(law: Array) -> Array:
 def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
     """Numbers of a model's pair, and of a table if there is one.
 
-    A table has nine decimals, one with a third axis six: it errs by more than that.
+    A table has nine decimals, one with a ladder of strengths six: it errs by more than that.
     """
     pair, law, packed = model.pair, model.force_law, None
     laws, known = by_strength(pair, law, COARSE), constants_of(pair, law)
     if table is not None:
         packed = lookup.with_plate(table.packed, known)
-        packed = packed[: int(packed[lookup.OTHERS_AT])].copy()  # COR alone
-        splines = packed[int(packed[lookup.COR_AT]) :]
-        splines[:] = splines.round(9 if packed[lookup.LAYERS] == 0.0 else 6)
+        axes = lookup.axes_of(packed)
+        begins = lookup.HEADER + lookup.RUNG * int(axes.rungs)
+        packed = packed[: begins + int(axes.rungs * axes.size)].copy()  # COR alone
+        packed[begins:] = packed[begins:].round(9 if axes.rungs == 1.0 else 6)
     return Bodies(
         rounded(laws),
         force.room_for(laws),

@@ -23,7 +23,6 @@ class Strengths(NamedTuple):
 
     data: Array  # at any strength, in the layout of `contactlaw.equation.force`
     knots: tuple[float, ...]  # ln of the strength, from 0: between them outcomes are smooth
-    cells: tuple[int, ...]  # between each two of them, for the layers of a table
 
 
 @dataclass(frozen=True, eq=False)

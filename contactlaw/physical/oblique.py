@@ -129,11 +129,11 @@ def tangential(table: Array, slides: Array, impact: Impact, friction: float, siz
     if not size <= lookup.V_MAX:
         return math.nan, math.nan
     psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
-    at = lookup.place_of(table, speed, radius, thickness, share)
-    if at.x != at.x:
+    at, on, strength = lookup.place_of(table, speed, radius, thickness, share)
+    e = lookup.cor_at(table, at, on)
+    if not e >= 0.0:
         return math.nan, math.nan
-    e = lookup.cor_at(table, at)
-    return e, limit * change(slides, at.x, at.log_chi, at.strength, e, psi)
+    return e, limit * change(slides, lookup.spot_of(slides, at.x, at.p, strength), e, psi)
 
 
 @kernel

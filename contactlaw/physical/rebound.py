@@ -120,8 +120,11 @@ def rebound(
     outcome: Outcome,
     flags: Integers,
     edges: Edges | None = None,
+    interpolated: bool = False,
 ) -> Rebound:
     """Convert outcomes to SI units, with T_H [s], and complete them.
+
+    The shares of the energy of outcomes that were interpolated are balanced.
 
     `unclamped` has inelasticities and yield ratios of the impacts. Those of the outcomes differ
     where impacts were clamped to the table's border, which the flags say already.
@@ -149,6 +152,11 @@ def rebound(
         out,
         flags,
     )
+    if interpolated:
+        shares = found.plastic_fraction, out.wave_fraction, found.other_fraction
+        factor = outcomes.balance(outcome.restitution, sum(shares))
+        for share in shares:
+            share *= factor
     if impacts.mass is not None:
         flags |= bodies.mass_flags(impacts)
     if impacts.wall is not None:

@@ -72,11 +72,6 @@ def yield_share(pair: Pair, law: Law) -> float:
     return pair.yield_share(law.yield_coefficient or C_YIELD)
 
 
-def log_overload(constants: PairConstants, share: float) -> float:
-    """ln(chi/w_m) at 1 m/s for a body that yields at the compression d_Y = share R."""
-    return math.log(constants.time / share) if share < math.inf else -math.inf
-
-
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
     """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
     compression = _yield_share(pair, coefficient, "measured") * radius

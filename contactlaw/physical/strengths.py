@@ -22,8 +22,6 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
 from contactlaw.physical.pair import Pair
-from contactlaw.table.lookup import TERMS
-from contactlaw.table.splines import spline_coefficients
 
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 0.01  # in ln k: distance of the places between which corners are looked for
@@ -47,11 +45,6 @@ class Fineness(NamedTuple):
 USUAL = Fineness(7, 1e-10, 3.0, 0.4, rate.REACH, 1e-4)
 # For steps, which make the law anew in each, and for exports: within 1e-6.
 COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST, 5e-3)
-# Of a table's axis in ln k, our choices, for which the COR errs by less than 5e-6: segments, in
-# which ln d_Y is a polynomial to _SMOOTH; widest cells, how far splines over them may be from
-# ln d_Y, and most cells of a segment.
-_SEGMENTS, _SMOOTH = (0.7, USUAL.piece), 1e-7
-_CELL, _OFF, _MOST = 0.1, 1e-5, 12
 _NEAR = 1e-3  # in ln k: as near to an end of a piece of the law, a knot is that end
 
 
@@ -60,43 +53,11 @@ def with_strengths(pair: Pair, law: Law) -> Law:
     if rate.flow_with_rate(pair, law) is None or not law.yields:
         return law
     laws = by_strength(pair, law)
+    ends = np.array(knots(pair, USUAL.piece, rate.FASTEST, USUAL.near)[0])
     tops = force.tops(laws)  # corners that were found from other samples are not quite the same
-    for width in _SEGMENTS:
-        ends = np.array(knots(pair, width, rate.FASTEST, USUAL.near)[0])
-        off = np.abs(ends[:, None] - tops)
-        alike = (off < _NEAR) & (off == off.min(axis=0)) & (off == off.min(axis=1, keepdims=True))
-        ends = np.where(alike.any(axis=1), tops[alike.argmax(axis=1)], ends)
-        if all(_is_smooth(laws, *one) for one in itertools.pairwise(ends.tolist())):
-            break
-    fine, cells = np.array(knots(pair, _CELL, rate.FASTEST, USUAL.near)[0]), []
-    for low, high in itertools.pairwise(ends.tolist()):
-        least = 1 + int(np.count_nonzero((fine > low + _CLOSE) & (fine < high - _CLOSE)))
-        cells.append(_cells(laws, low, high, max(least, 3)))
-    strengths = Strengths(laws, tuple(ends.tolist()), tuple(cells))
-    return dataclasses.replace(law, strengths=strengths)
-
-
-def _grown(laws: Array, at: Array) -> Array:
-    """Ln of the growth of d_Y at strengths."""
-    return np.log([force.growth_at(laws, one) for one in at.tolist()])
-
-
-def _is_smooth(laws: Array, low: float, high: float) -> bool:
-    """Whether ln d_Y is a polynomial between two strengths, for all that a table needs."""
-    at = np.linspace(low + _CLOSE, high, 3 * TERMS)
-    fitted = np.polynomial.Polynomial.fit(at, _grown(laws, at), TERMS - 1)
-    return bool(np.abs(fitted(at) - _grown(laws, at)).max() < _SMOOTH)
-
-
-def _cells(laws: Array, low: float, high: float, least: int) -> int:
-    """Find out how many cells a spline needs that is to follow ln d_Y between two strengths."""
-    for cells in range(least, max(least, _MOST) + 1):
-        values = _grown(laws, np.linspace(low + _CLOSE, high, 2 * cells + 1))
-        c = spline_coefficients(values[::2])
-        middle = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
-        if np.abs(middle - values[1::2]).max() < _OFF:
-            break
-    return cells
+    nearest = tops[np.abs(ends[:, None] - tops).argmin(axis=1)]
+    ends = np.where(np.abs(nearest - ends) < _NEAR, nearest, ends)
+    return dataclasses.replace(law, strengths=Strengths(laws, tuple(np.unique(ends).tolist())))
 
 
 @functools.lru_cache(maxsize=64)

@@ -1,12 +1,12 @@
-"""Tables of impacts, without units: swept once, certified, kept on disk, looked up in nanoseconds.
+"""Tables of impacts: solved once, certified, kept on disk, looked up in nanoseconds.
 
-`grid` places the nodes along `axes`, `nodes` holds the solutions there (`sweep` computes them on
-all cores), `certificate` compares lookups with the solver at other points, `file` and `cache` keep
-tables. `splines` fits what `lookup` and `shapes` evaluate: outcomes, and force over time.
+`grid` places the nodes, `build` solves the equation there (`sweep` on all cores), `certificate`
+compares lookups with the solver at other points, `file` and `cache` keep tables. `lookup` evaluates
+splines of outcomes, `shapes` those of force over time, `slides` those of oblique impacts.
 """
 
 from contactlaw.table.certificate import BOUNDS, Certificate, bounds
 from contactlaw.table.grid import Settings
-from contactlaw.table.nodes import Table, build, certify, with_shapes
+from contactlaw.table.table import Table, build, certify, with_shapes
 
 __all__ = ["BOUNDS", "Certificate", "Settings", "Table", "bounds", "build", "certify", "with_shapes"]

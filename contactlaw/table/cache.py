@@ -16,11 +16,8 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-import numpy as np
-
-from contactlaw import _atomic
 from contactlaw import table as tables
 from contactlaw._arrays import Array
 from contactlaw._folder import folder
@@ -28,9 +25,9 @@ from contactlaw._kept import fingerprint
 from contactlaw.laws import Law
 from contactlaw.table import file, slides
 from contactlaw.table.grid import Settings, on_demand
-from contactlaw.table.nodes import Table
+from contactlaw.table.table import Table
 
-_DIGEST = 32  # bytes of a checksum
+_T = TypeVar("_T")
 # [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be
 # minutes where many processes share a core: one that holds a lock for longer hangs.
 _PATIENCE = 600.0
@@ -74,46 +71,52 @@ def cached(law: Law, settings: Settings | None = None) -> Table:
 @functools.lru_cache(_TABLES_WITH_SHAPES)
 def cached_shapes(table: Table) -> Table:
     """Return the table with shapes of force histories, from the cache or built as in `cached`."""
-    if table.states is not None:
+    if table.histories is not None:
         return table
 
     def make(found: Table | None) -> Table:
         return tables.with_shapes(found or table, progress=progress_bar)
 
-    return _kept(table.law, table.settings, make, lambda found: found.states is not None)
-
-
-def cached_slides(table: Table, kappa: float) -> Array:
-    """Tangential rebounds of a pair as kernels read them, from the cache or built.
-
-    Whatever is wrong with the folder, they are returned; what cannot be kept is built again by the
-    next process.
-    """
-    packed = table.packed.tobytes()
-    key = hashlib.sha256(packed + f"{kappa!r} {fingerprint()}".encode()).hexdigest()
-    place = None
-    with contextlib.suppress(RuntimeError):  # the table has warned of this
-        place = folder()
-    path = None if place is None else place / f"slides-{key[:24]}.bin"
-    if path is not None:
-        with contextlib.suppress(OSError):
-            whole = path.read_bytes()
-            _mark_used(path)
-            digest, content = whole[:_DIGEST], whole[_DIGEST:]
-            if digest == hashlib.sha256(content).digest():
-                return np.frombuffer(content).copy()  # kernels take no constant arrays
-    made = slides.build(table, kappa)
-    if path is not None:
-        with contextlib.suppress(OSError):
-            path.parent.mkdir(0o700, parents=True, exist_ok=True)
-            _atomic.write(path, hashlib.sha256(made.tobytes()).digest() + made.tobytes())
-    return made
+    return _kept(table.law, table.settings, make, lambda found: found.histories is not None)
 
 
 def _kept(
     law: Law, settings: Settings, make: Callable[[Table | None], Table], is_whole: Callable[[Table], bool]
 ) -> Table:
     """Read a table from the cache; if it is missing or not whole, make it and keep it."""
+
+    def read(path: Path) -> Table | None:
+        found = file.read(path)
+        if found.law.key != law.key or found.settings != settings:
+            raise file.DamagedTableError("") from ValueError("it is the table of another law or of other settings")
+        return dataclasses.replace(found, law=law)
+
+    return _in_folder(file_name(law, settings), law, read, make, is_whole, file.write)
+
+
+def cached_slides(table: Table, kappa: float) -> Array:
+    """Tangential rebounds of a pair as kernels read them, from the cache or built as in `cached`."""
+    ingredients = table.packed.tobytes() + f"{kappa!r} {fingerprint()}".encode()
+    name = f"slides-{hashlib.sha256(ingredients).hexdigest()[:24]}.h5"
+    return _in_folder(
+        name,
+        table.law,
+        lambda path: file.load(path)[0]["slides"],
+        lambda found: slides.build(table, kappa),
+        lambda found: True,
+        lambda made, path: file.store(path, {"slides": made}, {"law": table.law.family, "kappa": kappa}),
+    )
+
+
+def _in_folder(
+    name: str,
+    law: Law,
+    read: Callable[[Path], _T],
+    make: Callable[[_T | None], _T],
+    is_whole: Callable[[_T], bool],
+    write: Callable[[_T, Path], None],
+) -> _T:
+    """Read a file of the cache; if it is missing or not whole, make what belongs there and keep it."""
     try:
         place = folder()
     except RuntimeError as error:
@@ -121,21 +124,20 @@ def _kept(
         _warn_not_kept(law, "a folder of this user", error)
     if place is None:
         return make(None)
-    path = place / file_name(law, settings)
-    made: Table | None = None
+    path, made = place / name, None
     try:
-        found, _ = _usable(path, law, settings)
+        found, _ = _usable(path, read)
         if found is not None and is_whole(found):
             return found
         place.mkdir(0o700, parents=True, exist_ok=True)
         with _locked(path):
             # another process may have built it while this one waited
-            found, fault = _usable(path, law, settings)
+            found, fault = _usable(path, read)
             if found is not None and is_whole(found):
                 return found
             made = make(found)
             _clear(path)
-            file.write(made, path)
+            write(made, path)
             _delete_unused(place)
         if fault:
             warnings.warn(
@@ -146,7 +148,7 @@ def _kept(
             )
     except OSError as error:  # read-only, full, over quota, a file in its place, locked for ever
         _warn_not_kept(law, place, error)
-    return made or make(None)
+    return make(None) if made is None else made
 
 
 def _warn_not_kept(law: Law, place: Path | str, reason: Exception) -> None:
@@ -165,18 +167,16 @@ def progress_bar(rows: Iterator[Any], total: int) -> Iterable[Any]:
     return bar
 
 
-def _usable(path: Path, law: Law, settings: Settings) -> tuple[Table | None, str]:
-    """Table in a cache file, or what is wrong with it; neither where there is no file."""
+def _usable(path: Path, read: Callable[[Path], _T]) -> tuple[_T | None, str]:
+    """Content of a cache file, or what is wrong with it; neither where there is no file."""
     try:
-        found = file.read(path)
+        found = read(path)
     except FileNotFoundError:
         return None, ""
-    except file.DamagedTableError as error:
-        return None, str(error.__cause__)
+    except (ValueError, LookupError) as error:
+        return None, str(error.__cause__ or error)
     _mark_used(path)
-    if found.law.key != law.key or found.settings != settings:
-        return None, "it is the table of another law or of other settings"
-    return dataclasses.replace(found, law=law), ""
+    return found, ""
 
 
 def _mark_used(path: Path) -> None:

@@ -13,40 +13,50 @@ from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import FIELDS, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
-from contactlaw.table.axes import TableGrid
-from contactlaw.table.grid import RANGES, Settings
-from contactlaw.table.shapes import Shapes
+from contactlaw.table.grid import Grid
+from contactlaw.table.lookup import NEXT, STRETCH
 from contactlaw.table.sweep import Progress
 
-BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-4}
-"""Promised errors: absolute for COR, relative to the peak for force histories, else relative."""
+BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-3}
+"""Promised errors: absolute for COR and shares, relative to the largest value for the other fields."""
 
-PAIR_BOUNDS = {n: FIELDS[n].of_pair for n in BOUNDS if n in FIELDS} | {"force_history": 3e-3}
-"""Promised errors of tables built for one pair: they are coarser, so that they are made soon."""
+RATED, CORNERED = 1e-4, 1.5e-4
+"""Promised error of COR for a pair with a rate of strain, and for a law whose slope jumps."""
+
+_FINER = 0.1  # tolerance of the solver beside that of the nodes
+_RETURNING = 1e-6  # least COR at which contact times are compared
+_SMALL_DENT = 0.01  # of the largest residual compression, above which errors of it are relative
+_SAMPLES = 33  # samples of a force history that are compared
+_HISTORIES = 1000  # at most so many histories are compared
+_HALF_SPACE = 0.05  # share of the points with lambda = 0
+_NEAR_KINK = 0.02  # in ln p; some of the points lie this near to yield, on either side
+_CORNER = 1e-3  # jump of a loading curve's slope, relatively, that makes outcomes less smooth
 
 
 def bounds(law: Law) -> dict[str, float]:
     """Promised errors of a table of this law."""
-    return BOUNDS if math.isinf(law.range[1]) else PAIR_BOUNDS
+    cor = BOUNDS["restitution"] if law.strengths is None else RATED
+    return BOUNDS | {"restitution": CORNERED if _has_corners(law) else cor}
 
 
-# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2, where rounding of
-# chi alone makes any relative error. Smaller values (chi - 1 < 2e-6) have errors relative to this.
-_SMALLEST = 1e-12
-_RETURNING = 1e-6  # least COR at which contact times are compared
-_PART = 500  # points that a thread solves at a time
-_SAMPLES = 33  # samples of a force history that are compared
-_NEAR_KINK = 0.01  # in ln chi; some of the points lie this near to a kink, on either side
-_HALF_SPACE = 0.1  # share of the points with lambda = 0
+def _has_corners(law: Law) -> bool:
+    """Whether the slope of the loading curve jumps beyond yield."""
+    for kink in law.loading_kinks:
+        q = math.sqrt(kink)
+        before, after = (law.loading(q) - law.loading(q * (1.0 - 1e-6)), law.loading(q * (1.0 + 1e-6)) - law.loading(q))
+        if kink > 1.0 and abs(after - before) > _CORNER * before:
+            return True
+    return False
 
 
 @dataclass(frozen=True)
 class Certificate:
     """How far lookups are from the solver, at random points off the grid.
 
-    Errors of COR are absolute, those of force histories (the largest at any time) relative to the
-    peak force, those of the other fields relative. Contact times are compared where COR is at least
-    1e-6: the contact of a sphere that stays has no end.
+    Errors of COR and of shares of the energy are absolute, those of force histories (the largest at
+    any time) relative to the peak force, those of the other fields relative to their largest value in
+    the table; but residual compressions above 1 % of that have relative errors. Contact times are
+    compared where COR is at least 1e-6: the contact of a sphere that stays has no end.
 
     Parameters
     ----------
@@ -79,76 +89,76 @@ class Certificate:
 
 
 def compare_outcomes(
-    law: Law, settings: Settings, grid: TableGrid, packed: Array, points: int, seed: int, progress: Progress
+    law: Law, rtol: float, packed: Array, points: int, seed: int, progress: Progress
 ) -> tuple[Outcome, dict[str, Array]]:
     """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
         raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
     if seed < 0:
         raise ArgumentError("seed", seed, "must not be negative")
-    lam, log_chi, strength = random_points(grid, points, np.random.default_rng(seed))
-    chi, parts = np.exp(grid.own(lam, log_chi, strength)), -(-lam.size // _PART)
-    exact = sweep.solve_overloads(law, lam, chi, strength, _finer(settings), parts, progress)
-    looked = outcome.at(exact.inelasticity, exact.yield_ratio, strength)
-    lookup.fields(packed, True, looked)
+    lam, y, strength = random_points(Grid.of(packed), points, np.random.default_rng(seed))
+    looked, exact = outcome.at(lam, y, strength), sweep.solved(law, lam, y, strength, _FINER * rtol, progress)
+    lookup.fields(packed, True, looked)  # rounding may put points at the border outside
+    ours, truth = (_named(law, values, balanced) for values, balanced in ((looked, True), (exact, False)))
     errors = {}
-    both = (_named(law, values) for values in (looked, exact))
-    for (name, ours), (_, truth) in zip(*(values.items() for values in both), strict=True):
-        scale = 1.0 if name == "restitution" else np.maximum(np.abs(truth), _SMALLEST)
-        errors[name] = np.abs(ours - truth) / scale
+    for name, values in truth.items():
+        scale = 1.0 if name == "restitution" or "fraction" in name else np.abs(values).max()
+        if name == "residual_compression":
+            scale = np.maximum(np.abs(values), max(_SMALL_DENT * scale, 1e-12))
+        errors[name] = np.abs(ours[name] - values) / scale
     errors["contact_time"][exact.restitution < _RETURNING] = 0.0
     return looked, errors
 
 
-def compare_histories(law: Law, settings: Settings, packed: Shapes, looked: Outcome) -> Array:
+def compare_histories(law: Law, rtol: float, packed: Array, looked: Outcome) -> Array:
     """Errors of the force histories of outcomes that were looked up."""
+    looked = outcome.part(looked, slice(None, None, -(-looked.restitution.size // _HISTORIES)))
     ours, exact = (outcome.history(looked.restitution.size, _SAMPLES) for _ in range(2))
     data = law.at_any_strength
     shapes.sample(data, packed, looked, ours)
-    lam, y, s, rtol = looked.inelasticity, looked.yield_ratio, looked.strength, _finer(settings)
 
     def solve(part: slice) -> None:
-        known = lam[part], y[part], rtol, ours.time[part]
-        exact.force[part], _, _ = zener.history(data, *known, strength=s[part])
+        some = outcome.part(looked, part)
+        known = some.inelasticity, some.yield_ratio, _FINER * rtol, ours.time[part]
+        exact.force[part], _, _ = zener.history(data, *known, strength=some.strength)
 
-    sweep.in_parts(solve, lam.size, -(-lam.size // _PART), sweep.no_progress)
+    sweep.in_parts(solve, looked.restitution.size)
     return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))
 
 
-def _finer(settings: Settings) -> float:
-    return max(settings.rtol / 10, RANGES["rtol"][0])
-
-
-def random_points(grid: TableGrid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Draw points of the grid's axes; a curved kink counts at its least and its largest chi.
-
-    Without a third axis ln k is 0.
-    """
-    inelasticity, overload, *strength = grid.axes
-    lows = [float(segment.start.min()) for segment in overload.segments]
-    highs = [float(segment.start.max()) for segment in overload.segments]
-    hertz = lows[0] == 0.0  # such a table begins at yield and serves slower impacts, too
-    strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], overload.largest], strict=True)]
-    strata += [(low - _NEAR_KINK, low) for low in lows[not hertz :]]
-    strata += [(high, high + _NEAR_KINK) for high in highs]
-    share = -(-count // len(strata))
-    log_chi = np.concatenate([generator.uniform(low, high, share) for low, high in strata])
+def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:
+    """Draw inelasticities, yield ratios and ln k: some on the half-space, near yield, and below it."""
+    axes, u = grid.axes, generator.random((6, count))
     # uniform in the root: COR changes most where lambda is small
-    root = generator.uniform(0.0, math.sqrt(inelasticity.largest), log_chi.size)
-    root[generator.random(log_chi.size) < _HALF_SPACE] = 0.0
-    most = strength[0].largest if strength else 0.0
-    return root**2, log_chi, generator.uniform(0.0, most, log_chi.size)
+    lam = u[0] ** 2 * (STRETCH * axes.x_max / (1.0 - axes.x_max))
+    lam[u[1] < _HALF_SPACE] = 0.0
+    log_k = np.sort(u[2]) * grid.ladder[-1]
+    x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
+    g, *later = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
+    g = np.sqrt(g)
+    end = np.maximum(grid.end(x, np.array(later)), g)
+    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top)
+    p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
+    kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
+    others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]
+    p = np.clip(np.select(kinds, others, p), slowest, top)
+    return lam, grid.yield_ratios(x, p, g), log_k
 
 
-def _named(law: Law, values: Outcome) -> dict[str, Array]:
+def _named(law: Law, values: Outcome, balanced: bool) -> dict[str, Array]:
     """Fields of `BOUNDS` from an outcome, computed as in `contactlaw.physical.rebound`."""
     compression = values.compression_ratio * values.elastic_compression
     extremes = outcome.extremes(compression.size)
     zener.extremes(law.at_any_strength, values, extremes)
-    return {
+    found = {
         "restitution": values.restitution,
         "contact_time": values.contact_time,
         "peak_compression": compression,
         "wave_fraction": values.inelasticity * values.wave_rate,
         **extremes._asdict(),
     }
+    if balanced:
+        shares = [name for name in found if "fraction" in name]
+        factor = outcome.balance(values.restitution, sum(found[name] for name in shares))
+        found.update({name: found[name] * factor for name in shares})
+    return found

@@ -1,14 +1,9 @@
-"""Where the nodes of a table lie: along lambda, and along ln chi between the kinks of the law.
+"""The grid of a table: where its nodes lie, and splines through values at them.
 
-Along lambda the nodes are uniform in x = lambda/(lambda + c), along ln chi within each segment
-between two kinks.
-
-As long as loading follows Hertz's curve, the largest compression is chi d_Y, and a kink of the law
-is a line of constant chi. A later kink is a curve chi_k(lambda), and segments begin and end along
-that curve. An impact that turns beyond a kink of the loading curve by some share p has spent a time
-there that grows as the root of p: its outcome has a term in p^(3/2) where the slope of the curve
-jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uniform in the root of
-p, in which these terms are smooth.
+`contactlaw.table.lookup` has the coordinates x and p. Along x nodes are uniform. Along p there is a
+block of columns up to yield, one from there to the end of the law and one beyond; no spline runs
+across the two kinks between them. For a pair with a rate of strain there is such a grid for each rung
+of a ladder of strengths, with rungs at the corners of the law.
 """
 
 import dataclasses
@@ -21,24 +16,19 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.equation import force, zener
-from contactlaw.laws import Law, Strengths
-from contactlaw.laws._branches import END
-from contactlaw.table import axes as _axes
-from contactlaw.table.axes import SERIES, Axis, Segment, TableGrid, chebyshev_nodes, power_series, series_values
-from contactlaw.table.lookup import ELASTIC, ROWS, STRETCHED, TERMS
+from contactlaw.laws import Law
+from contactlaw.table import lookup
+from contactlaw.table.lookup import DEGREE, RUNG, STRETCH, Axes
 
-AXES = "inelasticity", "log_overload", "log_strength"
-FEWEST = 5  # nodes of a segment along the first two axes, our choice
-_FEWEST_GRADED = 24  # nodes of a graded segment, our choice: two kinks may be only 8 % apart
-_COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
 _BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
 # Largest lambda of a pair's table. At 10 m/s a bead of tungsten carbide of radius 1 mm has 5.5 on
 # 0.6 mm of gamma-alumina.
 _LARGEST = 6.0
-# Steps in ln chi of a table that is built on demand: one as fine as its rows, and one for the long
-# tables of soft bodies, most of which is complete flow. The largest errors of both are alike.
-_STEP, _LONG_STEP = 0.03, 0.05
-_ROOM = 0.02  # least distance in ln chi from the last kink to the end of the table
+BELOW, AFTER = 8, 8  # cells up to yield, where only the sphere's stiffening counts, and beyond the law's end
+_SLOWEST = 0.02  # least p at which impacts are solved; slower ones are alike
+_ELASTIC = 25.0  # overload at the end of the first block of a law that never yields, over its first compression
+_NODES = 40  # places along x at which w and the end of the law are found
+_NEAR_END = 1e-7  # part of its range by which a law ends early: an impact has to turn before
 
 
 @dataclass(frozen=True)
@@ -51,22 +41,20 @@ class Settings:
         Largest lambda.
     largest_overload : float
         Largest chi. 40 is what V0 = 100 V_Y0 reaches on a half-space, and less on any plate.
-    inelasticity_nodes : int
-        Nodes along lambda.
-    log_overload_step : float
-        Largest distance of two nodes in ln chi.
-    stretch : float
-        c in x = lambda/(lambda + c), in which the nodes along lambda are uniform.
+    rows : int
+        Cells along lambda, uniform in lambda/(lambda + 2).
+    columns : int
+        Cells from yield to the end of the law. They are doubled up to three times while the COR errs
+        by more than promised; for a pair with a rate of strain so are the strengths.
     rtol : float
         Tolerance of the solver at each node.
     """
 
     largest_inelasticity: float = 5.0
     largest_overload: float = 40.0
-    inelasticity_nodes: int = 81
-    log_overload_step: float = 0.02
-    stretch: float = 2.0
-    rtol: float = 1e-12
+    rows: int = 32
+    columns: int = 48
+    rtol: float = 1e-9
 
     def __post_init__(self) -> None:
         for name, (low, high) in RANGES.items():
@@ -78,41 +66,10 @@ class Settings:
 RANGES = {
     "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
     "largest_overload": (1e-3, 1e20),  # the weakest body, with sigma_Y = 1e-12 E, reaches 2e18
-    "inelasticity_nodes": (FEWEST, 100_000),
-    "log_overload_step": (1e-4, 1.0),
-    "stretch": (1e-3, 1e3),
+    "rows": (4, 10_000),
+    "columns": (4, 10_000),
     "rtol": (1e-13, 1e-4),
 }
-
-
-def inelasticity_axis(settings: Settings) -> Axis:
-    """Lambda from 0 to the largest, in one segment."""
-    ends = np.zeros(SERIES), np.full(SERIES, settings.largest_inelasticity)
-    shares = np.linspace(0.0, 1.0, settings.inelasticity_nodes)
-    return Axis(AXES[0], (Segment(*ends, shares, graded=False),), settings.stretch)
-
-
-def strength_axis(strengths: Strengths, coarser: int = 1) -> Axis:
-    """Ln of the strength from 0 to the largest, in segments between the knots."""
-    segments = []
-    for (low, high), cells in zip(itertools.pairwise(strengths.knots), strengths.cells, strict=True):
-        ends = np.full(SERIES, low), np.full(SERIES, high)
-        count = max(-(-cells // coarser) + 1, _axes.FEWEST)
-        segments.append(Segment(*ends, np.linspace(0.0, 1.0, count), graded=False))
-    return Axis(AXES[2], tuple(segments))
-
-
-def with_steps(law: Law, grid: TableGrid, settings: Settings, steps: float | Array, coarser: int = 1) -> TableGrid:
-    """Place other nodes between the same kinks; one step for all segments, or one for each.
-
-    Cells along the strength are wider by a factor.
-    """
-    overload = grid.axes[1]
-    each = np.broadcast_to(steps, len(overload.segments))
-    segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
-    axes = inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)
-    more = () if law.strengths is None else (strength_axis(law.strengths, coarser),)
-    return dataclasses.replace(grid, axes=(*axes, *more))
 
 
 def largest_inelasticity(law: Law) -> float:
@@ -123,131 +80,177 @@ def largest_inelasticity(law: Law) -> float:
 def on_demand(law: Law) -> Settings:
     """Choose settings of a table that is built when it is first needed."""
     if math.isinf(law.range[1]):
-        return Settings(log_overload_step=_STEP, rtol=1e-11)
+        return Settings()
     w_m = zener.elastic_compression(law.data, 0.0)
     deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11, few=True)
-    return Settings(
-        largest_inelasticity=largest_inelasticity(law),
-        largest_overload=float(f"{_BEYOND * deepest:.3g}"),
-        log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
-        inelasticity_nodes=41,
-        rtol=1e-11 if law.strengths is None else 1e-10,
-    )
+    return Settings(largest_inelasticity(law), float(f"{_BEYOND * deepest:.3g}"))
 
 
-def axes_with(overload: Axis, law: Law, settings: Settings) -> tuple[Axis, ...]:
-    """Axes of a table, from that of ln chi, which has to fit the law and the settings."""
-    overload.check()
-    end = overload.segments[-1].end
-    if overload.stretch != math.inf or not (end == math.log(settings.largest_overload)).all():
-        raise ValueError("its axes are not those of its settings")
-    kinks = [kink for kink in law.outcome_kinks if kink <= _straight(law)]
-    if not law.is_hertz:
-        kinks.insert(0, law.range[0])
-    starts = [one.start[0] for one in overload.segments[: len(kinks)] if not np.ptp(one.start)]
-    if not np.array_equal(starts, np.log(kinks[: len(overload.segments)])):
-        raise ValueError(f"its kinks are not those of the law, {law.outcome_kinks}")
-    axes = inelasticity_axis(settings), overload
-    return axes if law.strengths is None else (*axes, strength_axis(law.strengths))
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Nodes of a table, and the beginning of its packed array."""
+
+    head: Array  # see `contactlaw.table.lookup`; without a pair
+    rungs: Array  # likewise, (rungs, RUNG)
+
+    @classmethod
+    def of(cls, packed: Array) -> "Grid":
+        """Grid of a packed array."""
+        end = lookup.HEADER + int(packed[Axes._fields.index("rungs")]) * RUNG
+        return cls(packed[: lookup.HEADER], packed[lookup.HEADER : end].reshape(-1, RUNG))
+
+    @property
+    def ladder(self) -> Array:
+        """Return ln k of the rungs."""
+        return np.log(self.rungs[:, 0])
+
+    @property
+    def axes(self) -> Axes:
+        """Numbers of cells and limits."""
+        return Axes(*self.head[: len(Axes._fields)].tolist())
+
+    def with_cells(self, rows: int, below: int, beyond: int, after: int) -> "Grid":
+        """Change the numbers of cells."""
+        head, axes = self.head.copy(), self.axes
+        counts = [below, beyond, after * (axes.after > 0.0)]
+        stride = 1 + sum(count + 3 for count in counts if count)
+        head[: lookup.PAIR] = (*(axes.x_max, rows, *counts, stride, (rows + 4) * stride), *axes[7 : lookup.PAIR])
+        return dataclasses.replace(self, head=head)
+
+    def on_ladder(self, law: Law, ladder: Array) -> "Grid":
+        """Change the strengths, which are ln k; where their laws end is found by the solver."""
+        head, axes, rungs = self.head.copy(), self.axes, np.zeros((ladder.size, RUNG))
+        head[Axes._fields.index("rungs")], rungs[:, 0], rungs[:, 2] = ladder.size, np.exp(ladder), 1.0
+        x = axes.x_max * np.array([0.0, 0.5, 1.0])
+        for n, log_k in enumerate(ladder.tolist()):
+            growth = force.growth_at(law.at_any_strength, log_k) if law.strengths else 1.0
+            rungs[n, 1] = math.sqrt(growth)
+            if law.strengths and axes.after:
+                p = (growth * _overloads(law, x, self.elastic(x), log_k) / axes.unit) ** 0.25
+                rungs[n, 2:] = np.polynomial.polynomial.polyfit(x, p / self.end(x), 2)
+        return dataclasses.replace(self, head=head, rungs=rungs)
+
+    def _polynomial(self, x: Array, begins: int) -> Array:
+        return np.polynomial.polynomial.polyval(x, self.head[begins : begins + DEGREE + 1])
+
+    def elastic(self, x: Array) -> Array:
+        """Return w, the largest elastic compression."""
+        return np.asarray(self._polynomial(x, lookup.ELASTIC) ** 4)
+
+    def end(self, x: Array, later: Array | None = None) -> Array:
+        """Return p at the end of the law, of slow impacts or with the numbers of a rung (3, ...)."""
+        slow = self._polynomial(x, lookup.END)
+        return slow if later is None else slow * (later[0] + x * (later[1] + x * later[2]))
+
+    def yield_ratios(self, x: Array, p: Array, g: Array) -> Array:
+        """Yield ratios y at places; slower impacts than the slowest have its outcome."""
+        chi = self.axes.unit * np.maximum(p / g, self.axes.slowest) ** 4
+        return np.asarray(self.elastic(x) / chi)
+
+    def nodes(self) -> tuple[Array, Array, Array]:
+        """Inelasticity, yield ratio and ln k at every node, (rungs, rows, columns)."""
+        axes, rungs = self.axes, self.rungs.T[:, :, None, None]
+        g = np.sqrt(rungs[1])
+        x = np.linspace(0.0, axes.x_max, int(axes.rows) + 1)[:, None] + 0.0 * g
+        end = np.maximum(self.end(x, rungs[2:]), g)
+        q, s, t = (np.linspace(0.0, 1.0, int(count) + 1) for count in (axes.below, axes.beyond, axes.after))
+        p = [g * q / (2.0 - q) + 0.0 * x, (2.0 * g + s * (end - 2.0 * g)) / (2.0 - s)]
+        if axes.after:
+            p.append(end + t * (np.maximum(axes.top, lookup.NEXT * end) - end))
+        whole = np.concatenate(p, axis=2)
+        y = self.yield_ratios(x, whole, g)
+        return STRETCH * x / (1.0 - x) + 0.0 * whole, y, np.log(rungs[0]) + 0.0 * whole
+
+    def coefficients(self, values: Array) -> Array:
+        """Coefficients of cubic splines through values at nodes, along rows and columns.
+
+        Values may have more axes. Rows and columns end with one more coefficient: kernels read it
+        with the weight 0, without a test.
+        """
+        counts = [int(count) + 1 for count in self.axes[2:5] if count]
+        blocks = np.split(values.swapaxes(0, 2), np.cumsum(counts)[:-1])
+        fitted = np.concatenate([spline_coefficients(block) for block in blocks]).swapaxes(0, 2)
+        fitted = spline_coefficients(fitted.swapaxes(0, 1)).swapaxes(0, 1)
+        return np.pad(fitted, [(0, 0), (0, 1), (0, 1), *[(0, 0)] * (values.ndim - 3)], mode="edge")
+
+    def packed(self, coefficients: Array) -> Array:
+        """Pack all into one array."""
+        return np.concatenate([self.head, self.rungs.ravel(), coefficients.ravel()])
 
 
-def _straight(law: Law) -> float:
-    """Compression up to which kinks lie at constant chi: the end of Hertz's curve, or yield."""
-    if not law.is_hertz:
-        return 1.0 if law.yields else 0.0
-    return law.loading_kinks[0] if law.loading_kinks else math.inf
-
-
-def _with_nodes(segment: Segment, step: float) -> Segment:
-    """Place the nodes of a segment."""
-    length = float((segment.end - segment.start).max())
-    # steps that are even in the root are twice as long at the end as on average
-    least, denser = (_FEWEST_GRADED, 1.25) if segment.graded else (FEWEST, 1.0)
-    if not segment.end.max() > 0.0:
-        denser = 1.0 / _COARSER
-    cells = max(least - 1, math.ceil(denser * length / step))
-    shares = np.linspace(0.0, 1.0, cells + 1)
-    return segment._replace(shares=shares**2 if segment.graded else shares)
-
-
-def grid(law: Law, settings: Settings) -> TableGrid:
-    """Place the nodes for a law that yields; its kinks are found by the solver."""
+def grid(law: Law, settings: Settings) -> Grid:
+    """Place the nodes for a law that yields, or is not Hertz's; where it ends is found by the solver."""
     if not law.yields and law.is_hertz:
         reason = "never yields; the edge chi = 1 of any table serves it"
         raise ArgumentError("law", law.name, reason)
-    inelasticity = inelasticity_axis(settings)
-    lam = series_values(inelasticity)
-    elastic = elastic_compressions(law, lam)
-    lines, graded = _kink_lines(law, settings, lam, elastic)
-    segments = tuple(
-        _with_nodes(Segment(start, end, np.empty(0), root), settings.log_overload_step)
-        for (start, end), root in zip(itertools.pairwise(lines), graded, strict=True)
-    )
-    axes = inelasticity, Axis(AXES[1], segments)
+    # The table of a law that never yields has its first block where the law is still Hertz's, or
+    # impacts lose the same share at all speeds, see `zener.follow_impact`.
+    unit, most = 1.0 if law.yields else _ELASTIC * law.range[0], settings.largest_overload
+    x_max = settings.largest_inelasticity / (settings.largest_inelasticity + STRETCH)
+    x = x_max * (0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES))
+    lam = STRETCH * x / (1.0 - x)
+    w, end = np.asarray(zener.elastic_compression(law.data, lam)), np.full(_NODES, most)
+    after = False
+    if law.range[1] < math.inf:
+        found = _overloads(law, x, w)
+        after = found.min() < most
+        end = found if after else end
+    window = x[[0, -1]]
+    series = [np.polynomial.Polynomial.fit(x, one**0.25, DEGREE, window=window).coef for one in (w, end / unit)]
+    head = np.zeros(lookup.HEADER)
+    slowest = _SLOWEST if law.is_hertz else max(_SLOWEST, 1.001 * (law.range[0] / unit) ** 0.25)
+    head[: lookup.PAIR] = (x_max, 0, 0, 0, after, 0, 0, 1, (most / unit) ** 0.25 * after, unit, slowest)
+    head[lookup.ELASTIC : lookup.END], head[lookup.END :] = series
+    made = Grid(head, np.empty(0)).with_cells(settings.rows, BELOW, settings.columns, AFTER)
+    return made.on_ladder(law, np.zeros(1))
+
+
+def ladder_of(law: Law, widest: float) -> Array:
+    """Rungs ln k of a law: its corners, and others so that no two are farther apart than `widest`."""
     if law.strengths is None:
-        return TableGrid(axes, elastic)
-    has_end = len(lines) > 2 + (not law.is_hertz)  # of the law's range
-    return TableGrid((*axes, strength_axis(law.strengths)), elastic, _rows(law, settings, has_end))
+        return np.zeros(1)
+    rungs = [np.zeros(1)]
+    for low, high in itertools.pairwise(law.strengths.knots):
+        rungs.append(np.linspace(low, high, 1 + math.ceil((high - low) / widest))[1:])
+    return np.concatenate(rungs)
 
 
-def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
-    """Rows of polynomials for the segments in ln k, as `contactlaw.table.lookup` has them."""
-    assert law.strengths is not None
-    data, knots = law.at_any_strength, np.array(law.strengths.knots)
-    places = knots[:-1, None] + np.diff(knots)[:, None] * chebyshev_nodes(TERMS)
-    along = inelasticity_axis(settings).values(chebyshev_nodes(ROWS - ELASTIC))
-    every = np.append(places, 0.0)  # the last one is the slow pair, which the others are beside
-    lam, s = np.tile(along, every.size), np.repeat(every, along.size)
-    elastic = elastic_compressions(law, lam, s)
-    end = np.ones((every.size, along.size))
-    if has_end:
-        kink = np.repeat([_end(data, one) for one in every.tolist()], along.size)
-        end = np.log(_overloads(law, kink, lam, elastic, s)).reshape(end.shape)
-    log_w_m = np.log(elastic).reshape(end.shape)
-    growth = [[math.log(force.growth_at(data, one))] for one in every.tolist()]
-    factor = [power_series(one, ELASTIC - STRETCHED - 1) for one in end[-1] / end]
-    stiffer = [power_series(one, ROWS - ELASTIC - 1) for one in log_w_m - log_w_m[-1]]
-    rows = np.split(np.hstack([growth, factor, stiffer])[:-1], len(places))
-    return np.array([[power_series(row, TERMS - 1) for row in one.T] for one in rows])
-
-
-def _end(data: Array, strength: float) -> float:
-    """Compression up to which the law of a strength holds: its last piece is a tangent."""
-    own = force.at_strength(data, strength, np.empty(force.room_for(data)))
-    return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
-
-
-def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tuple[list[Array], list[bool]]:
-    """Ln chi of the kinks and the table's end along lambda, and which segments are graded."""
-    end = math.log(settings.largest_overload)
-    leaves = _straight(law)
-    lines, graded = [], []
-    if not law.is_hertz:
-        lines, graded = [np.full(lam.size, math.log(law.range[0]))], [False]
-    for kink in law.outcome_kinks:
-        if kink <= leaves:
-            line = np.full(lam.size, math.log(kink))
-        else:
-            line = np.log(_overloads(law, kink, lam, elastic))
-        if line.max() < end - _ROOM:
-            lines.append(line)
-            graded.append(kink in (*law.loading_kinks, law.range[1]))
-    return [*lines, np.full(lam.size, end)], graded
-
-
-def _overloads(law: Law, kink: Array | float, lam: Array, elastic: Array, strength: Array | float = 0.0) -> Array:
-    """Overloads at which the largest compression is that of a kink."""
-    data = law.at_any_strength
-    found: Array = np.full(np.shape(lam), math.nan)
+def _overloads(law: Law, x: Array, w: Array, log_k: float = 0.0) -> Array:
+    """Overloads of impacts that turn where the law of a strength ends."""
+    data, lam, deepest = law.at_any_strength, STRETCH * x / (1.0 - x), law.range[1]
+    if law.strengths is not None:  # its last piece is a tangent
+        own = force.at_strength(data, log_k, np.empty(force.room_for(data)))
+        deepest = float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
+    found: Array = np.full(lam.size, math.nan)
     # impacts that turn next to a kink may want smaller steps than there are, others at each rtol
-    for rtol in (1e-12, 1e-11, 1e-10, 1e-9):
-        tried = zener.overload_at(data, lam, elastic, kink, rtol, strength=strength)
+    for rtol in (1e-11, 1e-10, 1e-9):
+        tried = zener.overload_at(data, lam, w, deepest * (1.0 - _NEAR_END), rtol, strength=log_k)
         found = np.where(np.isfinite(found), found, tried)
         if np.isfinite(found).all():
             return found
-    raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {np.unique(kink)} d_Y")
+    raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {deepest} d_Y")
 
 
-def elastic_compressions(law: Law, lam: Array, strength: Array | float = 0.0) -> Array:
-    """Largest compressions w_m of impacts that just yield."""
-    return np.asarray(zener.elastic_compression(law.at_any_strength, lam, strength))
+def spline_coefficients(values: Array) -> Array:
+    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends.
+
+    With v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node and no jump of the third derivative next to
+    the ends, c is known there; a tridiagonal system is left between. Solved without LAPACK, whose
+    threads would fight for the cores with those of an MPI run.
+    """
+    n = len(values)
+    if n < 4:
+        raise ArgumentError("values", n, "a spline with not-a-knot ends needs at least 4 nodes")
+    c = np.empty((n + 2, *values.shape[1:]))
+    c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
+    gain = np.zeros(n + 2)
+    for k in range(3, n - 1):
+        gain[k] = 1.0 / (4.0 - gain[k - 1])
+        c[k] = (6.0 * values[k - 1] - c[k - 1]) * gain[k]
+    for k in range(n - 2, 2, -1):
+        c[k] -= gain[k] * c[k + 1]
+    for edge, inwards in ((1, 1), (n, -1)):
+        node = edge - 1
+        c[edge] = 6.0 * values[node + inwards] - 4.0 * c[edge + inwards] - c[edge + 2 * inwards]
+        c[edge - inwards] = 6.0 * values[node] - 4.0 * c[edge] - c[edge + inwards]
+    return c

@@ -3,75 +3,72 @@
 A contact is followed through its root compression q: from touch up to the largest one and, on the
 unloading curve, down to separation. A shape is the list of times and speeds at which q passes given
 shares of its largest value. Between two of these states runs the cubic through both (Hermite), with
-the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f. With 24 states on
-either side of the top the force is within 3e-5 of its peak, up to lam = 5, and within 6e-5 where
-the loading curve has corners.
+the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f.
 
-Times and speeds at given shares are smooth in lam and ln chi. They need fewer nodes than COR does:
-the grid here is coarser than the table's, with the same segments between kinks.
+Times and speeds at given shares are smooth in the coordinates of a table. They need fewer nodes than
+COR does: the grid here is coarser than the table's, with the same strengths.
 
 Legend: d compression, q its root, f force, u speed of the sphere, t time; w_m, lam, y as in
-`contactlaw.equation.zener`, chi = w_m/y; all on Hertz's scale.
+`contactlaw.equation.zener`; all on Hertz's scale.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-from contactlaw.equation import force
+from contactlaw.equation import force, zener
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
-from contactlaw.table import lookup, splines
-from contactlaw.table.axes import TableGrid
+from contactlaw.laws import Law
+from contactlaw.table import lookup, sweep
+from contactlaw.table.grid import Grid
+from contactlaw.table.sweep import Progress
 
-Singles = NDArray[np.float32]
-
-STATES = 24  # on either side of the top
+STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
-ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
-STEP = 0.08  # largest distance of two nodes in ln chi
-COARSER = 3  # factor on distances in ln k
+_ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 8  # cells along lambda, up to yield, to the law's end and beyond
 
 
-def pack(grid: TableGrid, states: Singles) -> Shapes:
-    """Fit splines through shapes, (2, SIZE) at each node."""
-    flat = states.reshape(*grid.shape, 2 * SIZE).astype(np.float64)
-    fitted = splines.surface(flat, grid).astype(np.float32)
-    whole = fitted.reshape(*fitted.shape[:2], -1, 2 * SIZE)
-    return Shapes(splines.header(grid), whole)
+def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
+    """Solve shapes at nodes, times [T_H] and speeds [V0], and fit splines."""
+    coarse = grid.with_cells(_ROWS, _BELOW, max(_BEYOND, int(grid.axes.beyond)), _AFTER)
+    lam, y, strength = coarse.nodes()
+    flat = lam.ravel(), y.ravel(), strength.ravel()
+    states = np.empty((lam.size, 2, SIZE))
 
+    def solve(part: slice) -> None:
+        some = [each[part] for each in flat]
+        status, time, speed = zener.shape(law.at_any_strength, *some[:2], rtol, SHARES, some[2])
+        if status.any():
+            raise sweep.failure("shape", law, *some[:2], *zener.failure(status))
+        states[part] = np.stack((time, speed), axis=1)[:, :, :-1]
 
-class Shapes(NamedTuple):
-    """Splines through the shapes at the nodes of a grid, as kernels take them."""
-
-    header: Array  # see `contactlaw.table.lookup`
-    coefficients: Singles  # (rows, columns, layers, 2 SIZE): times [T_H], then speeds [V0]
+    sweep.in_parts(solve, lam.size, progress)
+    return coarse.packed(coarse.coefficients(states.reshape(*lam.shape, 2 * SIZE)))
 
 
 @kernel
-def _states(shapes: Shapes, lam: float, log_chi: float, strength: float, out: Array) -> None:
+def _states(shapes: Array, at: lookup.Spot, out: Array) -> None:
     """Put times and speeds of one contact, between touch and separation, into out (2 SIZE,)."""
-    x, at = lam / (lam + shapes.header[lookup.STRETCH]), lookup.at_strength(shapes.header, strength)
-    row, column, s, t = lookup.locate(shapes.header, x, lookup.like(log_chi, lookup.stretched(shapes.header, x, at)))
-    a, b, c = lookup.weights(s), lookup.weights(t), lookup.layer_weights(at)
+    axes = lookup.axes_of(shapes)
+    rungs, stride, size, row, column = int(axes.rungs), int(axes.stride), int(axes.size), int(at.row), int(at.column)
+    a, b = lookup.weights(at.row - row), lookup.weights(at.column - column)
+    first = (at.rung * size + row * stride + column) * out.size + lookup.HEADER + lookup.RUNG * rungs
     for n in range(out.size):
         out[n] = 0.0
-    layers = min(shapes.coefficients.shape[2], 4)
-    for k in range(16 * layers):
-        i, j, m = k // (4 * layers), k // layers % 4, k % layers
-        weight = a[i] * b[j] * c[m] / 216.0
-        values = shapes.coefficients[row + i, column + j, at.layer + m]
+    for k in range(16 * min(rungs, 2)):
+        i, j, m = k // 4 % 4, k % 4, k // 16
+        weight = (at.between if m == 1 else 1.0 - at.between) * a[i] * b[j] / 36.0
+        p = first + (m * size + i * stride + j) * out.size
         for n in range(out.size):
-            out[n] += weight * values[n]
+            out[n] += weight * shapes[p + n]
 
 
 @kernel
@@ -86,7 +83,7 @@ def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float)
 
 
 @kernel(cache=True)
-def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
+def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
     samples, room = out.time.shape[1], np.empty(force.room_for(law))
     inner = np.empty(2 * SIZE)
@@ -95,8 +92,7 @@ def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
         e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
         own = law if room.size == 0 else force.at_strength(law, found.strength[n], room)
-        log_chi, strength = math.log(w_m / y) if y < math.inf else 0.0, found.strength[n]
-        _states(shapes, lam, log_chi, strength, inner)
+        _states(shapes, lookup.spot_at(shapes, lam, y, found.strength[n]), inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # to assign to a slice takes the compiler a second
             t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]

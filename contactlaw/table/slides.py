@@ -1,7 +1,7 @@
 """Tangential rebound from a table: the change of the contact point's speed in oblique impacts.
 
 With psi = v_s/(mu V0), v_s the speed of the contact point along the surface, the change over mu V0
-is a function of psi, of the normal impact's lambda and ln chi, and of kappa, which belongs to the
+is a function of psi, of the place of the normal impact in a table, and of kappa, which belongs to the
 pair. It has two corners: up to psi = 1/kappa the contact sticks at first, and from
 
     psi = 7/2 (1 + e) - e/kappa
@@ -9,13 +9,11 @@ pair. It has two corners: up to psi = 1/kappa the contact sticks at first, and f
 it slides all the time, so that the change is 7/2 (1 + e). Both follow from the speeds at first
 touch and at separation, at which the springs' stretch and their share of the normal force change
 alike. Each of the two ranges has an axis of its own from 0 to 1, along which the change over psi is
-interpolated: a corner that moved between the nodes of lambda and chi would cost ten times as many.
+interpolated: a corner that moved between the nodes of the table would cost ten times as many.
 
-The grid has the same kinks as the table's. All is packed into one array, as `contactlaw.table.
-lookup` does it: a header, the coefficients, kappa.
+The grid is as that of shapes, but finer; the packed array ends with kappa.
 """
 
-import dataclasses
 import math
 
 import numpy as np
@@ -26,15 +24,13 @@ from contactlaw.equation import outcome, tangential, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
-from contactlaw.table import grid as grids
-from contactlaw.table import lookup, splines, sweep
-from contactlaw.table.nodes import Table
+from contactlaw.table import lookup, sweep
+from contactlaw.table.grid import ladder_of, spline_coefficients
+from contactlaw.table.table import Table
 
-_CHANGE_AT, _KAPPA_AT = lookup.COR_AT, lookup.OTHERS_AT  # entries of the header
 _NODES = 49  # of each range of psi
-_ROWS = 49  # along lambda
-_STEP, _ELASTIC_STEP = 0.12, 0.25  # largest distances in ln chi, beyond yield and below
-_COARSER = 3  # factor on distances in ln k
+_CELLS = 24, 4, 32, 4  # along lambda, up to yield, to the end of the law and beyond
+_APART = 0.2  # largest distance of rungs in ln k; straight between them errs by less than 2e-3
 _WIDTH = 2 * (_NODES + 2)  # coefficients along psi
 _SAMPLES, _SPRINGS = 401, 32  # of the histories at the nodes
 _RTOL = 1e-10
@@ -49,35 +45,18 @@ def _range(kappa: float, e: float) -> float:
 def build(table: Table, kappa: float) -> Array:
     """Solve oblique impacts at the nodes, on all cores, and fit splines."""
     law = table.law
-    segments = table.grid.axes[1].segments
-    steps = np.where([s.end.max() <= 0.0 for s in segments], _ELASTIC_STEP, _STEP)
-    settings = dataclasses.replace(table.settings, inelasticity_nodes=_ROWS)
-    grid = grids.with_steps(law, table.grid, settings, steps, _COARSER)
-    lam, chi, strength = grid.points()
+    grid = table.grid.with_cells(*_CELLS).on_ladder(law, ladder_of(law, _APART))
+    lam, y, strength = grid.nodes()
+    found = sweep.solved(law, lam.ravel(), y.ravel(), strength.ravel(), _RTOL)
     change = np.empty((lam.size, 2 * _NODES))
-    strengths = grid.axes[2].sizes if len(grid.axes) > 2 else [1]
-    last = np.cumsum(strengths) - 1
-    first = last + 1 - strengths
-    layer = np.arange(lam.size) % sum(strengths)
-    solved = np.flatnonzero(np.isin(layer, [*first, *last]))
 
     def solve(part: slice) -> None:
-        some = solved[part]
-        out = outcome.at(lam[some], np.empty_like(lam[some]), strength[some])
-        zener.solve_overloads(law.at_any_strength, _RTOL, chi[some], out)
-        change[some] = _changes(law.at_any_strength, out, kappa)
+        change[part] = _changes(law.at_any_strength, outcome.part(found, part), kappa)
 
-    sweep.in_parts(solve, solved.size, len(grid.rows), sweep.no_progress)
-    layers = change.reshape(-1, sum(strengths), 2 * _NODES)
-    for a, b in zip(first, last, strict=True):
-        for n in range(a + 1, b):  # straight in ln k, which errs by less than 2e-3
-            layers[:, n] = layers[:, a] + (n - a) / (b - a) * (layers[:, b] - layers[:, a])
-    along = [splines.spline_coefficients(half).T for half in np.split(change.T, 2)]
-    values = np.concatenate(along, axis=1).reshape(*grid.shape, _WIDTH)
-    coefficients = splines.surface(values, grid)
-    head = splines.header(grid)
-    head[_CHANGE_AT], head[_KAPPA_AT] = head.size, head.size + coefficients.size
-    return np.concatenate((head, coefficients.ravel(), [kappa]))
+    sweep.in_parts(solve, lam.size)
+    along = [spline_coefficients(half).T for half in np.split(change.T, 2)]
+    values = np.concatenate(along, axis=1).reshape(*lam.shape, _WIDTH)
+    return np.append(grid.packed(grid.coefficients(values)), kappa)
 
 
 def _changes(law: Array, out: Outcome, kappa: float) -> Array:
@@ -107,12 +86,9 @@ def after(
 
 
 @kernel(inline=True)
-def change(slides: Array, x: float, log_chi: float, strength: float, e: float, psi: float) -> float:
-    """Change of the contact point's speed in an impact inside the table [mu V0].
-
-    x maps lambda; ln chi is that of the slow impact which is like it.
-    """
-    kappa = slides[int(slides[_KAPPA_AT])]
+def change(slides: Array, at: lookup.Spot, e: float, psi: float) -> float:
+    """Change of the contact point's speed in an impact inside the table [mu V0]."""
+    kappa = slides[slides.size - 1]
     size, full = abs(psi), POINT * (1.0 + e)
     place = size * kappa
     if place > 1.0:
@@ -122,23 +98,25 @@ def change(slides: Array, x: float, log_chi: float, strength: float, e: float, p
     second = place > 1.0
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
     cell = min(int(along), _NODES - 2)
-    row, column, s, t = lookup.locate(slides, x, log_chi)
-    at, layers = lookup.at_strength(slides, strength), max(int(slides[lookup.LAYERS]), 1)
-    a, b, c = lookup.weights(s), lookup.weights(t), lookup.weights(along - cell)
-    columns, d = int(slides[lookup.COLUMNS]), lookup.layer_weights(at)
-    first = int(slides[_CHANGE_AT]) + ((row * columns + column) * layers + at.layer) * _WIDTH
+    c = lookup.weights(along - cell)
+    axes = lookup.axes_of(slides)
+    rungs, stride, rungsize = int(axes.rungs), int(axes.stride), int(axes.size)
+    row, column = int(at.row), int(at.column)
+    a, b = lookup.weights(at.row - row), lookup.weights(at.column - column)
+    first = (at.rung * rungsize + row * stride + column) * _WIDTH + lookup.HEADER + lookup.RUNG * rungs
     first += cell + (_NODES + 2 if second else 0)
     v0 = v1 = v2 = v3 = 0.0
-    for i in range(4):
-        for j in range(4):
-            for m in range(min(layers, 4)):
-                p = np.uint64(first + ((i * columns + j) * layers + m) * _WIDTH)
-                w = a[i] * b[j] * d[m]
+    for m in range(min(rungs, 2)):
+        way = at.between if m == 1 else 1.0 - at.between
+        for i in range(4):
+            for j in range(4):
+                p = np.uint64(first + (m * rungsize + i * stride + j) * _WIDTH)
+                w = way * a[i] * b[j]
                 v0 += w * slides[p]
                 v1 += w * slides[p + np.uint64(1)]
                 v2 += w * slides[p + np.uint64(2)]
                 v3 += w * slides[p + np.uint64(3)]
-    value = (c[0] * v0 + c[1] * v1 + c[2] * v2 + c[3] * v3) * (1.0 / 1296.0)
+    value = (c[0] * v0 + c[1] * v1 + c[2] * v2 + c[3] * v3) * (1.0 / 216.0)
     return math.copysign(min(size * value, full), psi)
 
 
@@ -146,10 +124,5 @@ def change(slides: Array, x: float, log_chi: float, strength: float, e: float, p
 def changes(slides: Array, found: Outcome, psi: Array, out: Array) -> None:
     """`change` of many impacts whose normal outcomes are inside the table."""
     for n in range(psi.size):
-        y = found.yield_ratio[n]
-        log_chi = math.log(found.elastic_compression[n] / y) if y < math.inf else -math.inf
-        lam = found.inelasticity[n]
-        x, strength = lam / (lam + slides[lookup.STRETCH]), found.strength[n]
-        at = lookup.at_strength(slides, strength)
-        log_chi = lookup.like(log_chi, lookup.stretched(slides, x, at))
-        out[n] = change(slides, x, log_chi, strength, found.restitution[n], psi[n])
+        at = lookup.spot_at(slides, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
+        out[n] = change(slides, at, found.restitution[n], psi[n])

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
-import numpy as np
-
 from contactlaw._arrays import Array
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import Outcome
@@ -15,6 +13,7 @@ from contactlaw.laws import Law
 
 Progress = Callable[[Iterator[Any], int], Iterable[Any]]
 _T = TypeVar("_T")
+_PART = 250  # points that a thread solves at a time
 
 
 def no_progress(parts: Iterator[Any], total: int) -> Iterable[Any]:
@@ -22,10 +21,9 @@ def no_progress(parts: Iterator[Any], total: int) -> Iterable[Any]:
     return parts
 
 
-def in_parts(function: Callable[[slice], _T], count: int, parts: int, progress: Progress) -> Sequence[_T]:
+def in_parts(function: Callable[[slice], _T], count: int, progress: Progress = no_progress) -> Sequence[_T]:
     """Apply a function that releases the GIL to slices of `count` points, on all cores."""
-    edges = np.linspace(0, count, min(parts, count) + 1).astype(int).tolist()
-    slices = [slice(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    slices = [slice(low, min(low + _PART, count)) for low in range(0, count, _PART)]
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         # compile the function once, before the threads call it
@@ -36,30 +34,28 @@ def in_parts(function: Callable[[slice], _T], count: int, parts: int, progress: 
         pool.shutdown(cancel_futures=True)
 
 
-def solve_overloads(
-    law: Law, lam: Array, chi: Array, strength: Array, rtol: float, parts: int, progress: Progress = no_progress
-) -> Outcome:
-    """Solve impacts at many points; those with the same lambda have to lie side by side.
+def solved(law: Law, lam: Array, y: Array, strength: Array, rtol: float, progress: Progress = no_progress) -> Outcome:
+    """Solve impacts at many points.
 
     Raises
     ------
     RuntimeError
         If one does not solve; the message names it.
     """
-    out = outcome.at(lam, np.empty(lam.size), strength)
+    out = outcome.at(lam, y, strength)
 
     def solve(part: slice) -> None:
-        status, n = zener.solve_overloads(law.at_any_strength, rtol, chi[part], outcome.part(out, part))
+        status, n = zener.solve_all(law.at_any_strength, rtol, outcome.part(out, part))
         if status != zener.OK:
-            raise failure("node", law, lam[part], chi[part], status, n)
+            raise failure("node", law, lam[part], y[part], status, n)
 
-    in_parts(solve, lam.size, parts, progress)
+    in_parts(solve, lam.size, progress)
     return out
 
 
-def failure(what: str, law: Law, lam: Array, chi: Array, status: int, n: int) -> RuntimeError:
+def failure(what: str, law: Law, lam: Array, y: Array, status: int, n: int) -> RuntimeError:
     """Say which of several points did not solve."""
     return RuntimeError(
-        f"table for law {law.name!r}: the {what} lambda = {lam[n]:.6g}, chi = {chi[n]:.6g} did not "
+        f"table for law {law.name!r}: the {what} lambda = {lam[n]:.6g}, d_Y/(V0 T_H) = {y[n]:.6g} did not "
         f"solve: {zener.MESSAGES[status]}"
     )

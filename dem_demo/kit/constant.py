@@ -10,7 +10,7 @@ from contactlaw.table import Settings
 
 LEAST = 0.2
 # A coarse table is enough: the engine integrates the force, and half-spaces have lambda = 0.
-_COARSE = Settings(largest_inelasticity=1e-2, inelasticity_nodes=5, log_overload_step=0.2)
+_COARSE = Settings(largest_inelasticity=1e-2, rows=5, columns=20)
 _BEGIN = 1e-7  # [R*], compression at which losses begin; 1 cm/s compresses 500 times as far
 
 

@@ -1,0 +1,186 @@
+"""The table of one contact law: the equation solved at every node."""
+
+import dataclasses
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactlaw._arrays import Array
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import STORED, Outcome
+from contactlaw.laws import Law
+from contactlaw.table import grid as grids
+from contactlaw.table import shapes, sweep
+from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes
+from contactlaw.table.grid import AFTER, BELOW, Grid, Settings
+from contactlaw.table.lookup import STRETCH
+from contactlaw.table.sweep import Progress, no_progress
+
+POINTS = 2000  # points of the certificate of a table that is built on demand
+_DOUBLINGS = 4  # numbers of columns, and distances of rungs, that are tried
+_APART = 0.025  # largest distance of rungs in ln k at first
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A table, as it is stored.
+
+    Parameters
+    ----------
+    law : Law
+        Force law of the impacts.
+    settings : Settings
+        Extent, and fineness to begin with.
+    packed : ndarray of float64
+        Grid and splines, for the kernels of `contactlaw.table.lookup`; without a pair.
+    histories : ndarray of float64, optional
+        The same for the shapes of force histories; None until they are needed.
+    certificate : Certificate, optional
+        How far lookups are from the solver.
+    """
+
+    law: Law
+    settings: Settings
+    packed: Array
+    histories: Array | None = None
+    certificate: Certificate | None = None
+
+    @functools.cached_property
+    def grid(self) -> Grid:
+        """Nodes of the fields."""
+        return Grid.of(self.packed)
+
+    @property
+    def exceeded(self) -> dict[str, float]:
+        """Errors of the certificate that are larger than promised."""
+        return {} if self.certificate is None else self.certificate.exceeded(bounds(self.law))
+
+
+def build(
+    law: Law, settings: Settings | None = None, *, points: int = POINTS, progress: Progress = no_progress
+) -> Table:
+    """Solve the equation at all nodes, on all cores, until the certificate of the table passes.
+
+    Parameters
+    ----------
+    law : Law
+        A law that yields.
+    settings : Settings, optional
+        Extent and fineness.
+    points : int, optional
+        Number of random places at which the table is compared with the solver.
+    progress : callable, optional
+        ``progress(parts, total)`` wraps the iterator over finished parts, as ``tqdm`` does.
+
+    Returns
+    -------
+    Table
+        With its certificate; without shapes of force histories.
+
+    Raises
+    ------
+    ValueError
+        If the law never yields: the elastic edge of any table serves it.
+    RuntimeError
+        If a node does not solve; the message names it.
+    """
+    settings = settings or grids.on_demand(law)
+    slow = dataclasses.replace(law, strengths=None)
+    grid = grids.grid(slow, settings)
+    for doubling in range(_DOUBLINGS):
+        grid = grid.with_cells(settings.rows, BELOW, settings.columns * 2**doubling, AFTER)
+        table = _certified(slow, settings, grid, points, progress, {})
+        if not table.exceeded:
+            break
+    known: dict[float, Array] = {}
+    for halving in range(_DOUBLINGS if law.strengths else 0):
+        ladder = grids.ladder_of(law, _APART / 2**halving)
+        table = _certified(law, settings, grid.on_ladder(law, ladder), points, progress, known)
+        if not table.exceeded:
+            break
+    return table
+
+
+def _certified(
+    law: Law, settings: Settings, grid: Grid, points: int, progress: Progress, known: dict[float, Array]
+) -> Table:
+    """Make a table from the nodes of a grid; the fields of rungs that are known need no solutions."""
+    lam, y, strength = grid.nodes()
+    rungs = []
+    for n, log_k in enumerate(grid.ladder.tolist()):
+        if log_k not in known:
+            at = lam[n].ravel(), y[n].ravel(), strength[n].ravel()
+            found = sweep.solved(law, *at, settings.rtol, progress)
+            known[log_k] = _stored(law, found, grid).reshape(len(STORED), *lam[n].shape)
+        rungs.append(known[log_k])
+    fields = [grid.coefficients(values) for values in np.array(rungs).swapaxes(0, 1)]
+    table = Table(law, settings, grid.packed(np.array(fields)))
+    return dataclasses.replace(table, certificate=certify(table, points))
+
+
+def _stored(law: Law, found: Outcome, grid: Grid) -> Array:
+    """Fields that tables keep, see `contactlaw.equation.outcome.STORED`."""
+    elastic = grid.elastic(found.inelasticity / (found.inelasticity + STRETCH))
+    lost, extremes = 1.0 - found.restitution, outcome.extremes(elastic.size)
+    zener.extremes(law.at_any_strength, found, extremes)
+    still = found.inelasticity == 0.0  # no waves: energies alone give the COR, 1 exactly without losses
+    lost[still] = 1.0 - np.sqrt(1.0 - extremes.plastic_fraction[still] - extremes.other_fraction[still])
+    peak = found.compression_ratio * found.elastic_compression
+    return np.array([lost, 1.0 / found.contact_time, found.wave_rate, peak / elastic])
+
+
+def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:
+    """Add the shapes of force histories, and their error to the certificate.
+
+    Parameters
+    ----------
+    table : Table
+        Table from `build`.
+    points, progress
+        As in `build`.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    RuntimeError
+        If a shape does not solve; the message names it.
+    """
+    whole = dataclasses.replace(table, histories=shapes.build(table.law, table.grid, table.settings.rtol, progress))
+    return dataclasses.replace(whole, certificate=certify(whole, points))
+
+
+def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Progress = no_progress) -> Certificate:
+    """Compare lookups with the solver at random points off the grid.
+
+    A fifth of the points lie below yield, a fifth within 2 % of the speed of yield, a tenth beyond
+    the end of the law where the table goes on, the others between. A twentieth of the points are on
+    the half-space.
+
+    Parameters
+    ----------
+    table : Table
+    points : int, optional
+        Number of points, at least 100.
+    seed : int, optional
+        Seed of their generator.
+    progress : callable, optional
+        As in `build`.
+
+    Returns
+    -------
+    Certificate
+        With the error of force histories if the table has them.
+
+    Raises
+    ------
+    ValueError
+        If there are too few or too many points, or the seed is negative.
+    """
+    looked, errors = compare_outcomes(table.law, table.settings.rtol, table.packed, points, seed, progress)
+    if table.histories is not None:
+        errors["force_history"] = compare_histories(table.law, table.settings.rtol, table.histories, looked)
+    return Certificate.of(errors, looked.restitution.size, seed)
