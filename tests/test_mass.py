@@ -107,7 +107,7 @@ def test_the_equation_in_si_units(share):
 @pytest.mark.parametrize("mass", [None, MASS / 1.7])
 def test_yield_speeds_know_the_end_of_a_table_that_was_given(mass):
     pair = cl.Pair(ALUMINA, "glass")
-    small = Settings(largest_inelasticity=0.5, inelasticity_nodes=41, log_overload_step=0.03)
+    small = Settings(largest_inelasticity=0.5)
     for table in (small, cl.ImpactModel(pair, table=small).table):
         heavy = "m the" if mass is None else f"m and mass={mass:g} kg the"
         with pytest.raises(ValueError, match=f"{heavy} inelasticity .*above 0.5"):

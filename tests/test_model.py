@@ -25,7 +25,7 @@ NOT_POSITIVE += [np.ma.masked_array([5.0, 6.0], mask=[0, 1])]
 @pytest.fixture(scope="module")
 def small_table():
     return table.build(
-        laws.law("myc"), table.Settings(largest_inelasticity=1.0, largest_overload=5.0, inelasticity_nodes=41)
+        laws.law("myc"), table.Settings(largest_inelasticity=1.0, largest_overload=5.0)
     )
 
 

@@ -28,8 +28,9 @@ from contactlaw.physical.oblique import Sliding
 from contactlaw.physical.validity import Validity, explain
 from contactlaw.stepping.softened import SoftState
 from contactlaw.stepping.spring import Spring, State
-from contactlaw.table import Table
+from contactlaw.table import Table, certify
 from contactlaw.table.lookup import V_MAX
+from contactlaw.table.table import POINTS
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 _WIDTH = 96
@@ -205,8 +206,7 @@ def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
     if table is None:
         yield from _comment("no table")
         return
-    certificate, settings = table.certificate, table.settings
-    assert certificate is not None
+    certificate, settings = table.certificate or certify(table, POINTS), table.settings
     strength = table.grid.rungs[-1, 0]
     stronger = f" and strengths to {strength:.4g}" if strength > 1.0 else ""
     yield from _comment(

@@ -137,7 +137,7 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
     g, *later = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
     g = np.sqrt(g)
     end = np.maximum(grid.end(x, np.array(later)), g)
-    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top)
+    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * later[0])
     p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
     kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
     others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]

@@ -124,7 +124,7 @@ class Grid:
         x = axes.x_max * np.array([0.0, 0.5, 1.0])
         for n, log_k in enumerate(ladder.tolist()):
             growth = force.growth_at(law.at_any_strength, log_k) if law.strengths else 1.0
-            rungs[n, 1] = math.sqrt(growth)
+            rungs[n, 1], rungs[n, 2] = math.sqrt(growth), growth**0.25
             if law.strengths and axes.after:
                 p = (growth * _overloads(law, x, self.elastic(x), log_k) / axes.unit) ** 0.25
                 rungs[n, 2:] = np.polynomial.polynomial.polyfit(x, p / self.end(x), 2)
@@ -156,7 +156,7 @@ class Grid:
         q, s, t = (np.linspace(0.0, 1.0, int(count) + 1) for count in (axes.below, axes.beyond, axes.after))
         p = [g * q / (2.0 - q) + 0.0 * x, (2.0 * g + s * (end - 2.0 * g)) / (2.0 - s)]
         if axes.after:
-            p.append(end + t * (np.maximum(axes.top, lookup.NEXT * end) - end))
+            p.append(end + t * (np.maximum(axes.top * rungs[2], lookup.NEXT * end) - end))
         whole = np.concatenate(p, axis=2)
         y = self.yield_ratios(x, whole, g)
         return STRETCH * x / (1.0 - x) + 0.0 * whole, y, np.log(rungs[0]) + 0.0 * whole

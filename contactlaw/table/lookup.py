@@ -316,9 +316,9 @@ def is_valid(speed: float, radius: float, thickness: float) -> bool:
 
 
 @kernel(inline=True)
-def top_of(axes: Axes, end: float, g: float) -> float:
-    """Largest p of a table in which the law ends at `end`."""
-    beyond = max(axes.top, NEXT * end)
+def top_of(axes: Axes, end: float, later: float, g: float) -> float:
+    """Largest p of a table in which the law ends at `end`, by a factor later than that of slow impacts."""
+    beyond = max(axes.top * later, NEXT * end)
     return max(beyond if axes.after > 0.0 else end, g)
 
 
@@ -360,7 +360,7 @@ def place(
     """Place of one impact; `contact` says what the last two are."""
     one = contact(plate, axes.scale, speed, radius, thickness, mass, g, thin, usual)
     p, end, stiff = one.above * powers(w, one.x), end_of(ends, later, one.x), one.stiff
-    top = top_of(axes, end, g)
+    top = top_of(axes, end, later[0], g)
     good = (one.x >= 0.0) & (one.x <= axes.x_max) & (p <= top * stiff) & is_valid(speed, radius, thickness)
     # all p times stiff: one division less
     row, column = one.x * (axes.rows / axes.x_max), column_of(axes, p, end * stiff, top * stiff, g * stiff)
@@ -607,7 +607,7 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
     within_x, within_k = x if 0.0 <= x <= axes.x_max else axes.x_max, min(strength, most)
     on = rung_of(table, axes, within_k)
     end = end_of(series_at(table, END), on.later, within_x)
-    top = top_of(axes, end, on.g)
+    top = top_of(axes, end, on.later[0], on.g)
     within_p = min(p, top)
     column = column_of(axes, within_p, end, top, on.g)
     inside = within_x == x and within_p == p and within_k == strength

@@ -36,7 +36,7 @@ def test_two_bodies_with_rates_of_their_own(seed):
         return cl.Material("random", *known, kind="metal", **flow)
 
     bodies = body(), body()
-    coarse = Settings(0.5, 40.0, inelasticity_nodes=25, log_overload_step=0.1, rtol=1e-9)
+    coarse = Settings(0.5, 40.0, rows=24, columns=30)
     one = cl.ImpactModel(cl.Pair(*bodies), table=coarse)
     r, v = (np.exp(rng.uniform(*np.log(ends), 2000)) for ends in ((2e-5, 2e-2), (1e-2, 1e2)))
     inside = np.array([one.kernel(*at) >= 0.0 for at in zip(v, r, 4.0 * r, strict=True)])
@@ -136,7 +136,7 @@ def test_a_fit_finds_the_strength_at_a_known_rate():
 
 
 def test_tables_of_the_user(tmp_path, capsys):
-    short = Settings(largest_overload=5.0, inelasticity_nodes=41, log_overload_step=0.05)
+    short = Settings(largest_overload=5.0)
     given = 0.01, R, 2e-3
     own = cl.ImpactModel(PAIR, table=short)
     assert own.restitution(*given) == pytest.approx(MODEL.restitution(*given), abs=1e-5)

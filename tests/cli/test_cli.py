@@ -327,7 +327,7 @@ def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
 
 
 def test_table_check_fails_above_the_bounds(tmp_path, capsys):
-    coarse = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
+    coarse = table.Settings(rows=9, columns=8)
     file.write(table.build(laws.law("myc"), coarse), tmp_path / "coarse.h5")
     assert main(["table", "check", str(tmp_path / "coarse.h5"), "--points", "500"]) == 1
     assert "exceeds its bounds" in capsys.readouterr().err

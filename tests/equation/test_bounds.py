@@ -17,7 +17,7 @@ from contactlaw._arrays import Array
 from contactlaw.equation import edge, few_steps, force, integrator, legs, outcome, tangential, zener
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.strengths import by_strength, with_strengths
-from contactlaw.table import file, lookup, nodes, slides
+from contactlaw.table import build, file, lookup, slides
 from contactlaw.table.grid import Settings
 
 PARTS = [f"{equation.__name__}.{one.name}" for one in pkgutil.iter_modules(equation.__path__)]
@@ -48,8 +48,8 @@ class Strict(np.ndarray):
 
 LAWS = [law.data.view(Strict) for law in (*ALL_LAWS, FEM)]
 STRENGTHS = by_strength(metal.PAIR, metal.MODEL.force_law).view(Strict)
-COARSE = Settings(inelasticity_nodes=6, log_overload_step=0.5, largest_overload=30.0, rtol=1e-6)
-RATED = nodes.build(with_strengths(metal.PAIR, metal.MODEL.force_law), COARSE, points=100).packed
+COARSE = Settings(rows=6, columns=8, largest_overload=30.0, rtol=1e-6)
+RATED = build(with_strengths(metal.PAIR, metal.MODEL.force_law), COARSE, points=100).packed
 TABLES = file.packaged(ALL_LAWS[3]).packed.view(Strict), RATED.view(Strict)
 EDGE = response_of("free", 0.3).view(Strict)
 

@@ -31,12 +31,12 @@ from contactlaw._version import VERSION
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.edge import KINDS
-from contactlaw.export import c_header, functions
+from contactlaw.export import functions
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
 from contactlaw.softsphere import Contacts
-from contactlaw.table import Settings, nodes
-from contactlaw.table.nodes import POINTS
+from contactlaw.table import Settings
+from contactlaw.table.table import POINTS
 from validation.hostile import headers
 
 PAIR = cl.Pair("gamma-alumina", "glass")
@@ -61,17 +61,6 @@ def compilers():
     for name in COMPILERS:
         if not shutil.which(name):
             pytest.skip(f"no {name} on PATH: the header is not compiled")
-
-
-# Of half a second each, for tables that an export and several tests thin out.
-thinned = functools.cache(nodes.thinned)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def thinned_once():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(c_header, "thinned", thinned)
-        yield
 
 
 @functools.cache
@@ -122,7 +111,7 @@ def given(name):
 def from_python(name, folder):
     """What uncompiled Python gives for the impacts of `given`."""
     model = model_of(name)
-    bodies = functions.bodies_of(model, c_header.thin_table(model))
+    bodies = functions.bodies_of(model, model.table)
     (folder / "in").write_bytes(pickle.dumps((tuple(bodies), given(name))))
     script = ROOT / "tests/shared/uncompiled.py"
     subprocess.run(
@@ -425,7 +414,7 @@ def test_the_first_lines_say_what_it_is(name, tmp_path):
     for line in (ROOT / "LICENSE").read_text().splitlines():
         assert line.strip() in licence
     if table == "cor":
-        error = thinned(model.table, c_header.ERROR).certificate.largest["restitution"]
+        error = model.table.certificate.largest["restitution"]
         assert f"within {error:.1e} of the integrated equation" in first
 
 
@@ -439,8 +428,8 @@ def printed(folder, *calls, more="", also=(), **options):
 
 
 def test_a_table_of_ones_own_without_a_certificate(tmp_path):
-    """A table too coarse to be thinned is exported as it is, and the header states its error."""
-    settings = Settings(inelasticity_nodes=6, log_overload_step=0.4, largest_inelasticity=1.0, largest_overload=3.0)
+    """The header states its error all the same."""
+    settings = Settings(rows=6, columns=6, largest_inelasticity=1.0, largest_overload=3.0)
     table = dataclasses.replace(tables.build(laws.law("myc"), settings), certificate=None)
     model = cl.ImpactModel(PAIR, law="myc", table=table)
     text = " ".join(line.strip(" *") for line in exported(tmp_path, model).splitlines()[:12])

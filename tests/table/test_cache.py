@@ -22,7 +22,7 @@ from contactlaw.table import cache, slides
 from contactlaw.table import file as store
 
 MYC = laws.law("myc")
-SMALL, OTHER = (table.Settings(inelasticity_nodes=count, log_overload_step=0.5) for count in (9, 5))
+SMALL, OTHER = (table.Settings(rows=count, columns=8) for count in (9, 5))
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def path(place):
 
 
 def same(one, other):
-    return all(np.array_equal(one.fields[name], other.fields[name]) for name in other.fields)
+    return np.array_equal(one.packed, other.packed)
 
 
 def test_a_table_is_built_once_and_kept(path, expected, monkeypatch):
@@ -92,7 +92,7 @@ def test_tables_of_dropped_models_leave_the_memory(expected, monkeypatch):
         return changed(expected, law=law, settings=settings)
 
     def add_shapes(found, progress):
-        return changed(found, states=np.zeros(9, np.float32))
+        return changed(found, histories=np.zeros(9))
 
     monkeypatch.setattr(table, "build", build)
     monkeypatch.setattr(table, "with_shapes", add_shapes)
@@ -100,7 +100,7 @@ def test_tables_of_dropped_models_leave_the_memory(expected, monkeypatch):
     def use(modulus):
         plate = cl.Material("plate", modulus, 0.3, 2700.0, 1e8)
         model = cl.ImpactModel(cl.Pair("gamma-alumina", plate), law="jackson_green")
-        assert cache.cached_shapes(model.table).states is not None
+        assert cache.cached_shapes(model.table).histories is not None
 
     for modulus in np.linspace(6e10, 8e10, 40):
         use(modulus)
@@ -115,10 +115,10 @@ def test_what_nobody_has_read_for_three_months_leaves_the_disk(place, path, expe
     cache.cached(MYC, SMALL)
     unread = place / cache.file_name(MYC, OTHER)
     cache.cached_slides(expected, 0.8)
-    (slides_read,) = place.glob("slides-*.bin")
+    (slides_read,) = place.glob("slides-*.h5")
     cache.cached_slides(expected, 0.9)
     killed = place / f".{unread.name}.abc_123.part"
-    theirs = [place / name for name in ("table-of-impacts.h5", f"table-{24 * 'a'}.csv", "slides-1.bin")]
+    theirs = [place / name for name in ("table-of-impacts.h5", f"table-{24 * 'a'}.csv", "slides-1.h5")]
     for one in [unread, killed, *theirs]:
         one.write_bytes(b"")
     (folder := place / f"table-{24 * 'b'}.h5").mkdir()
@@ -127,7 +127,7 @@ def test_what_nobody_has_read_for_three_months_leaves_the_disk(place, path, expe
     cache.cached.cache_clear()
     cache.cached(MYC, SMALL)
     cache.cached_slides(expected, 0.8)
-    other = table.Settings(inelasticity_nodes=7, log_overload_step=0.5)
+    other = table.Settings(rows=7, columns=8)
     cache.cached(MYC, other)
     made = place / cache.file_name(MYC, other)
     assert {*place.iterdir()} == {path, slides_read, made, made.with_suffix(".lock"), folder, *theirs}

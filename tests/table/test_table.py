@@ -4,6 +4,7 @@ import dataclasses
 import functools
 import math
 
+import metal
 import numpy as np
 import pytest
 from oracle import ALL_LAWS
@@ -11,38 +12,35 @@ from oracle import ALL_LAWS
 import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import outcome, zener
-from contactlaw.equation.force import HERTZ
 from contactlaw.physical.strengths import with_strengths
-from contactlaw.table import file, grid, lookup, splines, sweep
-from contactlaw.table.grid import on_demand
+from contactlaw.table import certificate, file, grid, lookup, sweep
 
 MYC = laws.law("myc")
-SMALL = table.Settings(inelasticity_nodes=21, log_overload_step=0.15)
+SMALL = table.Settings(rows=20, columns=8)
+NEXT_TO_YIELD = {"plastic_fraction", "residual_compression"}
 
 
 def errors(built, lam, chi):
-    """Errors in COR, and relative ones in contact time; with the places, in order of lambda."""
-    order = np.argsort(lam, kind="stable")  # equal neighbours share their w_m
-    lam, chi = np.asarray(lam)[order], np.asarray(chi)[order]
+    """Errors in COR, and in contact times over the largest one."""
     exact, looked = (outcome.at(lam, np.ones(lam.size)) for _ in range(2))
-    assert zener.solve_overloads(built.law.data, 1e-12, chi, exact) == (zener.OK, 0)
+    assert zener.solve_overloads(built.law.data, 1e-11, chi, exact) == (zener.OK, 0)
     looked.yield_ratio[:] = exact.yield_ratio
     lookup.fields(built.packed, True, looked)  # clamped: chi = 40 may be beyond by a rounding
-    time = looked.contact_time / exact.contact_time - 1.0
-    return np.abs([looked.restitution - exact.restitution, time]), lam, chi
+    time = (looked.contact_time - exact.contact_time) / exact.contact_time.max()
+    return np.abs([looked.restitution - exact.restitution, time])
 
 
 @functools.cache
 def built_for(law):
-    """Table of a law as it is built when it is first needed, with a thorough certificate."""
-    return table.with_shapes(table.build(law, on_demand(law)), points=10_000)
+    """Table of a law as it is built when it is first needed."""
+    return table.with_shapes(table.build(law))
 
 
-# The table of the law MYC is packaged. One of the others, with corners, is quick.
+# One of the laws has corners, one a smooth loading curve.
 EVERY_LAW = pytest.mark.parametrize(
     "law",
     [
-        law if law.family == "jackson_green" else pytest.param(law, marks=pytest.mark.long)
+        law if law.family in ("thornton", "jackson_green") else pytest.param(law, marks=pytest.mark.long)
         for law in ALL_LAWS
         if law.yields
     ],
@@ -52,69 +50,132 @@ EVERY_LAW = pytest.mark.parametrize(
 
 @EVERY_LAW
 def test_tables_have_the_stated_accuracy(law):
-    """Tables built on demand are as near as `ImpactModel.lookup` and docs/theory.md state."""
+    """At ten times as many places as those that the table was made for."""
     built = built_for(law)
-    assert built.certificate.largest["restitution"] < 2e-7
-    next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
-    assert set(built.certificate.exceeded()) <= next_to_yield
-    # Down to 1e-5 above yield both fields, which are about 1e-10 there, keep their digits.
-    assert table.certify(built).exceeded() == {}
+    found = table.certify(built)
+    assert found.points == 20_000 and found.exceeded(table.bounds(law)) == {}
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law=law)
     rng = np.random.default_rng(6)
     impacts = (40.0 * rng.uniform(0.05, 1.0, 3000), 1e-3, 1e-3 / rng.uniform(0.0, 4.0, 3000))
     looked, exact = model.lookup(*impacts), model.solve(*impacts, rtol=1e-13)
-    beyond = looked.overload > 1.01
-    assert 1000 < beyond.sum()
-    for name in next_to_yield:
-        ours, truth = getattr(looked, name), getattr(exact, name)
-        assert ours[beyond] == pytest.approx(truth[beyond], rel=2e-5), name
-    lost = np.abs(looked.plastic_fraction - exact.plastic_fraction)
-    assert lost[~beyond].max() < 1e-8
+    dent = exact.residual_compression
+    deep = dent > 0.01 * dent.max()
+    assert 1000 < deep.sum()
+    assert looked.residual_compression[deep] == pytest.approx(dent[deep], rel=1e-3)
+    slow = looked.overload <= 1.0
+    assert slow.any() and (looked.plastic_fraction[slow] == 0.0).all()
+    shares = looked.plastic_fraction + looked.wave_fraction + looked.other_fraction
+    assert np.abs(looked.restitution**2 + shares - 1.0).max() < 1e-12
+    still = model.lookup(np.geomspace(1e-6, 0.9, 50) * model.pair.yield_speed, 1e-3, math.inf)
+    slow = still.overload <= 1.0
+    assert (still.restitution[slow] == 1.0).all()
 
 
 def near_the_kinks(law):
     steps = np.concatenate([[0.0], np.geomspace(1e-9, 0.3, 30), -np.geomspace(1e-9, 0.3, 30)])
     for lam in (0.0, 1e-3, 0.02, 0.1, 0.3, 1.0, 2.0, 3.5, 5.0):
-        w_m = zener.elastic_compression(HERTZ, lam)
+        w_m = zener.elastic_compression(law.data, lam)
         for kink in law.outcome_kinks:
-            at = zener.overload_at(law.data, lam, w_m, kink, 1e-12)
+            at = zener.overload_at(law.data, lam, w_m, kink, 1e-11)
             yield from ((lam, at * (1 + step)) for step in steps if at * (1 + step) < 40)
 
 
 @EVERY_LAW
-@pytest.mark.parametrize("place", ["anywhere", "half-space", "kinks"])
+@pytest.mark.parametrize("place", ["anywhere", "half-space", "below yield", "kinks"])
 def test_no_place_of_a_table_breaks_its_promise(law, place):
-    """COR to 1e-6 and contact time to 1e-5, relatively; the largest are 3e-7 and 7e-6."""
-    ends = -0.2, math.log(40)
+    ends, promise = (-0.2, math.log(40)), table.bounds(law)["restitution"]
     if place == "anywhere":
         rng = np.random.default_rng(61)
         lam, chi = 5 * rng.uniform(0, 1, 10_000) ** 2, np.exp(rng.uniform(*ends, 10_000))
     elif place == "half-space":
         lam, chi = np.zeros(3000), np.exp(np.linspace(*ends, 3000))
+    elif place == "below yield":
+        lam, chi, promise = np.linspace(0.0, 5.0, 3000), np.random.default_rng(1).uniform(0.0, 1.0, 3000), 1e-6
     else:
         lam, chi = np.array([*near_the_kinks(law)]).T
         assert len(chi) > 9 * 59  # at least one kink of the law is in the table
-    found, lam, chi = errors(built_for(law), lam, chi)
-    for off, promise in zip(found, (1e-6, 1e-5), strict=True):
+    found = errors(built_for(law), lam, chi)
+    for off, most in zip(found, (promise, 2e-3), strict=True):
         worst = int(np.argmax(off))
-        assert off[worst] < promise, (off[worst], lam[worst], chi[worst])
+        assert off[worst] < most, (off[worst], lam[worst], chi[worst])
+
+
+def pair_of(seed):
+    """Two random bodies: rates, losses and hardening, or none of them."""
+    rng = np.random.default_rng(seed)
+
+    def body(metal):
+        modulus = 10 ** (rng.uniform(10.7, 11.4) if metal else rng.uniform(9.0, 10.0))
+        strength = modulus * 10 ** rng.uniform(-3.0, -2.0)
+        flow = {"hardening": (strength * rng.uniform(0.1, 2.0), rng.uniform(0.2, 0.7))} if rng.random() < 0.5 else {}
+        if rng.random() < 0.4:
+            flow["rate"] = 10 ** rng.uniform(-2.3, -1.3), 10 ** rng.uniform(-2.0, 3.0)
+        if not metal and rng.random() < 0.5:
+            flow["loss_factor"] = rng.uniform(0.02, 0.2), 1e4
+        known = modulus, rng.uniform(0.2, 0.4), 7800.0 if metal else 1200.0, strength
+        return cl.Material("random", *known, kind="metal" if metal else "polymer", **flow)
+
+    other = [body(True), "glass", "gamma-alumina"][rng.integers(3)]
+    return cl.Pair(body(bool(rng.random() < 0.7)), other), rng
+
+
+@pytest.mark.parametrize(
+    "seed", [seed if seed < 10 else pytest.param(seed, marks=pytest.mark.long) for seed in range(100)]
+)
+def test_tables_of_random_pairs(seed, monkeypatch):
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    pair, rng = pair_of(seed)
+    model = cl.ImpactModel(pair)
+    found = table.certify(model.table, 2000, seed + 1)
+    # a place that the other points missed may be a little worse
+    assert found.exceeded({name: 1.2 * one for name, one in table.bounds(model.table.law).items()}) == {}
+    v, r = 10 ** rng.uniform(-1.0, 1.0, 300), 10 ** rng.uniform(-3.5, -2.5, 300)
+    h, heavier = r / rng.uniform(0.0, 1.0, 300), 10 ** rng.uniform(-0.1, 0.5, 300)
+    inside = np.array([model.kernel(*one) >= 0.0 for one in zip(v, r, h, strict=True)])
+    v, r, h, mass = v[inside], r[inside], h[inside], (heavier * model._bodies.solid_mass(r))[inside]
+    clamp = cl.ImpactModel(pair, outside="solve")
+    ours, exact = clamp.lookup(v, r, h, mass=mass), model.solve(v, r, h, mass=mass)
+    assert np.abs(ours.restitution - exact.restitution).max(initial=0.0) < 1.5e-4
+
+
+def test_one_impact_is_as_those_of_a_batch():
+    """Also of a pair with a rate, with masses and with losses."""
+    bodies = metal.PAIR, cl.Pair("natural-rubber", "glass"), cl.Pair("gamma-alumina", "glass")
+    for pair, law in zip(bodies, ("fem", "fem", "myc"), strict=True):
+        model, rng = cl.ImpactModel(pair, law=law, outside="clamp"), np.random.default_rng(3)
+        v, r = 10 ** rng.uniform(-2.0, 1.0, 700), 10 ** rng.uniform(-4.0, -2.0, 700)
+        h, mass = r / rng.uniform(0.0, 2.0, 700), rng.uniform(0.7, 3.0, 700) * model._bodies.solid_mass(r)
+        for masses in ({}, {"mass": mass}):
+            together = model.restitution(v, r, h, **masses)
+            rows = np.stack([v, r, h, *masses.values()], axis=1).tolist()
+            alone = np.array([model.kernel(*row) for row in rows])
+            inside = ~np.isnan(alone)
+            assert inside.sum() > 400
+            assert np.abs(together - alone)[inside].max() <= 2e-15
+            assert np.abs(model.lookup(v, r, h, **masses).restitution - together)[inside].max() <= 2e-15
 
 
 def test_spline_error_falls_with_the_fourth_power():
-    # between the kinks, where the surface is smooth; just above chi = d_P/d_Y it has a term in
-    # (chi - d_P/d_Y)^(5/2), since the time spent beyond d_P grows as a square root, and the order
-    # there is between 2 and 3
+    # below the kink at d_P, where the surface is smooth
     rng = np.random.default_rng(2)
-    lam = 5 * rng.uniform(0, 1, 400) ** 2
-    chi = np.exp(rng.uniform(0, math.log(2.14 / 0.68), 400))
-    coarse, fine = (
-        errors(table.build(MYC, table.Settings(**settings)), lam, chi)[0][0].max()
-        for settings in (
-            {"inelasticity_nodes": 41, "log_overload_step": 0.075},
-            {"inelasticity_nodes": 81, "log_overload_step": 0.0375},
-        )
-    )
-    assert math.log2(coarse / fine) == pytest.approx(4, abs=0.2)
+    lam, chi = 5 * rng.uniform(0, 1, 400) ** 2, np.exp(rng.uniform(0, math.log(2.0 / 0.68), 400))
+    whole = grid.grid(MYC, table.Settings())
+    off = []
+    for rows, cells in ((12, 24), (24, 48)):
+        axes = whole.with_cells(rows, 8, cells, 8)
+        built = table.table._certified(MYC, table.Settings(), axes, 100, sweep.no_progress, {})
+        off.append(errors(built, lam, chi)[0].max())
+    coarse, fine = off
+    assert math.log2(coarse / fine) == pytest.approx(4, abs=0.5)
+
+
+def test_columns_are_doubled_until_the_table_is_good():
+    built = table.build(MYC, SMALL)
+    assert built.grid.axes.beyond in (32, 64) and not built.exceeded
+    rated = with_strengths(metal.PAIR, metal.MODEL.force_law)
+    whole = metal.MODEL.table
+    assert whole.grid.axes.rungs > 4 and whole.grid.ladder[-1] == pytest.approx(rated.strengths.knots[-1])
+    assert whole.certificate.largest["restitution"] < certificate.RATED
 
 
 def test_the_certificate_is_honest():
@@ -129,30 +190,28 @@ def test_the_certificate_is_honest():
     speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.5), np.log(90), 3000))
     impacts = speed, np.full(3000, 1e-3), 1e-3 / rng.uniform(0.0, 5.0, 3000)
     looked, exact = model.lookup(*impacts), model.solve(*impacts, rtol=1e-12)
-    for name in packaged.certificate.largest.keys() - {"force_history"}:  # see test_history
-        ours, truth = getattr(looked, name), getattr(exact, name)
-        scale = 1.0 if name == "restitution" else np.maximum(truth, 1e-12)
-        # 3000 points may find a place that 10 000 others missed, by a little; a law without other
-        # losses has none, exactly
-        assert np.max(np.abs(ours - truth) / scale) <= 1.2 * packaged.certificate.largest[name]
+    for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
+        # 3000 points may find a place that others missed, by a little
+        off = np.max(np.abs(getattr(looked, name) - getattr(exact, name)))
+        assert off <= 1.2 * packaged.certificate.largest[name]
 
 
 def test_a_bad_table_is_found():
     packaged = file.packaged(MYC)
-    values = packaged.fields["restitution"].copy()
-    values[40] += 1e-4
-    wrong = dataclasses.replace(packaged, fields={**packaged.fields, "restitution": values})
+    wrong = packaged.packed.copy()
+    wrong[lookup.HEADER + lookup.RUNG + 500 :][:200] += 1e-3
+    wrong = dataclasses.replace(packaged, packed=wrong)
     assert "restitution" in table.certify(wrong, points=2000).exceeded()
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: splines.spline_coefficients(np.ones(3)), "got 3; .*at least 4 nodes"),
+        (lambda: grid.spline_coefficients(np.ones(3)), "got 3; .*at least 4 nodes"),
         (lambda: table.build(laws.law("hertz")), "got 'hertz'; never yields"),
         (lambda: table.Settings(largest_inelasticity=-1.0), "largest_inelasticity: got -1.0; m"),
         (lambda: table.Settings(largest_overload=math.nan), "largest_overload: got .*; must lie"),
-        (lambda: table.Settings(inelasticity_nodes=3), "inelasticity_nodes: got .*; must lie"),
+        (lambda: table.Settings(rows=3), "rows: got .*; must lie"),
         (lambda: table.Settings(rtol=1.0), "rtol: got .*; must lie"),
     ],
 )
@@ -164,13 +223,12 @@ def test_what_makes_no_table(call, message):
 def test_packaged_table_is_what_this_version_builds():
     packaged, built = file.packaged(MYC), table.build(MYC)
     assert packaged.settings == built.settings
-    for name, values in built.fields.items():
-        np.testing.assert_allclose(packaged.fields[name], values, rtol=1e-9, err_msg=name)
+    np.testing.assert_allclose(packaged.packed, built.packed, rtol=1e-8, atol=1e-8)
 
 
 def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
-    monkeypatch.setattr(sweep.zener, "solve_overloads", lambda *a: (zener.TOO_MANY_STEPS, 0))
-    with pytest.raises(RuntimeError, match=r"node lambda = .*, chi = .* did not solve"):
+    monkeypatch.setattr(sweep.zener, "solve_all", lambda *a: (zener.TOO_MANY_STEPS, 0))
+    with pytest.raises(RuntimeError, match=r"node lambda = .*, d_Y/\(V0 T_H\) = .* did not solve"):
         table.build(MYC, SMALL)
 
 
@@ -180,13 +238,12 @@ def test_impacts_that_turn_next_to_a_kink_are_found():
     body = cl.Material("polymer", 3e9, 0.4, 1200, kind="polymer", **flow)
     pair = cl.Pair(body, body)
     law = with_strengths(pair, cl.ImpactModel(pair).force_law)
-    lam, strength = np.geomspace(0.5, 6.0, 100), np.full(100, 0.087)
-    elastic = grid.elastic_compressions(law, lam, strength)
-    found = np.log(grid._overloads(law, grid._end(law.at_any_strength, 0.087), lam, elastic, strength))
-    assert np.abs(np.diff(found, 3)).max() < 1e-5
+    lam = np.geomspace(0.5, 6.0, 100)
+    x, w = lam / (lam + 2.0), zener.elastic_compression(law.at_any_strength, lam, 0.087)
+    assert np.abs(np.diff(np.log(grid._overloads(law, x, w, 0.087)), 3)).max() < 1e-5
 
 
-def test_progress_sees_every_row():
+def test_progress_sees_every_part():
     seen = []
-    table.build(MYC, SMALL, progress=lambda rows, total: (seen.append(total) or n for n in rows))
-    assert seen == [SMALL.inelasticity_nodes] * SMALL.inelasticity_nodes
+    table.build(MYC, SMALL, progress=lambda parts, total: (seen.append(total) or n for n in parts))
+    assert seen and set(seen) == {seen[0], *seen} and len(seen) >= seen[0]
