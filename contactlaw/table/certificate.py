@@ -134,15 +134,15 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
     lam[u[1] < _HALF_SPACE] = 0.0
     log_k = np.sort(u[2]) * grid.ladder[-1]
     x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
-    g, *later = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
-    g = np.sqrt(g)
-    end = np.maximum(grid.end(x, np.array(later)), g)
-    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * later[0])
+    square, *factors = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
+    g, own = np.sqrt(square), np.array(factors)
+    end = np.maximum(grid.end(x, own), g)
+    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * own[0])
     p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
     kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
     others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]
     p = np.clip(np.select(kinds, others, p), slowest, top)
-    return lam, grid.yield_ratios(x, p, g), log_k
+    return lam, grid.yield_ratios(x, p, g, own), log_k
 
 
 def _named(law: Law, values: Outcome, balanced: bool) -> dict[str, Array]:

@@ -52,7 +52,7 @@ class Settings:
 
     largest_inelasticity: float = 5.0
     largest_overload: float = 40.0
-    rows: int = 32
+    rows: int = 40
     columns: int = 48
     rtol: float = 1e-9
 
@@ -120,32 +120,36 @@ class Grid:
     def on_ladder(self, law: Law, ladder: Array) -> "Grid":
         """Change the strengths, which are ln k; where their laws end is found by the solver."""
         head, axes, rungs = self.head.copy(), self.axes, np.zeros((ladder.size, RUNG))
-        head[Axes._fields.index("rungs")], rungs[:, 0], rungs[:, 2] = ladder.size, np.exp(ladder), 1.0
-        x = axes.x_max * np.array([0.0, 0.5, 1.0])
-        for n, log_k in enumerate(ladder.tolist()):
-            growth = force.growth_at(law.at_any_strength, log_k) if law.strengths else 1.0
-            rungs[n, 1], rungs[n, 2] = math.sqrt(growth), growth**0.25
-            if law.strengths and axes.after:
-                p = (growth * _overloads(law, x, self.elastic(x), log_k) / axes.unit) ** 0.25
-                rungs[n, 2:] = np.polynomial.polynomial.polyfit(x, p / self.end(x), 2)
+        head[Axes._fields.index("rungs")], rungs[:, 0] = ladder.size, np.exp(ladder)
+        rungs[:, [1, 2, 5]] = 1.0
+        x = axes.x_max * np.linspace(0.0, 1.0, 7)
+        lam = STRETCH * x / (1.0 - x)
+        for n, log_k in enumerate(ladder.tolist() if law.strengths else ()):
+            growth = force.growth_at(law.at_any_strength, log_k)
+            w, end = zener.elastic_compression(law.at_any_strength, lam, log_k), self.end(x) * growth**0.25
+            if axes.after:
+                end = (growth * _overloads(law, x, w, log_k) / axes.unit) ** 0.25
+            rungs[n, 1] = math.sqrt(growth)
+            rungs[n, 2:5] = np.polynomial.polynomial.polyfit(x, end / self.end(x), 2)
+            rungs[n, 5:] = np.polynomial.polynomial.polyfit(x, (w / self.elastic(x)) ** 0.25, 2)
         return dataclasses.replace(self, head=head, rungs=rungs)
 
-    def _polynomial(self, x: Array, begins: int) -> Array:
-        return np.polynomial.polynomial.polyval(x, self.head[begins : begins + DEGREE + 1])
+    def _polynomial(self, x: Array, begins: int, factors: Array | None) -> Array:
+        """Polynomial of slow impacts, or times the square of a rung (3, ...)."""
+        slow = np.polynomial.polynomial.polyval(x, self.head[begins : begins + DEGREE + 1])
+        return slow if factors is None else slow * (factors[0] + x * (factors[1] + x * factors[2]))
 
-    def elastic(self, x: Array) -> Array:
-        """Return w, the largest elastic compression."""
-        return np.asarray(self._polynomial(x, lookup.ELASTIC) ** 4)
+    def elastic(self, x: Array, own: Array | None = None) -> Array:
+        """Return w, the largest elastic compression; `own` are the numbers of a rung (6, ...)."""
+        return self._polynomial(x, lookup.ELASTIC, own if own is None else own[3:]) ** 4
 
-    def end(self, x: Array, later: Array | None = None) -> Array:
-        """Return p at the end of the law, of slow impacts or with the numbers of a rung (3, ...)."""
-        slow = self._polynomial(x, lookup.END)
-        return slow if later is None else slow * (later[0] + x * (later[1] + x * later[2]))
+    def end(self, x: Array, own: Array | None = None) -> Array:
+        """Return p at the end of the law."""
+        return self._polynomial(x, lookup.END, own)
 
-    def yield_ratios(self, x: Array, p: Array, g: Array) -> Array:
+    def yield_ratios(self, x: Array, p: Array, g: Array, own: Array) -> Array:
         """Yield ratios y at places; slower impacts than the slowest have its outcome."""
-        chi = self.axes.unit * np.maximum(p / g, self.axes.slowest) ** 4
-        return np.asarray(self.elastic(x) / chi)
+        return np.asarray(self.elastic(x, own) / (self.axes.unit * np.maximum(p / g, self.axes.slowest) ** 4))
 
     def nodes(self) -> tuple[Array, Array, Array]:
         """Inelasticity, yield ratio and ln k at every node, (rungs, rows, columns)."""
@@ -158,7 +162,7 @@ class Grid:
         if axes.after:
             p.append(end + t * (np.maximum(axes.top * rungs[2], lookup.NEXT * end) - end))
         whole = np.concatenate(p, axis=2)
-        y = self.yield_ratios(x, whole, g)
+        y = self.yield_ratios(np.broadcast_to(x, whole.shape), whole, g, rungs[2:])
         return STRETCH * x / (1.0 - x) + 0.0 * whole, y, np.log(rungs[0]) + 0.0 * whole
 
     def coefficients(self, values: Array) -> Array:

@@ -88,8 +88,8 @@ GROWTH = WAVES + len(PlateCorrections._fields)
 ELASTIC = GROWTH + len(ModulusGrowth._fields)  # the polynomial w^(1/4)
 END = ELASTIC + DEGREE + 1
 HEADER = END + DEGREE + 1  # where the rungs begin
-# Numbers of a rung: k, g^2 and a square in x, by which the law ends later than that of slow impacts.
-RUNG = 5
+# Numbers of a rung: k, g^2, and squares in x, the factors of P and w^(1/4) of slow impacts.
+RUNG, _P, _W = 8, 0, 3
 NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it goes on
 
 
@@ -230,28 +230,39 @@ class Rung(NamedTuple):
     index: int  # of the lower of two rungs
     between: float  # way to the next, from 0 to 1
     g: float
-    later: tuple[float, float, float]  # factor of P, a square in x
+    own: tuple[float, ...]  # six numbers, the factors of P and w^(1/4)
 
 
 @kernel(inline=True)
 def rung_of(table: Array, axes: Axes, strength: float) -> Rung:
     """Find a strength k on the ladder."""
     if axes.rungs == 1.0:
-        return Rung(0, 0.0, 1.0, (1.0, 0.0, 0.0))
+        return Rung(0, 0.0, 1.0, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
     at, last = HEADER, HEADER + (int(axes.rungs) - 2) * RUNG
     while at < last and strength > table[at + RUNG]:
         at += RUNG
-    t, to = table, at + RUNG
-    way = (strength - t[at]) / (t[to] - t[at])
-    square, a = t[at + 1] + way * (t[to + 1] - t[at + 1]), t[at + 2] + way * (t[to + 2] - t[at + 2])
-    b, c = t[at + 3] + way * (t[to + 3] - t[at + 3]), t[at + 4] + way * (t[to + 4] - t[at + 4])
-    return Rung((at - HEADER) // RUNG, way, math.sqrt(square), (a, b, c))
+    way = (strength - table[at]) / (table[at + RUNG] - table[at])
+    own = (
+        _between(table, at + 2, way),
+        _between(table, at + 3, way),
+        _between(table, at + 4, way),
+        _between(table, at + 5, way),
+        _between(table, at + 6, way),
+        _between(table, at + 7, way),
+    )
+    return Rung((at - HEADER) // RUNG, way, math.sqrt(_between(table, at + 1, way)), own)
 
 
 @kernel(inline=True)
-def end_of(series: tuple[float, ...], later: tuple[float, float, float], x: float) -> float:
-    """Return P, where the law of a rung ends."""
-    return powers(series, x) * (later[0] + x * (later[1] + x * later[2]))
+def _between(table: Array, at: int, way: float) -> float:
+    """Interpolate a number of two rungs."""
+    return table[at] + way * (table[at + RUNG] - table[at])
+
+
+@kernel(inline=True)
+def of_rung(series: tuple[float, ...], own: tuple[float, ...], n: int, x: float) -> float:
+    """Return P or w^(1/4) of a strength."""
+    return powers(series, x) * (own[n] + x * (own[n + 1] + x * own[n + 2]))
 
 
 @kernel(inline=True)
@@ -340,6 +351,7 @@ class Place(NamedTuple):
     x: float
     p: float
     root: float  # as in `Contact`
+    w: float  # w^(1/4)
 
 
 @kernel(inline=True)
@@ -353,18 +365,18 @@ def place(
     thickness: float,
     mass: float,
     g: float,
-    later: tuple[float, float, float],
+    own: tuple[float, ...],
     thin: bool,
     usual: bool,
 ) -> Place:
     """Place of one impact; `contact` says what the last two are."""
     one = contact(plate, axes.scale, speed, radius, thickness, mass, g, thin, usual)
-    p, end, stiff = one.above * powers(w, one.x), end_of(ends, later, one.x), one.stiff
-    top = top_of(axes, end, later[0], g)
+    elastic, end, stiff = of_rung(w, own, _W, one.x), of_rung(ends, own, _P, one.x), one.stiff
+    p, top = one.above * elastic, top_of(axes, end, own[0], g)
     good = (one.x >= 0.0) & (one.x <= axes.x_max) & (p <= top * stiff) & is_valid(speed, radius, thickness)
     # all p times stiff: one division less
     row, column = one.x * (axes.rows / axes.x_max), column_of(axes, p, end * stiff, top * stiff, g * stiff)
-    return Place(row if good else 0.0, column if good else -1.0, one.x, p / one.stiff, one.root)
+    return Place(row if good else 0.0, column if good else -1.0, one.x, p / stiff, one.root, elastic)
 
 
 @kernel(inline=True)
@@ -414,9 +426,9 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
     strength = strength_at(axes, speed, radius) if axes.rungs > 1.0 else 1.0
     on, usual = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0
     w, ends, thin = series_at(table, ELASTIC), series_at(table, END), is_thin(plate.corrections)
-    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.later, thin, usual)
+    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.own, thin, usual)
     column = at.column if strength <= strongest(table, axes) else -1.0
-    return Place(at.row, column, at.x, at.p, at.root), on, strength
+    return Place(at.row, column, at.x, at.p, at.root, at.w), on, strength
 
 
 @kernel(inline=True)
@@ -459,56 +471,59 @@ class _Chunk(NamedTuple):
     x: Any
     p: Any
     root: Any
+    w: Any
     strength: Any
     g: Any
     between: Any
-    later: Any  # (3, impacts)
+    own: Any  # (6, impacts)
     rung: Any
 
 
 @kernel(inline=True)
 def _scratch() -> _Chunk:
     """Allocate the places of a chunk."""
-    s = np.zeros((11, _CHUNK))
-    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8:], np.zeros(_CHUNK, dtype=np.int64))
+    s = np.zeros((15, _CHUNK))
+    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9:], np.zeros(_CHUNK, dtype=np.int64))
 
 
 @kernel
 def _places(table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: _Chunk) -> None:
     """`place_of` of the impacts of a chunk."""
-    axes, plate, w, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
-    n, rated, thin, solid = speed.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
-    usual, never, later = solid and not relaxes(plate), (1.0, 0.0, 0.0), out.later
-    row, column, x, p, root, strength, g = out.row, out.column, out.x, out.p, out.root, out.strength, out.g
+    axes, plate, elastic, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
+    size, rated, thin, solid = speed.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
+    usual, alike = solid and not relaxes(plate), (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    row, column, x, p, root, w, strength, g = out.row, out.column, out.x, out.p, out.root, out.w, out.strength, out.g
+    own = out.own
     if rated:
-        for i in range(n):
+        for i in range(size):
             strength[i] = strength_at(axes, speed[i], radius[i])
-        for i in range(n):
+        for i in range(size):
             on = rung_of(table, axes, strength[i])
             out.rung[i], out.between[i], g[i] = on.index, on.between, on.g
-            out.later[0, i], out.later[1, i], out.later[2, i] = on.later
+            for n in range(6):
+                own[n, i] = on.own[n]
     if usual and thin:
-        for i in range(n):
-            at = place(axes, w, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, never, True, True)
-            row[i], column[i], x[i], p[i], root[i] = at
+        for i in range(size):
+            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, alike, True, True)
+            row[i], column[i], x[i], p[i], root[i], w[i] = at
     elif usual and not rated:
-        for i in range(n):
-            at = place(axes, w, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, never, False, True)
-            row[i], column[i], x[i], p[i], root[i] = at
+        for i in range(size):
+            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, alike, False, True)
+            row[i], column[i], x[i], p[i], root[i], w[i] = at
     elif usual:
-        for i in range(n):
-            slow = later[0, i], later[1, i], later[2, i]
-            at = place(axes, w, ends, plate, speed[i], radius[i], thickness[i], 1.0, g[i], slow, False, True)
-            row[i], column[i], x[i], p[i], root[i] = at
+        for i in range(size):
+            mine = own[0, i], own[1, i], own[2, i], own[3, i], own[4, i], own[5, i]
+            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, g[i], mine, False, True)
+            row[i], column[i], x[i], p[i], root[i], w[i] = at
     else:
-        for i in range(n):
+        for i in range(size):
             share, grown = 1.0 if solid else mass[i], g[i] if rated else 1.0
-            slow = (later[0, i], later[1, i], later[2, i]) if rated else never
-            at = place(axes, w, ends, plate, speed[i], radius[i], thickness[i], share, grown, slow, thin, False)
-            row[i], column[i], x[i], p[i], root[i] = at
+            mine = (own[0, i], own[1, i], own[2, i], own[3, i], own[4, i], own[5, i]) if rated else alike
+            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], share, grown, mine, thin, False)
+            row[i], column[i], x[i], p[i], root[i], w[i] = at
     if rated:
         most = strongest(table, axes)
-        for i in range(n):
+        for i in range(size):
             column[i] = column[i] if strength[i] <= most else -1.0
 
 
@@ -553,7 +568,7 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    axes, w, at, bad = axes_of(table), series_at(table, ELASTIC), _scratch(), 0
+    axes, at, bad = axes_of(table), _scratch(), 0
     rated = axes.rungs > 1.0
     for start in range(0, speed.size, _CHUNK):
         n = min(_CHUNK, speed.size - start)
@@ -561,7 +576,7 @@ def outcomes(
         _places(table, v, r, h, _slice(mass, start, n), at)
         for i in range(n):
             g, k = at.g[i] if rated else 1.0, start + i
-            elastic, chi = _fourth(powers(w, at.x[i])), _overload(axes, at.p[i], g)
+            elastic, chi = _fourth(at.w[i]), _overload(axes, at.p[i], g)
             root[k], out.elastic_compression[k], out.yield_ratio[k] = at.root[i], elastic, elastic / chi
             out.inelasticity[k] = STRETCH * at.x[i] / (1.0 - at.x[i])
             out.strength[k] = log(at.strength[i]) if rated else 0.0
@@ -606,12 +621,12 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
     most = strongest(table, axes)
     within_x, within_k = x if 0.0 <= x <= axes.x_max else axes.x_max, min(strength, most)
     on = rung_of(table, axes, within_k)
-    end = end_of(series_at(table, END), on.later, within_x)
-    top = top_of(axes, end, on.later[0], on.g)
+    end = of_rung(series_at(table, END), on.own, _P, within_x)
+    top = top_of(axes, end, on.own[0], on.g)
     within_p = min(p, top)
     column = column_of(axes, within_p, end, top, on.g)
     inside = within_x == x and within_p == p and within_k == strength
-    w = _fourth(powers(series_at(table, ELASTIC), within_x))
+    w = _fourth(of_rung(series_at(table, ELASTIC), on.own, _W, within_x))
     row = within_x * (axes.rows / axes.x_max)
     return Spot(row, column, on.index, on.between, within_x, within_p, on.g, w, inside)
 
@@ -620,9 +635,12 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
 def spot_at(table: Array, lam: float, y: float, log_strength: float) -> Spot:
     """Nearest place in a table to an inelasticity, a yield ratio and ln of a strength."""
     axes, x, strength = axes_of(table), min(lam / (lam + STRETCH), 1.0), math.exp(log_strength)
-    own = x if 0.0 <= x <= axes.x_max else axes.x_max
-    g = rung_of(table, axes, min(strength, strongest(table, axes))).g
-    return spot_of(table, x, g * powers(series_at(table, ELASTIC), own) / math.sqrt(math.sqrt(axes.unit * y)), strength)
+    within, on = (
+        x if 0.0 <= x <= axes.x_max else axes.x_max,
+        rung_of(table, axes, min(strength, strongest(table, axes))),
+    )
+    w = of_rung(series_at(table, ELASTIC), on.own, _W, within)
+    return spot_of(table, x, on.g * w / math.sqrt(math.sqrt(axes.unit * y)), strength)
 
 
 @kernel(cache=True)

@@ -112,16 +112,16 @@ def _certified(
         if log_k not in known:
             at = lam[n].ravel(), y[n].ravel(), strength[n].ravel()
             found = sweep.solved(law, *at, settings.rtol, progress)
-            known[log_k] = _stored(law, found, grid).reshape(len(STORED), *lam[n].shape)
+            known[log_k] = _stored(law, found, grid, grid.rungs[n, 2:]).reshape(len(STORED), *lam[n].shape)
         rungs.append(known[log_k])
     fields = [grid.coefficients(values) for values in np.array(rungs).swapaxes(0, 1)]
     table = Table(law, settings, grid.packed(np.array(fields)))
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
-def _stored(law: Law, found: Outcome, grid: Grid) -> Array:
+def _stored(law: Law, found: Outcome, grid: Grid, own: Array) -> Array:
     """Fields that tables keep, see `contactlaw.equation.outcome.STORED`."""
-    elastic = grid.elastic(found.inelasticity / (found.inelasticity + STRETCH))
+    elastic = grid.elastic(found.inelasticity / (found.inelasticity + STRETCH), own)
     lost, extremes = 1.0 - found.restitution, outcome.extremes(elastic.size)
     zener.extremes(law.at_any_strength, found, extremes)
     still = found.inelasticity == 0.0  # no waves: energies alone give the COR, 1 exactly without losses
