@@ -28,7 +28,7 @@ BELOW, AFTER = 8, 8  # cells up to yield, where only the sphere's stiffening cou
 _SLOWEST = 0.02  # least p at which impacts are solved; slower ones are alike
 _ELASTIC = 25.0  # overload at the end of the first block of a law that never yields, over its first compression
 _NODES = 40  # places along x at which w and the end of the law are found
-_NEAR_END = 1e-7  # part of its range by which a law ends early: an impact has to turn before
+_EARLY = 1e-7  # relatively: impacts are found that turn before a kink, not at it
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Grid:
             growth = force.growth_at(law.at_any_strength, log_k)
             w, end = zener.elastic_compression(law.at_any_strength, lam, log_k), self.end(x) * growth**0.25
             if axes.after:
-                end = (growth * _overloads(law, x, w, log_k) / axes.unit) ** 0.25
+                end = (growth * _overloads(law, x, w, log_k, _end(law, log_k)) / axes.unit) ** 0.25
             rungs[n, 1] = math.sqrt(growth)
             rungs[n, 2:5] = np.polynomial.polynomial.polyfit(x, end / self.end(x), 2)
             rungs[n, 5:] = np.polynomial.polynomial.polyfit(x, (w / self.elastic(x)) ** 0.25, 2)
@@ -195,8 +195,10 @@ def grid(law: Law, settings: Settings) -> Grid:
     lam = STRETCH * x / (1.0 - x)
     w, end = np.asarray(zener.elastic_compression(law.data, lam)), np.full(_NODES, most)
     after = False
+    if law.yields:  # to the last digit of what the solver does, for yield speeds
+        w *= (1.0 - _EARLY) / _overloads(law, x, w, 0.0, 1.0)
     if law.range[1] < math.inf:
-        found = _overloads(law, x, w)
+        found = _overloads(law, x, w, 0.0, law.range[1])
         after = found.min() < most
         end = found if after else end
     window = x[[0, -1]]
@@ -219,16 +221,19 @@ def ladder_of(law: Law, widest: float) -> Array:
     return np.concatenate(rungs)
 
 
-def _overloads(law: Law, x: Array, w: Array, log_k: float = 0.0) -> Array:
-    """Overloads of impacts that turn where the law of a strength ends."""
-    data, lam, deepest = law.at_any_strength, STRETCH * x / (1.0 - x), law.range[1]
-    if law.strengths is not None:  # its last piece is a tangent
-        own = force.at_strength(data, log_k, np.empty(force.room_for(data)))
-        deepest = float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
+def _end(law: Law, log_k: float) -> float:
+    """Compression up to which the law of a strength holds: its last piece is a tangent."""
+    own = force.at_strength(law.at_any_strength, log_k, np.empty(force.room_for(law.at_any_strength)))
+    return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
+
+
+def _overloads(law: Law, x: Array, w: Array, log_k: float, deepest: float) -> Array:
+    """Overloads of impacts that turn just before a compression."""
+    data, lam = law.at_any_strength, STRETCH * x / (1.0 - x)
     found: Array = np.full(lam.size, math.nan)
     # impacts that turn next to a kink may want smaller steps than there are, others at each rtol
     for rtol in (1e-11, 1e-10, 1e-9):
-        tried = zener.overload_at(data, lam, w, deepest * (1.0 - _NEAR_END), rtol, strength=log_k)
+        tried = zener.overload_at(data, lam, w, deepest * (1.0 - _EARLY), rtol, strength=log_k)
         found = np.where(np.isfinite(found), found, tried)
         if np.isfinite(found).all():
             return found

@@ -22,19 +22,13 @@ def test_tables_are_certified(kind):
     model, given = kinds.model(kind), kinds.impacts(kind)
     found, exact = model.lookup(*given), model.solve(*given)
     assert found.restitution.size >= 80 and np.ptp(found.restitution) > 0.05
-    # a single table is better than promised; next to yield two fields of several begin at zero
-    rated = kind in kinds.RATED
-    most = bounds(model.force_law) if rated else {"restitution": 1e-6}
-    clear = np.abs(exact.overload - 1.0) > (0.02 if rated else 1e-6)
+    rated, most = kind in kinds.RATED, bounds(model.force_law)
     for field in FIELDS:
         ours, true = getattr(found, field), getattr(exact, field)
-        if field == "restitution":
-            assert np.abs(ours - true).max() < most[field], field
-        else:
-            errors = np.abs(ours - true) / np.maximum(np.abs(true), 1e-12)
-            assert errors[clear].max() < most.get(field, 5e-4 if rated else 1e-5), field
+        scale = 1.0 if field == "restitution" or "fraction" in field else np.maximum(np.abs(true), 0.01 * true.max())
+        assert (np.abs(ours - true) <= most.get(field, 5e-4 if rated else 1e-5) * scale).all(), field
     shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
-    assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-5)
+    assert np.abs(shares + found.restitution**2 - 1.0).max() < 1e-12
     assert np.count_nonzero(found.flags != exact.flags) <= (2 if rated else 0)  # some lie on a limit
 
 

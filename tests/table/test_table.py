@@ -240,7 +240,7 @@ def test_impacts_that_turn_next_to_a_kink_are_found():
     law = with_strengths(pair, cl.ImpactModel(pair).force_law)
     lam = np.geomspace(0.5, 6.0, 100)
     x, w = lam / (lam + 2.0), zener.elastic_compression(law.at_any_strength, lam, 0.087)
-    assert np.abs(np.diff(np.log(grid._overloads(law, x, w, 0.087)), 3)).max() < 1e-5
+    assert np.abs(np.diff(np.log(grid._overloads(law, x, w, 0.087, grid._end(law, 0.087))), 3)).max() < 1e-5
 
 
 def test_progress_sees_every_part():
