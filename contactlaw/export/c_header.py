@@ -32,7 +32,7 @@ from contactlaw.table import Table, certify
 from contactlaw.table.lookup import V_MAX
 from contactlaw.table.table import POINTS
 
-LARGEST = 500_000  # bytes: a header is read by each source file that includes it
+LARGEST = 1_000_000  # bytes: a header is read by each source file that includes it
 _WIDTH = 96
 _TABLE = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 # The text is C, but for what GPUs need before each function and each constant.

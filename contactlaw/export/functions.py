@@ -106,6 +106,12 @@ def plain_root(v: float) -> float:
 
 
 @kernel
+def plain_whole(v: float) -> int:
+    """Whole part."""
+    return int(v)
+
+
+@kernel
 def series_of(table: Array, k: int) -> Array:
     """Coefficients of a power series, which begin at k."""
     return table[k:]
@@ -123,6 +129,7 @@ INSTEAD: dict[Any, Any] = {
     lookup.fifth_root: plain_root,
     lookup.series_at: series_of,
     lookup.exp: plain_exp,
+    lookup.whole: plain_whole,
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"

@@ -89,7 +89,7 @@ ELASTIC = GROWTH + len(ModulusGrowth._fields)  # the polynomial w^(1/4)
 END = ELASTIC + DEGREE + 1
 HEADER = END + DEGREE + 1  # where the rungs begin
 # Numbers of a rung: k, g^2, and squares in x, the factors of P and w^(1/4) of slow impacts.
-RUNG, _P, _W = 8, 0, 3
+RUNG = 8
 NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it goes on
 
 
@@ -211,6 +211,12 @@ def exp(x: float) -> float:
 
 
 @kernel(inline=True)
+def whole(v: float) -> int:
+    """Whole part of a number above 0; of 32 bits, which vectors convert."""
+    return np.int32(v)
+
+
+@kernel(inline=True)
 def weights(t: float) -> tuple[float, float, float, float]:
     """Cubic B-splines at t in [0, 1], times 6 (de Boor 1978, chapter IX).
 
@@ -224,33 +230,30 @@ def weights(t: float) -> tuple[float, float, float, float]:
     )
 
 
+Three = tuple[float, float, float]  # coefficients of a square in x
+ALIKE = (1.0, 0.0, 0.0)
+
+
 class Rung(NamedTuple):
     """A strength on the ladder."""
 
     index: int  # of the lower of two rungs
     between: float  # way to the next, from 0 to 1
     g: float
-    own: tuple[float, ...]  # six numbers, the factors of P and w^(1/4)
+    later: Three  # factor of P
+    slower: Three  # factor of w^(1/4)
 
 
 @kernel(inline=True)
 def rung_of(table: Array, axes: Axes, strength: float) -> Rung:
     """Find a strength k on the ladder."""
-    if axes.rungs == 1.0:
-        return Rung(0, 0.0, 1.0, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
     at, last = HEADER, HEADER + (int(axes.rungs) - 2) * RUNG
     while at < last and strength > table[at + RUNG]:
         at += RUNG
-    way = (strength - table[at]) / (table[at + RUNG] - table[at])
-    own = (
-        _between(table, at + 2, way),
-        _between(table, at + 3, way),
-        _between(table, at + 4, way),
-        _between(table, at + 5, way),
-        _between(table, at + 6, way),
-        _between(table, at + 7, way),
-    )
-    return Rung((at - HEADER) // RUNG, way, math.sqrt(_between(table, at + 1, way)), own)
+    way = (strength - table[at]) / (table[at + RUNG] - table[at]) if axes.rungs > 1.0 else 0.0
+    later = _between(table, at + 2, way), _between(table, at + 3, way), _between(table, at + 4, way)
+    slower = _between(table, at + 5, way), _between(table, at + 6, way), _between(table, at + 7, way)
+    return Rung((at - HEADER) // RUNG, way, math.sqrt(_between(table, at + 1, way)), later, slower)
 
 
 @kernel(inline=True)
@@ -260,9 +263,9 @@ def _between(table: Array, at: int, way: float) -> float:
 
 
 @kernel(inline=True)
-def of_rung(series: tuple[float, ...], own: tuple[float, ...], n: int, x: float) -> float:
+def of_rung(series: tuple[float, ...], factor: Three, x: float) -> float:
     """Return P or w^(1/4) of a strength."""
-    return powers(series, x) * (own[n] + x * (own[n + 1] + x * own[n + 2]))
+    return powers(series, x) * (factor[0] + x * (factor[1] + x * factor[2]))
 
 
 @kernel(inline=True)
@@ -365,14 +368,15 @@ def place(
     thickness: float,
     mass: float,
     g: float,
-    own: tuple[float, ...],
+    later: Three,
+    slower: Three,
     thin: bool,
     usual: bool,
 ) -> Place:
     """Place of one impact; `contact` says what the last two are."""
     one = contact(plate, axes.scale, speed, radius, thickness, mass, g, thin, usual)
-    elastic, end, stiff = of_rung(w, own, _W, one.x), of_rung(ends, own, _P, one.x), one.stiff
-    p, top = one.above * elastic, top_of(axes, end, own[0], g)
+    elastic, end, stiff = of_rung(w, slower, one.x), of_rung(ends, later, one.x), one.stiff
+    p, top = one.above * elastic, top_of(axes, end, later[0], g)
     good = (one.x >= 0.0) & (one.x <= axes.x_max) & (p <= top * stiff) & is_valid(speed, radius, thickness)
     # all p times stiff: one division less
     row, column = one.x * (axes.rows / axes.x_max), column_of(axes, p, end * stiff, top * stiff, g * stiff)
@@ -382,7 +386,7 @@ def place(
 @kernel(inline=True)
 def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
     """Interpolate a field from 4 x 4 of its coefficients in one rung, which begin at `at`; no index is negative."""
-    i, j = np.int32(row), np.int32(max(column, 0.0))
+    i, j = whole(row), whole(max(column, 0.0))
     a0, a1, a2, a3 = weights(row - i)
     b0, b1, b2, b3 = weights(column - j)
     p = at + np.uint64(i) * stride + np.uint64(j)
@@ -426,7 +430,7 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
     strength = strength_at(axes, speed, radius) if axes.rungs > 1.0 else 1.0
     on, usual = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0
     w, ends, thin = series_at(table, ELASTIC), series_at(table, END), is_thin(plate.corrections)
-    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.own, thin, usual)
+    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.later, on.slower, thin, usual)
     column = at.column if strength <= strongest(table, axes) else -1.0
     return Place(at.row, column, at.x, at.p, at.root, at.w), on, strength
 
@@ -489,9 +493,9 @@ def _scratch() -> _Chunk:
 @kernel
 def _places(table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: _Chunk) -> None:
     """`place_of` of the impacts of a chunk."""
-    axes, plate, elastic, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
+    axes, plate, ws, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
     size, rated, thin, solid = speed.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
-    usual, alike = solid and not relaxes(plate), (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    usual = solid and not relaxes(plate)
     row, column, x, p, root, w, strength, g = out.row, out.column, out.x, out.p, out.root, out.w, out.strength, out.g
     own = out.own
     if rated:
@@ -500,26 +504,28 @@ def _places(table: Array, speed: Array, radius: Array, thickness: Array, mass: A
         for i in range(size):
             on = rung_of(table, axes, strength[i])
             out.rung[i], out.between[i], g[i] = on.index, on.between, on.g
-            for n in range(6):
-                own[n, i] = on.own[n]
+            own[0, i], own[1, i], own[2, i] = on.later
+            own[3, i], own[4, i], own[5, i] = on.slower
+    v, r, h = speed, radius, thickness
     if usual and thin:
         for i in range(size):
-            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, alike, True, True)
+            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, True, True)
             row[i], column[i], x[i], p[i], root[i], w[i] = at
     elif usual and not rated:
         for i in range(size):
-            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, 1.0, alike, False, True)
+            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, False, True)
             row[i], column[i], x[i], p[i], root[i], w[i] = at
     elif usual:
         for i in range(size):
-            mine = own[0, i], own[1, i], own[2, i], own[3, i], own[4, i], own[5, i]
-            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], 1.0, g[i], mine, False, True)
+            later, slower = (own[0, i], own[1, i], own[2, i]), (own[3, i], own[4, i], own[5, i])
+            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, g[i], later, slower, False, True)
             row[i], column[i], x[i], p[i], root[i], w[i] = at
     else:
         for i in range(size):
             share, grown = 1.0 if solid else mass[i], g[i] if rated else 1.0
-            mine = (own[0, i], own[1, i], own[2, i], own[3, i], own[4, i], own[5, i]) if rated else alike
-            at = place(axes, elastic, ends, plate, speed[i], radius[i], thickness[i], share, grown, mine, thin, False)
+            later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
+            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
+            at = place(axes, ws, ends, plate, v[i], r[i], h[i], share, grown, later, slower, thin, False)
             row[i], column[i], x[i], p[i], root[i], w[i] = at
     if rated:
         most = strongest(table, axes)
@@ -621,12 +627,12 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
     most = strongest(table, axes)
     within_x, within_k = x if 0.0 <= x <= axes.x_max else axes.x_max, min(strength, most)
     on = rung_of(table, axes, within_k)
-    end = of_rung(series_at(table, END), on.own, _P, within_x)
-    top = top_of(axes, end, on.own[0], on.g)
+    end = of_rung(series_at(table, END), on.later, within_x)
+    top = top_of(axes, end, on.later[0], on.g)
     within_p = min(p, top)
     column = column_of(axes, within_p, end, top, on.g)
     inside = within_x == x and within_p == p and within_k == strength
-    w = _fourth(of_rung(series_at(table, ELASTIC), on.own, _W, within_x))
+    w = _fourth(of_rung(series_at(table, ELASTIC), on.slower, within_x))
     row = within_x * (axes.rows / axes.x_max)
     return Spot(row, column, on.index, on.between, within_x, within_p, on.g, w, inside)
 
@@ -639,7 +645,7 @@ def spot_at(table: Array, lam: float, y: float, log_strength: float) -> Spot:
         x if 0.0 <= x <= axes.x_max else axes.x_max,
         rung_of(table, axes, min(strength, strongest(table, axes))),
     )
-    w = of_rung(series_at(table, ELASTIC), on.own, _W, within)
+    w = of_rung(series_at(table, ELASTIC), on.slower, within)
     return spot_of(table, x, on.g * w / math.sqrt(math.sqrt(axes.unit * y)), strength)
 
 
