@@ -84,7 +84,7 @@ def header(
     TypeError
         If the model is no ImpactModel.
     ValueError
-        If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
+        If the kind of table is unknown, or a large table would make the header exceed 1 MB; if
         the prefix is not lower-case words of letters and digits, joined by single underscores.
     OSError
         If the file cannot be written; nothing is left behind then.

@@ -155,7 +155,7 @@ def rounded(law: Array) -> Array:
 def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
     """Numbers of a model's pair, and of a table if there is one.
 
-    A table has nine decimals, one with a ladder of strengths six: it errs by more than that.
+    A table has nine decimals, one with a ladder of strengths five: it errs by more than that.
     """
     pair, law, packed = model.pair, model.force_law, None
     laws, known = by_strength(pair, law, COARSE), constants_of(pair, law)
@@ -164,7 +164,7 @@ def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
         axes = lookup.axes_of(packed)
         begins = lookup.HEADER + lookup.RUNG * int(axes.rungs)
         packed = packed[: begins + int(axes.rungs * axes.size)].copy()  # COR alone
-        packed[begins:] = packed[begins:].round(9 if axes.rungs == 1.0 else 6)
+        packed[begins:] = packed[begins:].round(9 if axes.rungs == 1.0 else 5)
     return Bodies(
         rounded(laws),
         force.room_for(laws),

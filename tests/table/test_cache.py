@@ -309,7 +309,7 @@ def test_tangential_rebounds_are_kept_and_made_anew_where_damaged(place, expecte
 
     check(0.8, 1)
     check(0.8, 1)
-    (path,) = place.glob("slides-*")
+    (path,) = place.glob("slides-*.h5")
     whole = path.read_bytes()
     path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
     check(0.8, 2)
