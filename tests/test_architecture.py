@@ -43,7 +43,8 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": (
-        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator zener few_steps"
+        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator zener "
+        "few_steps"
     ),
     "table": "lookup axes grid splines shapes sweep certificate nodes slides file cache",
     "answers": (
@@ -337,7 +338,7 @@ FORCE = """
 from contactlaw import _jit, laws
 from contactlaw.equation import force
 _jit.enable_caching()
-law = laws.law('myc').data
+law = force.alone(laws.law('myc').data)
 print(force.loading(law, 2.5), force.loading(law, 0.5))
 """
 ANSWERS = """
@@ -348,7 +349,7 @@ from contactlaw.softsphere import Contacts
 model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')
 law = model.force_law.data
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0],
-      force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1),
+      model.force_law.loading(2.5), zener.solve(force.HERTZ, 0.1, 1.0, 1e-9).restitution,
       model.lookup(12.0, 0.9e-3, 1e-3).peak_force,
       model.force_history(5.0, 0.9e-3, 1e-3).force.max(),
       Contacts(model, 0.9e-3, 1e-3).advance(np.array([1e-6]), 1e-9)[0])

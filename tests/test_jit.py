@@ -23,7 +23,6 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw import _folder, _jit, _kept, cli, laws
-from contactlaw.equation import force
 from contactlaw.softsphere import Contacts
 from dem_demo.cli import scenes
 
@@ -125,8 +124,7 @@ import sys
 sys.path.insert(0, {str(ROOT / "tests/shared")!r})
 import renamed_numba
 from contactlaw import _jit, laws
-from contactlaw.equation import force
-print(_jit.private, force.loading(laws.law("myc").data, 2.5))
+print(_jit.private, laws.law("myc").loading(2.5))
 """
 
 
@@ -134,7 +132,7 @@ def test_without_a_private_name_of_numba_public_names_serve(tmp_path):
     """CI runs more of the tests like this: python -m pytest -p renamed_numba."""
     private, load = run(RENAMED, tmp_path).split()
     assert private == "None"
-    assert float(load) == pytest.approx(force.loading(laws.law("myc").data, 2.5), rel=1e-12)
+    assert float(load) == pytest.approx(laws.law("myc").loading(2.5), rel=1e-12)
 
 
 def private_names():

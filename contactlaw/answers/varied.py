@@ -20,7 +20,7 @@ from contactlaw.physical.validity import alone
 Number = tuple[str, str]  # body, "sphere" or "plate", and field of its Material, or "flow_stress"
 
 # The COR of a pair with a rate of strain is within 1e-6 of that with laws of any strength.
-FINE = Fineness(5, 1e-8, 3.0, 0.15, REACH, 1e-4)
+FINE = Fineness(1e-8, 3.0, 0.02, REACH, 1e-4)
 _MARGIN = 1.001  # of the rate beyond that of the impacts
 
 

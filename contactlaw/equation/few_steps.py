@@ -18,7 +18,7 @@ from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.edge import LONGEST, NO_MEMORY
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.recall import recalled, remembered
 
@@ -31,14 +31,14 @@ _MOST = 2000  # steps
 
 
 @kernel(inline=True)
-def _force(law: Array, loading: bool, curve: UnloadingCurve, q: float) -> float:
+def _force(law: BlendedLaw, loading: bool, curve: UnloadingCurve, q: float) -> float:
     if loading or curve.stiffness == 0.0:
         return float(force.loading(law, q))
     return float(force.unloading_force(law, curve, q))
 
 
 @kernel
-def restitution_near(law: Array, response: Array, lam: float, y: float, coupling: float, rate: float) -> float:
+def restitution_near(law: BlendedLaw, response: Array, lam: float, y: float, coupling: float, rate: float) -> float:
     """Restitution of one impact near an edge, see `Edges`; NaN if steps do not get to its end."""
     unit = math.sqrt(math.sqrt(y))  # T_H in the law's scale
     q_scale, speed = 1.0 / (unit * unit), 1.0 / (y * unit)

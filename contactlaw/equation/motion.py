@@ -20,10 +20,10 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
 
 from typing import Any, NamedTuple
 
-from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import edge, legs, plate
 from contactlaw.equation.edge import Memories
+from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import Leg
 from contactlaw.equation.plate import PlateMobility
 
@@ -31,7 +31,7 @@ from contactlaw.equation.plate import PlateMobility
 class ScaledContact(NamedTuple):
     """A contact in the law's scale: its force law and its plate."""
 
-    law: Array  # data of the force law
+    law: BlendedLaw
     plate: PlateMobility
 
 

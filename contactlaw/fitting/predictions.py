@@ -35,8 +35,8 @@ from contactlaw.physical.strengths import Fineness
 _RTOL = 1e-9  # error allowed per step: 1e-8 of a contact time
 # Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
 # model's, and in the scan before, within 5e-2.
-COARSE = Fineness(3, 1e-6, 6.0, 0.15, REACH, 5e-3)
-ROUGH = Fineness(2, 1e-5, 6.0, 0.12, REACH, 5e-3)
+COARSE = Fineness(1e-6, 6.0, 0.04, REACH, 5e-3)
+ROUGH = Fineness(1e-5, 6.0, 0.12, REACH, 5e-3)
 _STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 

@@ -201,7 +201,8 @@ def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
     elastic = elastic_compressions(law, lam, s)
     end = np.ones((every.size, along.size))
     if has_end:
-        kink = np.repeat([_end(data, one) for one in every.tolist()], along.size)
+        rungs = force.rungs(data)
+        kink = np.repeat(np.interp(every, rungs[:, force.STRENGTH], rungs[:, force.END]), along.size)
         end = np.log(_overloads(law, kink, lam, elastic, s)).reshape(end.shape)
     log_w_m = np.log(elastic).reshape(end.shape)
     growth = [[math.log(force.growth_at(data, one))] for one in every.tolist()]
@@ -209,12 +210,6 @@ def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
     stiffer = [power_series(one, ROWS - ELASTIC - 1) for one in log_w_m - log_w_m[-1]]
     rows = np.split(np.hstack([growth, factor, stiffer])[:-1], len(places))
     return np.array([[power_series(row, TERMS - 1) for row in one.T] for one in rows])
-
-
-def _end(data: Array, strength: float) -> float:
-    """Compression up to which the law of a strength holds: its last piece is a tangent."""
-    own = force.at_strength(data, strength, np.empty(force.room_for(data)))
-    return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
 
 
 def _kink_lines(law: Law, settings: Settings, lam: Array, elastic: Array) -> tuple[list[Array], list[bool]]:

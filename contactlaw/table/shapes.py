@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.table import lookup, splines
@@ -75,7 +75,7 @@ def _states(shapes: Shapes, lam: float, log_chi: float, strength: float, out: Ar
 
 
 @kernel
-def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
+def _force(law: BlendedLaw, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
     """Force at a compression; y = inf for a contact that follows Hertz's law."""
     if y == math.inf:
         return d * math.sqrt(d)
@@ -88,13 +88,13 @@ def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float)
 @kernel(cache=True)
 def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
-    samples, room = out.time.shape[1], np.empty(force.room_for(law))
+    samples = out.time.shape[1]
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
-        own = law if room.size == 0 else force.at_strength(law, found.strength[n], room)
+        own = force.at_strength(law, found.strength[n])
         log_chi, strength = math.log(w_m / y) if y < math.inf else 0.0, found.strength[n]
         _states(shapes, lam, log_chi, strength, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e

@@ -122,11 +122,11 @@ def stiffer(powers):
     return data
 
 
-@pytest.mark.parametrize("powers", [[], [0.02], [0.3], [5.0]])
-def test_an_impact_whose_yield_compression_is_w_m_just_yields(powers):
+@pytest.mark.parametrize(("powers", "error"), [([], 1e-11), ([0.02], 6e-9), ([0.08], 6e-9), ([5.0], 4e-7)])
+def test_an_impact_whose_yield_compression_is_w_m_just_yields(powers, error):
     """At lambda = 0 by the loading work alone, beyond by a sum that was fitted to integrated impacts."""
     law = stiffer(powers)
-    for lam, bound in (0.0, 1e-11), (0.01, 1.5e-6), (0.3, 1.5e-6), (1.1, 1.5e-6), (5.0, 1.5e-6), (50.0, 5e-5):
+    for lam, bound in (0.0, 1e-11), (0.01, error), (0.3, error), (1.1, error), (5.0, error), (50.0, 0.05):
         w_m = zener.elastic_compression(law, lam)
         assert zener.solve(law, lam, w_m, 1e-12).peak_compression == pytest.approx(w_m, rel=bound)
 
