@@ -43,8 +43,8 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": (
-        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator zener "
-        "few_steps"
+        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator "
+        "near_edge zener"
     ),
     "table": "lookup axes grid splines shapes sweep certificate nodes slides file cache",
     "answers": (

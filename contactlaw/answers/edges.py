@@ -14,7 +14,7 @@ from contactlaw._arrays import Array, Places
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.solver import Solver
-from contactlaw.equation.few_steps import restitution_near
+from contactlaw.equation import near_edge, zener
 from contactlaw.equation.force import at_strength
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes, share_of_solid
 from contactlaw.physical.arguments import shaped
@@ -97,7 +97,10 @@ def _cor_near(
     thin = 1.0 if relaxes(pair.plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     own = at_strength(law, known.strength)
-    return restitution_near(own, response, known.inelasticity, y, min(thin, 1.0), rate)
+    none = np.empty((0, 0))
+    notes = zener.Notes(none, none, none, none, none)
+    one = near_edge.follow(own, response, known.inelasticity, y, min(thin, 1.0), rate, near_edge.QUICK, notes, 0)
+    return near_edge.restitution(one, y) if one.ended else math.nan
 
 
 def _each(

@@ -92,12 +92,6 @@ def up(law: BlendedLaw, first: int) -> Leg:
 
 
 @kernel
-def up_again(law: BlendedLaw, q: float) -> Leg:
-    """Leg of loading that goes on from a root compression."""
-    return up(law, int(law.low[force.row_of(law.low, force.piece_at(law.low, q)) + force.FIRST]))
-
-
-@kernel
 def down(law: BlendedLaw, curve: UnloadingCurve, dm: float) -> Leg:
     """Leg of unloading from dm, with which the contact ends."""
     if curve.stiffness > 0.0:

@@ -33,9 +33,9 @@ DESCRIPTIONS = Losses(
 
 
 @kernel(inline=True)
-def power(q: float, f: float, drive: float) -> float:
-    """Work that the waves take per ds over the plate's mobility, from its speed over that."""
-    return 2.0 * q * f * drive
+def power(q: float, f: float) -> float:
+    """Work that the waves take per ds, over the plate's mobility."""
+    return 2.0 * q * f * f
 
 
 @kernel(inline=True)

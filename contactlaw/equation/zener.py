@@ -20,15 +20,13 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion
+from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion, near_edge
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
-from contactlaw.equation.losses import Losses
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
-from contactlaw.equation.plate import PlateMobility
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
@@ -84,7 +82,11 @@ def _integrate(
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            one = follow_impact(goal, force.at_strength(laws, s[n]), lam[n], y[n], rtol, notes, n, edges)
+            law = force.at_strength(laws, s[n])
+            if edges is None:
+                one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
+            else:
+                one = follow_near(law, lam[n], y[n], notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
                 if out[0, n] == OK and not abs(one[k]) < math.inf:
@@ -92,33 +94,35 @@ def _integrate(
 
 
 @kernel
-def follow_impact(
-    goal: int, law: BlendedLaw, lam: float, y: float, rtol: float, notes: Notes, n: int, edges: Edges | None
-) -> Solution:
-    """Integrate one impact, and note points of its path in row n."""
+def _shallow(law: BlendedLaw, y: float) -> float:
+    """Yield compression to solve with, of a slow impact under a law with losses.
+
+    Slower impacts lose the same share, but the law knows no loss of the shallowest contacts.
+    """
     if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
-        # slower impacts lose the same share, but the law knows no loss of the shallowest contacts
-        y = 0.05 / force.lossless(law)
+        return 0.05 / force.lossless(law)
+    return y
+
+
+@kernel
+def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float, notes: Notes, n: int) -> Solution:
+    """Integrate one impact, and note points of its path in row n."""
+    y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t, rtol)))
+    contact = ScaledContact(law, lam * scale.t)
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
-    stays = False
     while going:
-        level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
+        level, until, loading = leg.level, math.inf, legs.is_loading(leg)
         if goal == AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
-        # a plate that comes back may press the sphere beyond its largest compression
-        high = math.inf
-        if edges is not None and not loading:
-            high = math.sqrt(top.q * top.q - leg.residual)
         event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
-            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, high, until)
+            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
         # the leg ends unless the event was only a time or a compression to note
         ends = event != TIME and (event != LEVEL or level == leg.level)
@@ -134,29 +138,16 @@ def follow_impact(
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
         noted = here
-        if event == TIME and goal != AT_TIMES:  # the sphere stays on the plate
-            stays = True
-            break
         going = going and (goal < AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
-    if goal == TO_THE_END:
-        edge.look_back(edges, n, contact.plate.response, state.memory, state.u, contact.plate.mobility, state.t)
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
-    lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
-    most = 1.0 if edges is None else math.sqrt(max(1.0 - lost.plastic - lost.other, 0.0))
-    rebound = min(max(-state.u / scale.u, 0.0), most)  # a step's error may put it outside
-    wave_rate = 2.0 * scale.t * state.work / scale.u**2
-    # the plate has what the sphere still has, or what the fit of its response is off by
-    if edge.settles(edges, n, stays, 0.0 < rebound < most and wave_rate >= 0.0):
-        wave = max(1.0 - rebound * rebound - lost.plastic - lost.other, 0.0)
-        lost = Losses(lost.plastic, wave, lost.other)
-        wave_rate = wave / lam if lam > 0.0 else 0.0
+    lost = losses.shares(plastic, state.work, other, contact.mobility, scale.u)
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
-        rebound,
+        min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
         top.f * y * math.sqrt(y),
@@ -165,7 +156,43 @@ def follow_impact(
         lost.plastic,
         lost.wave,
         lost.other,
-        wave_rate,
+        2.0 * scale.t * state.work / scale.u**2,
+    )
+
+
+@kernel
+def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edges: Edges) -> Solution:
+    """Follow one impact near an edge in implicit steps, and note points of its path in row n.
+
+    The plate has all of the energy that is neither lost at the contact nor left to the sphere.
+    """
+    y = _shallow(law, y)
+    response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
+    one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
+    unit = math.sqrt(math.sqrt(y))
+    speed = 1.0 / (y * unit)
+    residual, plastic, other = losses.at_the_contact(law, one.largest)
+    lost = losses.shares(plastic, 0.0, other, 0.0, speed)
+    left = max(1.0 - lost.plastic - lost.other, 0.0)
+    rebound = min(near_edge.restitution(one, y), math.sqrt(left))
+    wave = max(left - rebound * rebound, 0.0)
+    again = one.stays or edge.comes_back(
+        response, one.memory, coupling, rate / unit, one.speed, lam * unit, one.duration
+    )
+    edges.again[n] = 1.0 if again else 0.0
+    return Solution(
+        float(OK if one.ended else TOO_MANY_STEPS),
+        float(one.steps),
+        rebound,
+        one.loading_time / unit,
+        one.duration / unit,
+        one.peak_force * y * math.sqrt(y),
+        one.largest * y,
+        residual * y,
+        lost.plastic,
+        wave,
+        lost.other,
+        wave / lam if lam > 0.0 else 0.0,
     )
 
 

@@ -300,7 +300,7 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
     none = np.empty((0, 0))
     own = at_strength(pair.law, units.strength)
     notes = zener.Notes(none, none, none, none, none)
-    return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0, None)
+    return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0)
 
 
 @kernel
@@ -501,7 +501,7 @@ def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> His
     own = at_strength(pair.law, units.strength)
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
-    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0, None)
+    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
     return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])

@@ -14,7 +14,7 @@ from oracle import ALL_LAWS, FEM
 
 from contactlaw import equation
 from contactlaw._arrays import Array
-from contactlaw.equation import edge, few_steps, force, integrator, legs, outcome, tangential, zener
+from contactlaw.equation import edge, force, integrator, legs, near_edge, outcome, tangential, zener
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.strengths import by_strength, with_strengths
 from contactlaw.table import file, lookup, nodes, slides
@@ -63,7 +63,7 @@ def attempt(data):
     for row in many[12:].reshape(8, 12):
         own = force.alone(law)
         curve, loads = force.unloading(own, row[0]), bool(row[2] > 0.0)
-        leg = legs.up_again(own, row[1]) if loads else legs.down(own, curve, row[1])
+        leg = legs.up(own, legs.FIRST) if loads else legs.down(own, curve, row[1])
         known = {"law": law, "laws": law, "table": table, "response": EDGE, "kind": leg.kind}
         typed = {"Array": many[0, 0], "Outcome": outcome.at(*many[1, :2]), "bool": loads}
         typed |= {"Extremes": outcome.extremes(4), "UnloadingCurve": curve, "Leg": leg}
@@ -92,7 +92,7 @@ def test_no_float_leads_out_of_an_array(monkeypatch):
         for name, kernel in list(vars(module).items()):
             if hasattr(kernel, "py_func"):
                 monkeypatch.setattr(module, name, partial(run, kernel))
-    for module, most in ((integrator, "MAX_STEPS"), (zener, "MAX_STEPS"), (few_steps, "_MOST")):
+    for module, most in ((integrator, "MAX_STEPS"), (zener, "MAX_STEPS"), (near_edge, "_MOST")):
         monkeypatch.setattr(module, most, 12)
     with np.errstate(all="ignore"):
         # which floats are drawn depends on the modules that are loaded; one impact is in the table

@@ -164,8 +164,8 @@ def test_too_thin_is_a_status():
 
 def test_a_level_next_to_a_turn_is_sought_within_the_step():
     """The motion turns 1e-12 above a kink, where once one impact of 3e6 never ended."""
-    before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0, None, None)
-    beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0, None, None)
+    before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0)
+    beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0)
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
@@ -198,13 +198,13 @@ def solved(lam, data=law):
 solved(0.6)
 solved(0.3 * 2.0**0.4, force.HERTZ)
 speed, force_on, power = plate.speed, legs.force_on, losses.power
-plate.speed = lambda plate, f, memory: 2.0 * speed(plate, f, memory)
+plate.speed = lambda mobility, f: 2.0 * speed(mobility, f)
 solved(0.3)
 plate.speed = speed
 legs.force_on = lambda leg, kind, data, q: 2.0 * force_on(leg, kind, data, q)
 solved(0.3, force.HERTZ)
 legs.force_on = force_on
-losses.power = lambda q, f, drive: 0.5 * power(q, f, drive)
+losses.power = lambda q, f: 0.5 * power(q, f)
 solved(0.6)
 """
 
