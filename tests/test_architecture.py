@@ -56,7 +56,7 @@ FILES = {
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
-    "reporting": "limits gallery page surface meshes run summary charts figures files",
+    "reporting": "limits page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
     "cli/parts": "wording table columns impacts bands options plots own rebounds chosen layout figure old_figure",

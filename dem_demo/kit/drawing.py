@@ -25,7 +25,7 @@ def source(runs: Runs[S]) -> str:
 
 
 def panels(
-    figure: Figure, runs: Runs[B], *, stacked: bool = False, projection: str | None = None
+    figure: Figure, runs: Runs[B], *, stacked: bool = True, projection: str | None = None
 ) -> list[tuple[Axes, Run[B]]]:
     """Make a panel for each run, titled with the name of the run; all have the same scale."""
     shape = (len(runs), 1) if stacked else (1, len(runs))
@@ -80,9 +80,9 @@ class Drawing:
         self.walls.set_segments([line * MM for line in scene.outline(time)])
 
 
-def drawings(figure: Figure, runs: Runs[B]) -> list[Drawing]:
+def drawings(figure: Figure, runs: Runs[B], stacked: bool) -> list[Drawing]:
     """Draw both runs, with a scale of the colours."""
-    shown, colours = panels(figure, runs, stacked=runs[0].scene.STACKED), restitution_range(runs[0])
+    shown, colours = panels(figure, runs, stacked=stacked), restitution_range(runs[0])
     found = [Drawing(axes, run, colours) for axes, run in shown]
     bar = figure.colorbar(found[0].beads, ax=[axes for axes, _ in shown], pad=0.02, fraction=0.03)
     bar.set_label("COR of the last impact")
@@ -94,7 +94,7 @@ def gif(runs: Runs[B]) -> bytes:
     """Film both runs in slow motion, as a GIF that repeats itself."""
 
     def lay_out(figure: Figure) -> film.Moving:
-        drawn = drawings(figure, runs)
+        drawn = drawings(figure, runs, runs[0].scene.STACKED)
         clock = figure.text(0.01, 0.01, "", ha="left", va="bottom", color=style.MUTED)
 
         def show(time: float) -> None:
@@ -104,13 +104,13 @@ def gif(runs: Runs[B]) -> bytes:
 
         return show, [clock, *(artist for drawing in drawn for artist in (drawing.walls, drawing.beads))]
 
-    size = _WIDTH, height(runs, 0.85 * _WIDTH, _ROOM)
+    size = _WIDTH, height(runs, 0.85 * _WIDTH, _ROOM, stacked=runs[0].scene.STACKED)
     return film.film(size, lay_out, runs[0].time.tolist(), runs[0].scene.FILM_RATE)
 
 
-def height(runs: Runs[B], width: float, room: float) -> float:
+def height(runs: Runs[B], width: float, room: float, *, stacked: bool) -> float:
     """Height of all panels for their width, with room for the title of each [inches]."""
     scene, count = runs[0].scene, len(runs)
     left, right, bottom, top = scene.window
-    rows, wide = (count, width) if scene.STACKED else (1, width / count)
+    rows, wide = (count, width) if stacked else (1, width / count)
     return rows * (room + wide * (top - bottom) / (right - left))
