@@ -107,7 +107,7 @@ def recorded(path, kinds):
 def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     recorded(tmp_path / name, [0, 2, 0, 4, 2, 0])
     assert one(tmp_path / name).speed.tolist() == [1.0, 3.0, 6.0]
-    words = "3 of 6 rows are no impacts and left out: 2 over edge, 1 resting"
+    words = "Of 6 contacts, 33 % left over the edge of a wall and 17 % stayed as under their weight; their COR"
     pair = ["--sphere", "gamma-alumina", "--plate", "glass"]
     command = ["constant", *pair, "--record", str(tmp_path / name)]
     assert cli_of_contactlaw.main(command) == 0
@@ -117,7 +117,7 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     assert capsys.readouterr().err == ""
     recorded(tmp_path / name, [1, 1])
     assert cli_of_contactlaw.main(command) == 1
-    words = "it has no impact on a plate: 2 of 2 rows are no impacts and left out: 2 sliding on"
+    words = "it has no impact on a plate. Of 2 contacts, 100 % slid on from another wall; their COR"
     assert words in capsys.readouterr().err
 
 
@@ -224,7 +224,7 @@ def test_rows_of_a_rain_that_are_no_impacts(rain, tmp_path):
     found = one(tmp_path / "rain.h5")
     assert found.speed.tolist() == [2.0, 3.0]
     assert found.thickness.tolist() == [math.inf, 0.5e-3]
-    assert found.left_out == "1 of 3 rows are no impacts and left out: 1 sliding on"
+    assert found.left_out.startswith("Of 3 contacts, 33 % slid on from another wall;")
 
 
 def absent(file, name):

@@ -49,7 +49,7 @@ def test_what_is_no_impact_is_left_out_and_said(runs):
     run = dataclasses.replace(runs[0], record=dataclasses.replace(runs[0].record, rows=rows))
     assert run.impacts.size == count - 1
     text = summary([run, runs[1]])
-    assert f"1 of {count} rows are no impacts and left out: 1 over edge" in text
+    assert f"Of {count} contacts, {100 / count:.2g} % left over the edge of a wall" in text
     assert re.search(rf"^impacts on the drum +{count - 1} +\d+$", text, re.MULTILINE)
 
 

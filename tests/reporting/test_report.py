@@ -60,7 +60,8 @@ def test_the_energies_of_walls_and_causes_are_those_of_the_record(run, folder):
     assert [wall.rows.size for wall in walls] == np.bincount(rows["plate"]).tolist()
     text = (folder / "summary.txt").read_text()
     (unit,) = set(re.findall(r"\[([nµm]?)J\]", text))
-    shown = re.findall(r"^(?:wall (\d), .*|(all) walls) +((?:[\d.e-]+ +){5})[\d.]+%$", text.partition("plastic")[2], re.M)
+    table = text[text.index("plastic") :]
+    shown = re.findall(r"^(?:wall (\d), .*|(all) walls) +((?:[\d.e-]+ +){5})[\d.]+%$", table, re.M)
     names = ["".join(name) for *name, _ in shown]
     assert names == ["0", "1", "2", "all"]
     size = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0}[unit]

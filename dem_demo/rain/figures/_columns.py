@@ -18,12 +18,8 @@ from dem_demo.rain.scene import Shower
 
 def figure(runs: Runs[Shower], title: str, points: str, rows: NDArray[np.void]) -> tuple[Figure, Axes]:
     """Make a figure with a column per plate; `points` says what each of these impacts is."""
-    made = style.figure(
-        style.COLUMN,
-        6.4,
-        title,
-        f"{source(runs)}; {points}, in each column from slow (left) to fast (right){ringed(rows)}",
-    )
+    about = f"{source(runs)}; {points}, in each column from slow (left) to fast (right){ringed(rows)}"
+    made = style.figure(style.COLUMN, 6.4, title, about)
     axes = made.add_subplot()
     wall_axis(axes, [label(thickness) for thickness in runs[0].scene.plates])
     return made, axes
