@@ -36,7 +36,6 @@ class Hit(NamedTuple):
     impact: Answer
     flags: int
     speed: float  # normal to the plate before [m/s]
-    size: float  # along it before [m/s]
     sliding_speed: float  # of the contact point afterwards [m/s]
     along: float  # of the centre along the plate afterwards [m/s]
     spin: float  # afterwards [rad/s]
@@ -44,7 +43,7 @@ class Hit(NamedTuple):
     friction_share: float  # of it that friction takes
 
 
-REFUSED = Hit(NOTHING, -1, *[math.nan] * 7)
+REFUSED = Hit(NOTHING, -1, *[math.nan] * 6)
 
 
 @kernel
@@ -62,7 +61,7 @@ def for_curve(pair: Bodies, impact: Impact) -> Answer:
 
 @kernel
 def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
-    """Contact of an impact over time; for the impulse it has the displacement of the plate [m]."""
+    """Force [N] of an impact over time [s]; the other columns have no units."""
     at, time, velocity = np.empty((1, SHOWN)), np.empty((1, SHOWN)), np.empty((1, SHOWN))
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
     units = numbers_of(pair, impact)
@@ -72,8 +71,6 @@ def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
     for n in range(SHOWN):
         path.time[n] *= units.time
         path.force[n] *= units.force
-        path.compression[n] *= units.compression
-        path.impulse[n] *= units.inelasticity * units.compression
     return path
 
 
@@ -97,7 +94,6 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
         hit,
         found,
         speed,
-        size,
         after,
         size - change / POINT,
         (1.0 - 1.0 / POINT) * change / impact.radius,

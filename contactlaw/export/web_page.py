@@ -12,7 +12,7 @@ import shlex
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from contactlaw import _atomic, laws
+from contactlaw import _atomic, laws, style
 from contactlaw._template import template
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
@@ -23,7 +23,7 @@ from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.scaling import constants_of, wave_path
+from contactlaw.physical.scaling import constants_of
 from contactlaw.physical.validity import Validity, explain
 
 _CONSTANT = re.compile(r"^const (\$\w+) = (.*?);$\n*", re.MULTILINE | re.DOTALL)
@@ -75,6 +75,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     kernels = list(dict.fromkeys(one for one, _ in made))  # each once, for all its pairs
     text = template("contactlaw.export", "explore.html").render(
         version=VERSION,
+        energies=style.ENERGIES,
         words={flag.value: explain(flag)[0] for flag in Validity if flag < Validity.CURVED_WALL},
         pairs=[_shown(one) for one in models],
         kernels=kernels,
@@ -95,7 +96,6 @@ def _shown(model: ImpactModel) -> dict[str, float | str]:
     return {
         "title": f"{pair.sphere.name} on {pair.plate.name}",
         "law": f"law {law.family}: {law.source}",
-        "wave_path": wave_path(pair.plate),
         "solid": constants_of(pair, law).mass,
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options if registered and all(typed) else "",
