@@ -54,7 +54,7 @@ def test_an_energy_has_one_colour_in_report_demo_and_page(runs, tmp_path, page):
         for patch, text in zip(figure.legends[0].legend_handles, figure.legends[0].get_texts(), strict=True):
             if isinstance(patch, Patch):
                 seen.setdefault(text.get_text(), []).append(to_hex(patch.get_facecolor()))
-    cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+    cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6")))
     page.open(tmp_path / "page.html", 1280).value("(asked.angle = 40, show())")
     look = "[...document.querySelectorAll('{}')].map((e) => getComputedStyle(e).{}Color)"
     words = page.value("[...document.querySelectorAll('#shares li')].map((e) => e.textContent)")
