@@ -1,4 +1,4 @@
-"""What the page of a pair computes beside `contactlaw.export.functions`, as kernels; see there."""
+"""Kernels of the page with sliders, beside those of `contactlaw.export.functions`."""
 
 import math
 from typing import NamedTuple
@@ -23,7 +23,7 @@ LONGEST = 12.0  # Hertz's times, after which the tail of a long contact is not d
 
 
 class Page(NamedTuple):
-    """What a pair of materials fixes beside `Bodies`."""
+    """Numbers of a pair of materials that `Bodies` does not have."""
 
     modulus: float  # E* [Pa]
     strength: float  # of the weaker body [Pa]
@@ -48,9 +48,9 @@ REFUSED = Hit(NOTHING, -1, *[math.nan] * 6)
 
 @kernel
 def for_curve(pair: Bodies, impact: Impact) -> Answer:
-    """One impact for a point of a curve: its COR is within 3e-4.
+    """Solve the impact of a point of a curve; its COR is within 3e-4.
 
-    One that leaves hardly any speed is not followed to its end.
+    An impact that leaves hardly any speed is followed only to its largest compression.
     """
     if not is_valid(impact):
         return NOTHING
@@ -76,9 +76,9 @@ def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
 
 @kernel
 def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: float) -> Hit:
-    """Impact of a bead without spin, at an angle [deg] to the normal of the plate.
+    """Solve the impact of a bead without spin, at an angle [deg] to the normal of the plate.
 
-    The speed that is given is the bead's.
+    The speed is that of the bead along its path.
     """
     tilt = angle * math.pi / 180.0
     speed, size = given.speed * math.cos(tilt), given.speed * math.sin(tilt)

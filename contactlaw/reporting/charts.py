@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw._arrays import Array
 
+_BAR, _AROUND = 0.15, 2.0  # [inches] height of a bar of colours, and of all that is around the drawings
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
 
 
@@ -44,6 +45,7 @@ def sheet(axes: Axes, corners: NDArray[np.floating], value: Array, scale: LogNor
 
 def density_bar(figure: Figure, drawn: Any, axes: Sequence[Axes]) -> None:
     """Explain the colours of a `sheet` below some axes."""
-    bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=0.06, pad=0.03, aspect=40)
+    part = _BAR / max(figure.get_figheight() - _AROUND, 4.0 * _BAR)
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=part, pad=0.4 * part, aspect=40)
     bar.set_label("energy taken per area [J/m²]")
     style.decades(bar.ax.xaxis, (1.0, 2.0, 5.0))

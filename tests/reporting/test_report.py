@@ -10,6 +10,7 @@ import pytest
 from pymunk_room import make_bead, make_plate, make_space, steps
 
 import contactlaw as cl
+from contactlaw import style
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
@@ -145,6 +146,34 @@ def test_the_page_is_whole_in_one_small_file_and_fits_the_screen(folder, page, w
     page.open(folder / "index.html", width)
     assert page.value("innerWidth") == width and page.value(WIDE) == 0
     assert page.value("[...document.images].every((one) => one.naturalWidth > 300)")
+
+
+def test_a_phone_shows_letters_of_a_size_to_read_and_each_name_once(folder, page):
+    page.open(folder / "index.html", 390)
+    points = 72.0 / 150.0  # of a pixel of a figure
+    sizes = page.value("[...document.images].map((one) => one.clientWidth / one.naturalWidth)")
+    assert all(11.0 / points * size > 8.5 for size in sizes)  # [pixels of the phone] of 11 points
+    heads, cells = "[...document.querySelectorAll('th')]", "[...document.querySelectorAll('td')]"
+    assert page.value(f"{heads}.filter((one) => one.textContent === 'median COR' && one.checkVisibility()).length") == 1
+    assert page.value(f"{cells}.every((one) => getComputedStyle(one, '::before').content === 'none')")
+
+
+@pytest.mark.parametrize("long", [0.05, 0.5])
+@pytest.mark.parametrize("known", [True, False])
+def test_the_map_begins_below_its_title_and_explains_its_colours(known, long):
+    rows = np.zeros(9, IMPACT)
+    rows["approach_speed"], rows["radius"], rows["thickness"], rows["mass"] = 1.0, 1e-3, 1e-3, 1e-5
+    rows["x"], rows["y"] = np.tile([0.01, 0.025, 0.04], 3), np.repeat([0.01, 0.025, 0.04], 3)
+    rows["wave_energy"] = 1e-6
+    corners = np.array([[[0, 0, 0], [long, 0, 0], [long, 0.05, 0]], [[0, 0, 0], [long, 0.05, 0], [0, 0.05, 0]]])
+    point = np.stack([rows["x"], rows["y"], rows["z"]], axis=1)
+    walls = Surface(corners, np.zeros(2, int), (rows["y"] * long > 0.05 * rows["x"]).astype(int), point)
+    with style.applied():
+        figure = places.draw(Run(cl.Record(rows, surface=walls if known else None)))
+        figure.draw_without_rendering()
+    gap = min(text.get_window_extent().y0 for text in figure.texts) - figure.axes[0].get_window_extent().y1
+    assert 0.0 < gap < 0.35 * figure.dpi
+    assert ("grey" in figure.texts[1].get_text()) == (known and long > 0.05)
 
 
 def test_what_is_no_impact_is_left_out_and_said(folder, tmp_path, capsys):

@@ -5,6 +5,7 @@ prevail.
 """
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -39,7 +40,7 @@ def draw(run: Run) -> Figure:
     upper.set(xlabel=f"energy taken by all contacts [{unit.replace('u', 'µ')}]")
     _stack(lower, parts, _WIDE)
     lower.set(xlabel="share of the energy that impacts bring [%]", xlim=(0.0, 100.0))
-    named: dict[str, object] = {}
+    named: dict[str, Artist] = {}
     for axes in (lower, upper):
         axes.set_yticks(range(len(walls)), [wall.name.replace(", ", ",\n") for wall in walls], fontsize=11)
         axes.set_ylim(len(walls) - 0.5, -0.5)

@@ -20,7 +20,7 @@ _VIEWS = {"seen from above": (1.0, -1.6, 1.0), "seen from below, behind": (-1.0,
 _DULL = 0.65  # brightness of a surface that is seen edge-on
 _NOTHING = 1e-4  # share of the largest energy per area; less is drawn as no energy, in grey
 _POINTS = 20_000  # most contacts that are drawn
-_WIDE, _HIGH = 5.0, (0.8, 6.0)  # [inches] width of a drawing, and its least and largest height
+_WIDE, _HIGH = 5.0, (0.3, 6.0)  # [inches] width of a drawing, and its least and largest height
 
 
 def draw(run: Run) -> Figure:
@@ -33,11 +33,12 @@ def draw(run: Run) -> Figure:
     shown = np.argsort(thin, kind="stable")[:2]  # the axes of a plan
     drawings = [(corners[:, :, shown], shades)] if thin.any() else [_seen(corners, shades, v) for v in _VIEWS.values()]
     grey = "; grey: no contact near" if (shades == to_rgb(style.PALE)).all(axis=1).any() else ""
-    figure, panels = _panels(run, [np.ptp(flat, axis=(0, 1)) for flat, _ in drawings], 1.1, grey)
+    figure, panels = _panels(run, [np.ptp(flat, axis=(0, 1)) for flat, _ in drawings], 0.7, grey)
     scale = density_scale([run.map.density])
     for axes, (flat, painted), name in zip(panels, drawings, _VIEWS, strict=False):
         sheet(axes, flat, run.map.density, scale).set(array=None, facecolors=painted)
         axes.autoscale_view()
+        axes.set_anchor("N")
         if thin.any():
             _label(axes, shown)
         else:
@@ -81,12 +82,13 @@ def _points(run: Run) -> Figure:
     shown = np.delete(np.arange(3), 2 - int(np.argmin(spread[::-1])))
     # points on one flat wall, or a single one, need some room beside them
     size = np.maximum(spread[shown], 0.12 * spread.max() or 1.0)
-    figure, (axes,) = _panels(run, [size], 0.6, "")
+    figure, (axes,) = _panels(run, [size], 0.5, "")
     largest = np.argsort(-energy)[:_POINTS]
     most = float(f"{float(np.quantile(energy, 0.98)) or 1.0:.0e}")
     look: dict[str, Any] = {"color": style.VERMILION, "alpha": 0.4, "linewidths": 0}
     area = 200.0 * (energy[largest] / most).clip(0.01, 4.0)
-    axes.scatter(*places[largest][:, shown].T, s=area, rasterized=True, **look)
+    x, y = places[largest][:, shown].T
+    axes.scatter(x, y, s=area, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
         axes.scatter([], [], s=200.0 * part, label=drawn(part * most, "J", 3), **look)
     low, high = (0.5 * (places.min(axis=0) + places.max(axis=0)))[shown] + 0.55 * np.outer((-1.0, 1.0), size)
