@@ -1,4 +1,4 @@
-"""Charts that the figures of several kinds of runs have: energy on a sheet, and names of walls."""
+"""Energy on a sheet, as the figures of several kinds of runs draw it."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,14 +15,6 @@ from contactlaw._arrays import Array
 
 _BAR, _AROUND = 0.15, 2.0  # [inches] height of a bar of colours, and of all that is around the drawings
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
-
-
-def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") -> None:
-    """Give every wall a column, with its name below."""
-    axes.set_xticks(range(len(labels)), labels, rotation=60 if len(labels) > 5 else 0)
-    axes.set_xlim(-0.55, len(labels) - 0.45)
-    axes.set_xlabel(what)
-    axes.grid(visible=False, axis="x")
 
 
 def density_scale(values: Sequence[Array]) -> LogNorm:

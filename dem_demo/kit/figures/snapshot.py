@@ -17,10 +17,10 @@ def draw(runs: Runs[B]) -> Figure:
     time, scene = runs[0].time[-1], runs[0].scene
     figure = style.figure(
         style.COLUMN,
-        1.4 + height(runs, 4.6, 0.5, stacked=True),
+        1.2 + height(runs),
         "The same beads on the same walls, with two kinds of rebound",
         f"{source(runs)}; t = {time * 1e3:.0f} ms, a slice of {2.0 * scene.slice[1] * MM:.0f} mm along the middle",
     )
-    for drawing in drawings(figure, runs, stacked=True):
+    for drawing in drawings(figure, runs):
         drawing.show(time)
     return figure
