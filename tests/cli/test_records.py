@@ -117,7 +117,7 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     assert capsys.readouterr().err == ""
     recorded(tmp_path / name, [1, 1])
     assert cli_of_contactlaw.main(command) == 1
-    words = "it has no impact on a plate. Of 2 contacts, 100 % slid on from another wall; their COR"
+    words = "it has no impact on a plate: Of 2 contacts, 100 % slid on from another wall; their COR"
     assert words in capsys.readouterr().err
 
 

@@ -70,7 +70,8 @@ def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
 
 def _check(found: Recorded) -> None:
     if found.speed.size == 0:
-        raise ValueError(f"it has no impact on a plate. {found.left_out}".rstrip(". "))
+        why = f": {found.left_out}" if found.left_out else ""
+        raise ValueError(f"it has no impact on a plate{why}")
     sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness", "weights")}
     check(**{name: values for name, values in sizes.items() if values is not None})
 
