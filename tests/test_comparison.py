@@ -178,17 +178,6 @@ def test_a_body_like_another_has_the_numbers_of_the_head_and_their_errors(head, 
     assert (plate, dict(plate.uncertainty)) == (wanted, dict(wanted.uncertainty))
 
 
-def test_times_of_bounces_and_of_contacts_have_errors_by_one_name(tmp_path):
-    """The columns that the page of measurements names, and those of contact times."""
-    path = tmp_path / "mine.csv"
-    path.write_text("drop_cm,t1_ms,time_error_ms,diameter_mm\n30,350,1,6\n")
-    read = rebounds.read(path)
-    found = rebounds.completed(read, path, 7800.0)
-    assert found.restitution_error == pytest.approx(found.restitution * np.sqrt(2.0) / 350.0)
-    path.write_text("speed_m/s,time_us,time_error_us\n1,12,0.5\n")
-    assert rebounds.completed(rebounds.read(path), path, 7800.0).contact_time_error == pytest.approx(0.5e-6)
-
-
 def test_a_head_of_windows_keeps_its_letters_and_no_head_moves_the_cursor(tmp_path):
     path = tmp_path / "mine.csv"
     path.write_bytes('# title = "Gl\u00e4tte\\u001b[2J"\nspeed_m/s,COR\n1,0.5\n'.encode("cp1252"))
