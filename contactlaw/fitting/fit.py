@@ -132,7 +132,7 @@ class Fit:
         *flat, _ = broadcast(**inputs)
         data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
         varied = [replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)]
-        along = Predictor(self.pair, state.predictor.law, data, varied, Values.of(data))
+        along = Predictor(self.pair, state.predictor.law, data, varied)
         here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
         spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
@@ -209,7 +209,7 @@ def fit(
     data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {}, given)
-    predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
+    predictor = Predictor(pair, _law(pair, law, varied), data, varied)
     descent = search.Descent(predictor, to_the_lowest=True)
     ended = _least_squares(predictor, descent)
     try:
@@ -239,7 +239,7 @@ class _LeastSquares(NamedTuple):
 def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquares:
     """Find the minimum of each basin, and estimate the errors that the data lack."""
     values = predictor.values
-    free = sum(one.prior is None for one in predictor.parameters)
+    free = sum(one.is_free for one in predictor.parameters)
     if values.value.size < free:
         many = f"{values.value.size} measured values cannot determine {free} unknowns"
         remedy = "leave one out, give priors, or measure more"
@@ -268,7 +268,7 @@ def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, erro
     off = values.value / fitted - 1.0
     left = np.ones_like(off)
     for _ in range(_SETTLED):
-        left = 1.0 - errors.leverages(predictor, slopes, error)
+        left = 1.0 - errors.Linear.of(predictor, slopes, error).leverages()
         error = error.copy()
         for part, pool in _pools(values):
             square = float(np.sum(off[pool] ** 2)) / max(float(left[pool].sum()), _LEAST_FREEDOM)
@@ -309,7 +309,8 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     hit = predictor.flagged(at)
     model = errors.model_covariance(predictor, at, hit)
     slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
-    found = errors.covariances(predictor, slopes, error, model)
+    linear = errors.Linear.of(predictor, slopes, error)
+    found = linear.covariances(error, model)
     unknowns = slice(len(names))  # the unknowns come first
     model_error = None if model is None else np.abs(model.size)
     # with as many values as unknowns there is no scatter: only the model's errors are known
@@ -317,10 +318,9 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     _check_strengths(predictor, at, fitted, doubt, model_error)
     widths = np.zeros(at.size)
     if freedom > 0.0:
-        left = 1.0 - errors.leverages(predictor, slopes, error)
+        left = 1.0 - linear.leverages()
         pools = [(part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)]
-        each = errors.freedoms(predictor, slopes, error, pools)
-        widths = np.array([errors.student(one) for one in each.tolist()])
+        widths = np.array([errors.student(one) for one in linear.freedoms(pools).tolist()])
     found = found.widened(widths)
     total = found.total[unknowns, unknowns]
     identify.check(names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns])
@@ -404,9 +404,9 @@ def _nonlinearity_factors(predictor: Predictor, at: Array, fitted: Array, covari
     """
     low, high = search.limits(predictor)
     factors = np.ones(at.size)
-    priors = np.array([one.prior or math.inf for one in predictor.parameters])
+    priors = np.array([one.prior for one in predictor.parameters])
     for n, one in enumerate(predictor.parameters):
-        if not one.is_unknown or one.prior is not None:
+        if not one.is_free:
             continue
         shift = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
         for sign, words in ((1.0, "above"), (-1.0, "below")):
@@ -435,8 +435,7 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
     UnidentifiedError
     """
     for n, one in enumerate(predictor.parameters):
-        free = one.is_unknown and one.prior is None
-        if free and (one.is_strength or one.name == "friction"):
+        if one.is_free and (one.is_strength or one.name == "friction"):
             # in a contact that sticks, friction changes less than the model's errors
             doubt = error if one.is_strength or model is None else np.hypot(error, model)
             strong = at.copy()

@@ -142,7 +142,7 @@ def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
     values = predictor.values
     given = np.isfinite(values.error)
-    free = max(1, sum(one.prior is None for one in predictor.parameters))
+    free = max(1, sum(one.is_free for one in predictor.parameters))
     if np.count_nonzero(given) > free:
         ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
         if ratio > _MISFIT:

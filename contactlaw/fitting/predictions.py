@@ -7,9 +7,10 @@ too.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,8 +41,7 @@ ROUGH = Fineness(2, 1e-5, 6.0, 0.12, REACH, 5e-3)
 _STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 
-@dataclass(frozen=True, eq=False)
-class Values:
+class Values(NamedTuple):
     """Measured values of all kinds, one after the other.
 
     Attributes
@@ -59,28 +59,6 @@ class Values:
     value: Array
     error: Array
 
-    @staticmethod
-    def of(data: Measurements) -> Values:
-        """Gather what was measured."""
-        parts = []
-        for n, name in enumerate(KINDS):
-            values: Any = getattr(data, name)
-            if values is None:
-                continue
-            rows = np.flatnonzero(np.isfinite(values))
-            errors: Any = getattr(data, f"{name}_error")
-            known = np.full(rows.size, np.nan) if errors is None else errors[rows]
-            shifted = values[rows] + KINDS[name].shift
-            parts.append((np.full(rows.size, n), rows, shifted, known))
-        return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-
-    def part(self, rows: Places) -> Values:
-        """Values of some rebounds, which are numbered anew."""
-        place = np.full(int(self.row.max()) + 1, -1)
-        place[rows] = np.arange(rows.size)
-        kept = place[self.row] >= 0
-        return Values(self.kind[kept], place[self.row[kept]], self.value[kept], self.error[kept])
-
 
 @dataclass(frozen=True, eq=False)
 class Predictor:
@@ -90,8 +68,20 @@ class Predictor:
     law: Law
     data: Measurements
     parameters: list[Parameter]
-    values: Values
     fineness: Fineness = FINE
+
+    @functools.cached_property
+    def values(self) -> Values:
+        """What was measured."""
+        parts = []
+        for n, (name, kind) in enumerate(KINDS.items()):
+            measured: Any = getattr(self.data, name)
+            if measured is not None:
+                rows = np.flatnonzero(np.isfinite(measured))
+                errors: Any = getattr(self.data, f"{name}_error")
+                known = np.full(rows.size, np.nan) if errors is None else errors[rows]
+                parts.append((np.full(rows.size, n), rows, measured[rows] + kind.shift, known))
+        return Values(*map(np.concatenate, zip(*parts, strict=True)))
 
     def setting(self, values: Array) -> Setting:
         """Bodies and sizes with these values."""

@@ -9,11 +9,11 @@ fine grid, on which the sum of squares shows every basin.
 import itertools
 import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
@@ -107,7 +107,7 @@ def scan(predictor: Predictor) -> list[Array]:
 def attainable(predictor: Predictor) -> Array:
     """Predict the measured values over the range of the unknowns; a row for each trial."""
     axes = _axes(predictor)
-    free = [n for n, one in enumerate(predictor.parameters) if _scanned(one)]
+    free = [n for n, one in enumerate(predictor.parameters) if one.is_free]
     if [predictor.parameters[n].name for n in free] == ["thickness"]:  # up to a half-space
         axes.points[free[0]] = np.append(axes.points[free[0]], np.log(limits(predictor)[1][free]))
     return _predicted(predictor, axes)
@@ -193,30 +193,22 @@ def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
 
 
 def _few(predictor: Predictor, count: int) -> Predictor:
-    """Keep only `count` rebounds of each kind."""
-    rows = _some(predictor.values, predictor.data, count)
-    return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
-
-
-def _some(values: Values, data: Measurements, count: int) -> Places:
-    """Rebounds of each kind, evenly over the speeds, and over what else differs."""
-    chosen: set[int] = set()
-    for given in (getattr(data, name) for name in INPUTS):
-        along = np.asarray(given, dtype=np.float64)
-        if given is not data.speed and np.unique(along[np.isfinite(along)]).size < 2:
+    """Keep `count` rebounds of each kind, evenly over the speeds, and over each input that differs."""
+    values, chosen = predictor.values, set[int]()
+    names = *KINDS, *(f"{name}_error" for name in KINDS), *INPUTS
+    columns: dict[str, Any] = {name: getattr(predictor.data, name) for name in names}
+    columns = {name: column for name, column in columns.items() if column is not None}
+    for name in columns.keys() & INPUTS:
+        along = columns[name]
+        if name != "speed" and np.unique(along[np.isfinite(along)]).size < 2:
             continue
         for kind in np.unique(values.kind):
             rows = values.row[values.kind == kind]
             rows = rows[np.argsort(along[rows], kind="stable")]
             at = np.linspace(0, rows.size - 1, min(count, rows.size)).round().astype(int)
             chosen.update(rows[at].tolist())
-    return np.array(sorted(chosen))
-
-
-def _part(data: Measurements, rows: Places) -> Measurements:
-    names = [*KINDS, *(f"{name}_error" for name in KINDS), *INPUTS]
-    given = {name: getattr(data, name) for name in names}
-    return Measurements(**{name: v[rows] for name, v in given.items() if v is not None})
+    kept = sorted(chosen)
+    return replace(predictor, data=Measurements(**{name: column[kept] for name, column in columns.items()}))
 
 
 def _middle(one: Parameter, predictor: Predictor) -> float:
@@ -231,29 +223,23 @@ def _middle(one: Parameter, predictor: Predictor) -> float:
     return float(np.median(np.asarray(other)[np.isfinite(other)]))
 
 
-def _scanned(one: Parameter) -> bool:
-    return one.is_unknown and one.prior is None
-
-
 def _axes(predictor: Predictor) -> _Axes:
     """Trial values of each parameter; one value where it is not scanned."""
     parameters, data = predictor.parameters, predictor.data
-    scanned = {one.name for one in parameters if _scanned(one)}
-    laws = min(3, sum(_scanned(one) and one.changes(predictor.law) for one in parameters))
+    scanned = {one.name for one in parameters if one.is_free}
+    laws = min(3, sum(one.is_free and one.changes(predictor.law) for one in parameters))
+    counts = {"youngs_modulus": _MODULI[laws or 1], "density": _DENSITIES, "loss_factor": _DENSITIES}
+    counts["friction"] = _FRICTIONS[min(3, len(scanned))]
     low, high = limits(predictor)
     points = []
     for n, one in enumerate(parameters):
-        if one.name not in scanned:
+        if not one.is_free:
             axis = np.array([_middle(one, predictor)])
         elif one.is_strength:
             top = min(high[n], 2.0 * _onset(predictor, n))
             axis = np.geomspace(low[n], max(top, 2.0 * low[n]), _STRENGTHS[laws or 1])
-        elif one.unknown.field == "youngs_modulus":
-            axis = np.geomspace(low[n], high[n], _MODULI[laws or 1])
-        elif one.unknown.field in ("density", "loss_factor"):
-            axis = np.geomspace(low[n], high[n], _DENSITIES)
-        elif one.name == "friction":
-            axis = np.geomspace(low[n], high[n], _FRICTIONS[min(3, len(scanned))])
+        elif one.unknown.field in counts:
+            axis = np.geomspace(low[n], high[n], counts[one.unknown.field])
         elif one.name == "thickness":
             radius = np.ones(1) if data.radius is None else np.asarray(data.radius)
             ends = radius.max() / _SLENDEREST, radius.min() / _THICKEST
@@ -285,11 +271,9 @@ class Descent:
     def __init__(self, predictor: Predictor, to_the_lowest: bool = False) -> None:
         self.predictor = predictor
         self._converged, self._near = _LOWEST if to_the_lowest else _NEARBY
-        parameters = predictor.parameters
         self._low, self._high = np.log(np.array(limits(predictor)))
-        self._held = [n for n, one in enumerate(parameters) if one.prior is not None]
-        self._centres = np.log([parameters[n].centre for n in self._held])
-        self._widths = np.array([parameters[n].prior for n in self._held], dtype=np.float64)
+        self._centres = np.array([0.0 if one.is_free else math.log(one.centre) for one in predictor.parameters])
+        self._widths = np.array([one.prior for one in predictor.parameters])
         self._last_predicted: tuple[Array, Array] | None = None
         self._last_slopes: tuple[Array, Array] | None = None
 
@@ -309,18 +293,16 @@ class Descent:
 
     def __call__(self, start: Array, error: Array, steps: int = 60) -> Basin:
         """Find the minimum from a start, in so many steps."""
-        pull = np.zeros((len(self._held), start.size))
-        pull[np.arange(len(self._held)), self._held] = 1.0 / self._widths
 
         def residuals(x: Array) -> Array:
             try:
                 off = (self.predicted(x) - self.predictor.values.value) / error
             except (UnsolvedError, ValueError):  # no answer there: scipy shortens the step
                 off = np.full_like(error, np.inf)
-            return np.concatenate([off, (x[self._held] - self._centres) / self._widths])
+            return np.concatenate([off, (x - self._centres) / self._widths])
 
         def slopes(x: Array) -> Array:
-            return np.vstack([self.slopes(x) / error[:, None], pull])
+            return np.vstack([self.slopes(x) / error[:, None], np.diag(1.0 / self._widths)])
 
         from scipy.optimize import least_squares
 

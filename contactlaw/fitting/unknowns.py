@@ -63,13 +63,18 @@ class Parameter:
 
     name: str
     centre: float  # value given; NaN: none
-    prior: float | None  # standard error of the logarithm
+    prior: float  # standard error of the logarithm; inf: none
     is_unknown: bool  # whether it is an unknown; else a given value with a prior
 
     @property
     def unknown(self) -> Unknown:
         """Its entry in `UNKNOWNS`."""
         return UNKNOWNS[self.name]
+
+    @property
+    def is_free(self) -> bool:
+        """Whether it is an unknown without a prior."""
+        return self.prior == math.inf
 
     @property
     def is_strength(self) -> bool:
@@ -118,12 +123,9 @@ def parameters(
     for size in _SIZES if data.is_oblique else _SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
-    for name in [*names, *(name for name in priors if name not in names)]:
-        middle = centre(pair, data, UNKNOWNS[name])
-        prior = None
-        if name in priors:
-            prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name])
-        found.append(Parameter(name, middle, prior, name in names))
+    for name in dict.fromkeys([*names, *priors]):
+        prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name]) if name in priors else math.inf
+        found.append(Parameter(name, centre(pair, data, UNKNOWNS[name]), prior, name in names))
     return found
 
 

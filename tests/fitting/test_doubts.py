@@ -10,7 +10,7 @@ from scipy import stats
 
 import contactlaw as cl
 from contactlaw.fitting.notes import chance
-from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.predictions import Predictor, impacts
 from contactlaw.fitting.unknowns import Setting, parameters
 from contactlaw.physical.law import law_of
 
@@ -77,7 +77,7 @@ def test_chances_of_trends_are_those_of_noise(stated):
     data = rebounds(STEEL, without=("thickness",))
     data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
     moved = parameters(STEEL, data, "thickness", {})
-    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved)
     fitted = predictor.predicted(np.array([1.2e-3]))
     slopes = predictor.derivatives(np.array([1.2e-3]), fitted)
     z, random, found = slopes / (0.01 * fitted[:, None]), np.random.default_rng(5), []
