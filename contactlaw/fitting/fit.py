@@ -135,7 +135,7 @@ class Fit:
         along = Predictor(self.pair, state.predictor.law, data, varied)
         here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
-        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance, slopes))
         parts = np.split(spread, len(kinds))
         in_order = [name for name in KINDS if name in kinds]
         return along.flagged(state.at), dict(zip(in_order, parts, strict=True))
@@ -298,7 +298,7 @@ class _State(NamedTuple):
 
     predictor: Predictor
     at: Array
-    covariance: errors.Errors  # of the logarithms of all parameters
+    covariance: Array  # of the logarithms of all parameters
 
 
 def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares) -> Fit:
@@ -322,16 +322,14 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         pools = [(part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)]
         widths = np.array([errors.student(one) for one in linear.freedoms(pools).tolist()])
     found = found.widened(widths)
-    total = found.total[unknowns, unknowns]
-    identify.check(names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns])
     used = found.statistical if freedom > 0.0 else found.total
+    identify.check(names, at[unknowns], used[unknowns, unknowns])
     found = found.widened(_nonlinearity_factors(predictor, at, fitted, used, doubt))
-    total = found.total[unknowns, unknowns]
-    spread = np.sqrt(np.diag(total))
-    others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
+    spread = np.sqrt(np.diag(found.total))
+    others = _alternatives(predictor, ended, spread, model)
     off = values.value / fitted - 1.0
     relative = None if model_error is None else model_error / fitted
-    kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
+    kinds = values.by_kind()
     bodies = predictor.setting(at)
 
     def named(sizes: Array) -> dict[str, float]:
@@ -340,10 +338,10 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     return Fit(
         unknown=names,
         values=named(at),
-        errors=named(at * np.sqrt(np.diag(found.total))),
+        errors=named(at * spread),
         statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
         model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(found.model)))),
-        correlation=total / np.outer(spread, spread),
+        correlation=(found.total / np.outer(spread, spread))[unknowns, unknowns],
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
@@ -358,7 +356,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
-        _state=_State(predictor, at, found),
+        _state=_State(predictor, at, found.total),
     )
 
 
@@ -434,41 +432,33 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
     ------
     UnidentifiedError
     """
+    low, high = search.limits(predictor)
     for n, one in enumerate(predictor.parameters):
-        if one.is_free and (one.is_strength or one.name == "friction"):
-            # in a contact that sticks, friction changes less than the model's errors
-            doubt = error if one.is_strength or model is None else np.hypot(error, model)
-            strong = at.copy()
-            strong[n] = search.limits(predictor)[1][n]
-            there = predictor.at_trials(strong[None])[0]
-            least = _squares(predictor, fitted, doubt)
-            if _squares(predictor, there, doubt) < least + _EXCLUDED:
-                why = _least_value(predictor, strong, n, error)
-                raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
+        if not (one.is_free and (one.is_strength or one.name == "friction")):
+            continue
+        trials = np.tile(at, (_TRIALS, 1))
+        trials[:, n] = np.geomspace(high[n], low[n], _TRIALS)
+        largest = predictor.at_trials(trials[:1])[0]
+        # in a contact that sticks, friction changes less than the model's errors
+        doubt = error if one.is_strength or model is None else np.hypot(error, model)
+        if _squares(predictor, largest, doubt) < _squares(predictor, fitted, doubt) + _EXCLUDED:
+            most = _squares(predictor, largest, error) + _EXCLUDED
+            squares = (_squares(predictor, predictor.at_trials(trial[None])[0], error) for trial in trials)
+            excluded = (trial[n] for trial, square in zip(trials, squares, strict=True) if square > most)
+            why = _any_above(predictor, one, next(excluded, None))
+            raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
 
 
-def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> str:
-    """Say above which strength or friction the data exclude none."""
-
-    def squares(values: Array) -> float:
-        return _squares(predictor, predictor.at_trials(values[None])[0], error)
-
-    is_strength = predictor.parameters[n].is_strength
-    other = OTHER_STRENGTH.get(predictor.parameters[n].name)
-    trial, high = strong.copy(), squares(strong) + _EXCLUDED
-    low = search.limits(predictor)[0][n]
-    for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
-        trial[n] = strong[n] * factor
-        if squares(trial) > high:
-            if not is_strength:
-                return (
-                    f"any above {trial[n]:.2g} or so fits as well, since the beads stick. Measure "
-                    "at larger angles from the normal"
-                )
-            return (
-                f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
-                f"yield enough. Measure faster impacts, or ask for {other} if that body yields"
-            )
-    if not is_strength:
-        return "any fits as well. Measure at other angles"
-    return f"law {predictor.law.family!r} does not depend on it with these bodies"
+def _any_above(predictor: Predictor, one: Parameter, least: float | None) -> str:
+    """Say above which strength or friction the data exclude none; None: they exclude no value at all."""
+    if one.name == "friction":
+        if least is None:
+            return "any fits as well. Measure at other angles"
+        stick = "fits as well, since the beads stick. Measure at larger angles from the normal"
+        return f"any above {least:.2g} or so {stick}"
+    if least is None:
+        return f"law {predictor.law.family!r} does not depend on it with these bodies"
+    return (
+        f"any above {least / 1e6:.3g} MPa or so fits as well, since the body does not yield enough. "
+        f"Measure faster impacts, or ask for {OTHER_STRENGTH[one.name]} if that body yields"
+    )

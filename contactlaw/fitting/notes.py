@@ -128,9 +128,8 @@ def listed(rows: Places) -> str:
 
 
 def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
-    values = predictor.values
-    for n, name in enumerate(KINDS):
-        of_kind = (values.kind == n) & np.isnan(values.error)
+    for name, of_kind in predictor.values.by_kind().items():
+        of_kind = of_kind & np.isnan(predictor.values.error)
         if of_kind.any():
             share = float(standard[of_kind][0])
             yield (
@@ -214,10 +213,10 @@ def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:
 
 def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | None) -> Iterator[str]:
     """Name kinds of values whose residuals trend with speed."""
-    values = predictor.values
-    for n, name in enumerate(KINDS):
-        of_kind = np.flatnonzero(values.kind == n)
-        order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
+    speed = np.asarray(predictor.data.speed)[predictor.values.row]
+    for name, of_kind in predictor.values.by_kind().items():
+        order = np.flatnonzero(of_kind)
+        order = order[np.argsort(speed[order])]
         thirds = np.array_split(order, 3)
         if chance(thirds, off / standard) >= _SIGNIFICANCE:
             continue

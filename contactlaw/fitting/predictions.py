@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array, Mask, Places
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import Solver
@@ -58,6 +58,10 @@ class Values(NamedTuple):
     row: Places
     value: Array
     error: Array
+
+    def by_kind(self) -> dict[str, Mask]:
+        """Which values are of each kind that was measured."""
+        return {name: self.kind == n for n, name in enumerate(KINDS) if n in self.kind}
 
 
 @dataclass(frozen=True, eq=False)
