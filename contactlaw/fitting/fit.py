@@ -348,7 +348,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         flags=np.asarray(hit.flags),
         alternatives=tuple(named(other) for other in others),
         notes=(
-            *notes(predictor, at, hit, error / fitted, freedom, relative, found.total),
+            *notes(predictor, at, hit, off, error / fitted, freedom, relative, found.total),
             *(alternative_note(names, other) for other in others),
         ),
         pair=bodies.pair,

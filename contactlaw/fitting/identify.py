@@ -56,9 +56,9 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
         if square <= _VAGUE**2:
             known.append(_product(names, values, direction, float(np.sqrt(square))))
     what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}" for powers, value, error in known)
-    products = f"they determine {what} (in SI units). " if known else ""
+    products = f"They determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
-        f"the data do not tell {' and '.join(names)} apart: {products}"
+        f"the data do not determine {' and '.join(names)} separately. {products}"
         "Fix one of them, give one with its prior standard error, or measure another quantity",
         names,
         tuple(known),

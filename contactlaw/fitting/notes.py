@@ -10,7 +10,7 @@ from contactlaw._readable import percent, rounded, scale_of
 from contactlaw.fitting import search
 from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
-from contactlaw.fitting.predictions import Predictor, columns_of
+from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
@@ -33,6 +33,7 @@ def notes(
     predictor: Predictor,
     at: Array,
     hit: Rebound,
+    off: Array,
     standard: Array,
     freedom: float,
     model: Array | None,
@@ -48,6 +49,8 @@ def notes(
         Values found.
     hit : Rebound
         Fitted rebounds.
+    off : ndarray (m,)
+        Measured over fitted values, minus 1.
     standard : ndarray (m,)
         Standard errors of the values, as given or found, relative to the fitted values.
     freedom : float
@@ -57,9 +60,6 @@ def notes(
     covariance : ndarray (p, p)
         Covariance of the parameters' logarithms.
     """
-    values = predictor.values
-    fitted = columns_of(hit, predictor.setting(at))[values.kind, values.row]
-    off = values.value / fitted - 1.0
     if freedom <= 0.0:
         yield ("as many unknowns as values, and no errors of these: the errors stated are those of the model alone")
     else:
@@ -71,9 +71,9 @@ def notes(
             "errors stated are those of the data alone"
         )
     low, high = search.limits(predictor)
-    for one, value, least, largest in zip(predictor.parameters, at, low, high, strict=True):
-        if not least * (1.0 + _AT_BOUND) < value < largest * (1.0 - _AT_BOUND):
-            yield f"{one.name} is at an end of what is searched, {least:.3g} to {largest:.3g}"
+    at_end = np.flatnonzero((at < low * (1.0 + _AT_BOUND)) | (at > high * (1.0 - _AT_BOUND)))
+    for n in at_end:
+        yield f"{predictor.parameters[n].name} is at an end of the range searched, {low[n]:.3g} to {high[n]:.3g}"
     if any(one.is_strength for one in predictor.parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
@@ -86,7 +86,7 @@ def notes(
         (words,) = explain(flag)
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
     yield from _above_one(predictor)
-    if ((at < 1.001 * low) | (at > 0.999 * high)).any():
+    if at_end.size:
         yield from _outside(predictor, at)
     yield from _far(predictor, at, covariance)
     yield from _trends(predictor, off, standard, model)

@@ -165,15 +165,14 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
     """Predict the measured values at all points of the grid, one after the other."""
     count = predictor.values.value.size
     points = np.array(list(itertools.product(*axes.points)))
-    # sorted, so that points with the same law are next to each other
-    laws = [n for n, one in enumerate(predictor.parameters) if one.changes(predictor.law)]
-    order = np.lexsort(points[:, laws].T) if laws else np.arange(len(points))
     found = np.empty((len(points), count))
     bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
-    ends = np.flatnonzero(np.any(np.diff(points[order][:, bodies], axis=0), axis=1)) + 1
-    parts = np.split(order, ends) if bodies else [order]
-    for part in progress_bar(iter(parts), len(parts)):
-        found[part] = predictor.at_trials(np.array([axes.values(points[n]) for n in part]))
+    bodies.sort(key=lambda n: not predictor.parameters[n].changes(predictor.law))  # one law after the other
+    _, group = np.unique(points[:, bodies], axis=0, return_inverse=True)
+    groups = int(group.max()) + 1
+    for n in progress_bar(iter(range(groups)), groups):
+        part = group.ravel() == n
+        found[part] = predictor.at_trials(np.array([axes.values(point) for point in points[part]]))
     return found
 
 
@@ -234,7 +233,7 @@ def _axes(predictor: Predictor) -> _Axes:
     points = []
     for n, one in enumerate(parameters):
         if not one.is_free:
-            axis = np.array([_middle(one, predictor)])
+            axis = np.array([one.centre])
         elif one.is_strength:
             top = min(high[n], 2.0 * _onset(predictor, n))
             axis = np.geomspace(low[n], max(top, 2.0 * low[n]), _STRENGTHS[laws or 1])
