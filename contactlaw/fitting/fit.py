@@ -14,12 +14,11 @@ from contactlaw._arrays import Array, Integers, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
+from contactlaw.fitting.measurements import NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
@@ -129,16 +128,13 @@ class Fit:
         if not kinds:
             reason = "has to be given, since only oblique kinds were measured"
             raise ArgumentError("sliding_speed", None, reason)
-        *flat, _ = broadcast(**inputs)
-        data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
+        data = Measurements(**inputs, **dict.fromkeys(kinds, 0.5))
         varied = [replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)]
         along = Predictor(self.pair, state.predictor.law, data, varied)
         here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
         spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance, slopes))
-        parts = np.split(spread, len(kinds))
-        in_order = [name for name in KINDS if name in kinds]
-        return along.flagged(state.at), dict(zip(in_order, parts, strict=True))
+        return along.flagged(state.at), {name: spread[rows] for name, rows in along.values.by_kind().items()}
 
 
 def fit(

@@ -93,20 +93,20 @@ class Predictor:
 
     def flagged(self, values: Array) -> Rebound:
         """Everything about the rebounds."""
-        return impacts(self.setting(values), self.law, np.array(self.data.speed))
+        return impacts(self.setting(values), self.law)
 
-    def impacts(self, values: Array) -> Rebound:
-        """Everything about the rebounds but the flags, which are those of slow ones."""
-        return self._trial(self.setting(values), np.array(self.data.speed))
+    def impacts(self, at: Setting) -> Rebound:
+        """Everything about rebounds but the flags, which are those of slow ones."""
+        return _integrated(solver(at.pair, self.law, rates(at.speed, at.radius), _RTOL, self.fineness), at)
 
-    def _trial(self, at: Setting, speed: Array) -> Rebound:
-        found = solver(at.pair, self.law, rates(speed, at.radius), _RTOL, self.fineness)
-        return _integrated(found, at, speed)
-
-    def predicted(self, values: Array) -> Array:
-        """Predict the measured values."""
-        columns = columns_of(self.impacts(values), self.setting(values))
-        return np.asarray(columns[self.values.kind, self.values.row])
+    def predicted(self, *trials: Array) -> Array:
+        """Predict the measured values at one or several trials that differ only in sizes, one after the other."""
+        settings = [self.setting(values) for values in trials]
+        sizes: Any = zip(*(one[1:] for one in settings), strict=True)
+        joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
+        together = Setting(settings[0].pair, *joined)
+        columns = columns_of(self.impacts(together), together).reshape(len(KINDS), len(settings), -1)
+        return np.ravel(columns[self.values.kind, :, self.values.row].T)
 
     def at_trials(self, trials: Array) -> Array:
         """Predict the measured values at trials (k, p) that differ only in sizes, not in materials.
@@ -114,19 +114,12 @@ class Predictor:
         Where the model has no answer, as for impossible bodies or plates far too thin, predictions
         are 0, far from any measured value.
         """
-        speed = np.array(self.data.speed)
         try:
-            settings = [self.setting(values) for values in trials]
-            sizes: Any = zip(*(one[1:] for one in settings), strict=True)
-            joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
-            together = Setting(settings[0].pair, *joined)
-            found = self._trial(together, np.tile(speed, len(settings)))
+            return self.predicted(*trials).reshape(len(trials), -1)
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
                 return np.zeros((1, self.values.value.size))
             return np.concatenate([self.at_trials(one[None]) for one in trials])
-        columns = columns_of(found, together).reshape(len(KINDS), len(settings), speed.size)
-        return np.asarray(columns[self.values.kind, :, self.values.row].T)
 
     def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
         """Differentiate with respect to the logarithms of the values; a column for each.
@@ -151,14 +144,14 @@ class Predictor:
         return (self.predicted(moved) - here) / step
 
 
-def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
+def impacts(at: Setting, law: Law) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
-    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at, speed)
+    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at)
 
 
-def _integrated(backend: Solver, at: Setting, speed: Array) -> Rebound:
-    check(speed=speed, radius=at.radius, thickness=at.thickness)
-    given = Impacts(speed, at.radius, at.thickness, speed.shape)
+def _integrated(backend: Solver, at: Setting) -> Rebound:
+    check(speed=at.speed, radius=at.radius, thickness=at.thickness)
+    given = Impacts(at.speed, at.radius, at.thickness, at.speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)
     return oblique.answer(backend, backend.bodies, given, at.friction, at.sliding_speed)

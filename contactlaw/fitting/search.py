@@ -84,24 +84,38 @@ def guessed(values: Values) -> Array:
 
 def distinct(found: list[Basin]) -> list[Basin]:
     """Keep each basin once, the best first; drop those that cannot be the best."""
+    kept = _apart(found, _SAME_BASIN)
+    return [one for one in kept if one.squares <= 3.0 * kept[0].squares + _HOPELESS]
+
+
+def _apart(found: list[Basin], least: float) -> list[Basin]:
+    """Best basin of each place, the best first; logarithms in one place differ by less than `least`."""
     kept: list[Basin] = []
     for one in sorted(found, key=lambda one: one.squares):
-        apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME_BASIN for other in kept)
-        if apart and one.squares <= 3.0 * (kept or [one])[0].squares + _HOPELESS:
+        if all(np.abs(np.log(one.at / other.at)).max() > least for other in kept):
             kept.append(one)
     return kept
 
 
 def scan(predictor: Predictor) -> list[Array]:
     """Values in each basin that a grid shows, the best first."""
+    from scipy.interpolate import CubicSpline
+
     axes = _axes(predictor)
-    sizes = [axis.size for axis in axes.points]
-    fine, predicted = _finer(axes, _predicted(predictor, axes).reshape(*sizes, -1))
+    free = [n for n, axis in enumerate(axes.points) if axis.size > 1]
+    grid = [axes.points[n] for n in free]
+    predicted = _predicted(predictor, axes).reshape(*(axis.size for axis in grid), -1)
+    for n, axis in enumerate(grid):  # points between those of the grid, and predictions there by splines
+        grid[n] = np.linspace(axis[0], axis[-1], (axis.size - 1) * _FINER[min(3, len(free))] + 1)
+        predicted = CubicSpline(axis, predicted, axis=n)(grid[n])
     soft = np.hypot(guessed(predictor.values), _BETWEEN * predictor.values.value)
     off = (predicted - predictor.values.value) / soft
-    low, high = limits(predictor)
-    bottoms = _bottoms(fine, off) if off[..., 0].size > 1 else [np.concatenate(fine)]
-    return [np.clip(axes.values(one), low, high) for one in bottoms[:_MOST]]
+    starts = []
+    for bottom in _bottoms(grid, off)[:_MOST] if free else [np.empty(0)]:
+        start = np.array([axis[0] for axis in axes.points])
+        start[free] = bottom
+        starts.append(np.clip(axes.values(start), *limits(predictor)))
+    return starts
 
 
 def attainable(predictor: Predictor) -> Array:
@@ -127,23 +141,14 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     regions, count = ndimage.label(lowest, np.ones([3] * squares.ndim))
     places = ndimage.minimum_position(squares, regions, range(1, count + 1))
     places = sorted(places, key=lambda place: float(squares[place]))[:_CHAIN]
-    free = [n for n, axis in enumerate(axes) if axis.size > 1]
-    between = interpolate.RegularGridInterpolator(
-        [axes[n] for n in free], off.reshape(*(axes[n].size for n in free), -1)
-    )
-    ends = [(axes[n][0], axes[n][-1]) for n in free]
-    bottoms: list[tuple[float, Array]] = []
+    between = interpolate.RegularGridInterpolator(axes, off)
+    ends = np.array([(axis[0], axis[-1]) for axis in axes]).T
+    bottoms = []
     for place in places:
-        start = np.clip([axes[n][place[n]] for n in free], *(np.array(ends).T + _INSIDE))
-        done = optimize.least_squares(lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20)
-        bottoms.append((float(done.cost), done.x))
-    kept: list[Array] = []
-    for _, x in sorted(bottoms, key=lambda one: one[0]):
-        if all(np.abs(x - other).max() > _SAME_MINIMUM for other in kept):
-            kept.append(x)
-    found = np.array([[axis[0] for axis in axes]] * len(kept))
-    found[:, free] = kept
-    return list(found)
+        start = np.clip([axis[n] for axis, n in zip(axes, place, strict=True)], *(ends + _INSIDE))
+        done = optimize.least_squares(lambda x: between(x)[0], start, bounds=ends, ftol=1e-3, max_nfev=20)
+        bottoms.append(Basin(np.exp(done.x), float(done.cost)))
+    return [np.log(one.at) for one in _apart(bottoms, _SAME_MINIMUM)]
 
 
 class _Axes(NamedTuple):
@@ -174,21 +179,6 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
         part = group.ravel() == n
         found[part] = predictor.at_trials(np.array([axes.values(point) for point in points[part]]))
     return found
-
-
-def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
-    """Points between those of the grid, and predictions there by splines."""
-    from scipy.interpolate import CubicSpline
-
-    finer = _FINER[min(3, sum(axis.size > 1 for axis in axes.points))]
-    fine = []
-    for n, axis in enumerate(axes.points):
-        if axis.size > 1:
-            dense = np.linspace(axis[0], axis[-1], (axis.size - 1) * finer + 1)
-            predicted = CubicSpline(axis, predicted, axis=n)(dense)
-            axis = dense
-        fine.append(axis)
-    return fine, predicted
 
 
 def _few(predictor: Predictor, count: int) -> Predictor:
@@ -259,7 +249,7 @@ def _axes(predictor: Predictor) -> _Axes:
 def _onset(predictor: Predictor, n: int) -> float:
     """Strength above which a body hardly yields; other parameters have their `_middle` values."""
     trial = np.array([_middle(one, predictor) for one in predictor.parameters])
-    chi = float(np.max(predictor.impacts(trial).overload))
+    chi = float(np.max(predictor.impacts(predictor.setting(trial)).overload))
     # d_Y is in proportion to the square of the strength
     return float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
 

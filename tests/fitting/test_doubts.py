@@ -102,7 +102,7 @@ def test_foils_are_refused_before_they_are_integrated():
     """A product of thickness and density was sought down to 0.45 um, with lambda up to 4e96."""
     sizes = np.array([1e-3]), np.array([4.53e-7])
     with pytest.raises(ValueError, match="R/H is 2208"):
-        impacts(Setting(ALUMINA, *sizes), law_of(ALUMINA, "fem"), np.array([400.0]))
+        impacts(Setting(ALUMINA, np.array([400.0]), *sizes), law_of(ALUMINA, "fem"))
 
 
 def test_a_restitution_above_one_is_named_by_its_rebound():

@@ -145,7 +145,7 @@ def test_derivatives_are_those_of_the_models_own_sensitivity(name):
 def test_errors_that_are_not_given_are_found_from_the_scatter():
     """If all values are proportional to the parameter, mean and 1/sqrt(n) are exact by hand."""
     v = np.full(6, 1.0)
-    hit = impacts(Setting(STEEL, v * RADIUS, v * THICKNESS), law_of(STEEL, "fem"), v)
+    hit = impacts(Setting(STEEL, v, v * RADIUS, v * THICKNESS), law_of(STEEL, "fem"))
     scatter = np.array([1.01, 0.98, 1.03, 0.995, 1.002, 0.99])
     data = {"speed": v, "radius": RADIUS, "restitution": hit.restitution * scatter}
     found = cl.fit(STEEL, data, "thickness")
@@ -183,7 +183,7 @@ def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates,
     moved = parameters(STEEL, data, "density", {})
     predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved)
     at = np.array([STEEL.sphere.density])
-    shared = errors.model_covariance(predictor, at, predictor.impacts(at))
+    shared = errors.model_covariance(predictor, at, predictor.impacts(predictor.setting(at)))
     row, kind = predictor.values.row, predictor.values.kind
     matrix = dense(v[row], RADIUS / h[row], kind, shared.size)
     error = random.uniform(0.5, 2.0, row.size) * shared.size
@@ -287,7 +287,7 @@ def test_what_a_law_does_not_depend_on_is_refused(law, asked):
 def test_a_thickness_that_may_be_any_larger_is_refused():
     """The contact time on thick plates tends to that on a half-space, which bounds no thickness."""
     pair, speed, size = cl.Pair("glass", "glass"), np.array([0.5, 1.0, 2.0]), np.ones(3)
-    thick = impacts(Setting(pair, RADIUS * size, 3e-3 * size), law_of(pair, "fem"), speed)
+    thick = impacts(Setting(pair, speed, RADIUS * size, 3e-3 * size), law_of(pair, "fem"))
     time = np.asarray(thick.contact_time)
     data = {"speed": speed, "radius": RADIUS, "contact_time": time}
     data["contact_time_error"] = 2e-3 * time

@@ -131,7 +131,7 @@ def _model_error(
     moved = parameters(one.pair, data, "density", {})
     predictor = Predictor(one.pair, law_of(one.pair, law), data, moved)
     at = np.array([one.pair.sphere.density])
-    covariance = errors.model_covariance(predictor, at, predictor.impacts(at))
+    covariance = errors.model_covariance(predictor, at, predictor.impacts(predictor.setting(at)))
     if covariance is None:
         return {}
     correlation = covariance.correlation[np.ix_(covariance.cell, covariance.cell)]
