@@ -166,17 +166,17 @@ def _cells(kind: Places, *places: Array) -> tuple[Places, Array]:
         width *= 2.0
 
 
-def student(freedom: float) -> float:
-    """Factor that widens an error which was itself estimated from few data.
+def student(freedom: Array) -> Array:
+    """Factors that widen errors which were themselves estimated from few data.
 
     With it 68.3 % of the true values lie within the error, as with a known standard error.
 
     Examples
     --------
-    >>> round(student(2.0), 2), round(student(1e9), 2)
-    (1.32, 1.0)
+    >>> student(np.array([2.0, 1e9])).round(2)
+    array([1.32, 1.  ])
     """
     from scipy.special import stdtrit
 
     within = 0.5 * (1.0 + math.erf(1.0 / math.sqrt(2.0)))
-    return float(stdtrit(freedom, within))
+    return np.asarray(stdtrit(freedom, within))
