@@ -1,4 +1,4 @@
-"""Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
+"""Remarks on a fit, in words; some name signs of mistaken units, materials or measurements."""
 
 import math
 from collections.abc import Iterator
