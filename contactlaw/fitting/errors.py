@@ -96,7 +96,7 @@ class Linear(NamedTuple):
         """Linear fit with these slopes (m, p) and standard errors (m,) of the values."""
         scaled = slopes / error[:, None]
         held = np.diag([one.prior**-2.0 + _RIDGE for one in predictor.parameters])
-        return cls(scaled, np.linalg.inv(scaled.T @ scaled + held))
+        return cls(scaled, np.asarray(np.linalg.inv(scaled.T @ scaled + held)))
 
     def covariances(self, error: Array, model: ModelCovariance | None) -> Errors:
         """Propagate errors of the values, the priors and the model; None: its errors are not known."""
