@@ -1,8 +1,6 @@
 """Coefficients of restitution, and what gives one.
 
 ``contactlaw cor``: coefficient of restitution and more, of one impact or many.
-``contactlaw thickness``: all thicknesses of the plate that give a coefficient of restitution.
-``contactlaw speed``: all impact speeds that give a coefficient of restitution.
 """
 
 import argparse
@@ -17,7 +15,6 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import inverse
 from contactlaw.cli.parts import bands, chosen, impacts, layout, options, wording
 from contactlaw.cli.parts import old_figure as figure
 from contactlaw.model import ImpactModel
@@ -45,7 +42,6 @@ def add(commands: Any) -> None:
         "lists of more than 8 values make a map",
     )
     command.epilog = f"{options.UNITS} {options.LISTS}"
-    inverse.add(commands)
 
 
 _SIZES = "speed", "radius", "thickness"

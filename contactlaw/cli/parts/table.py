@@ -60,7 +60,7 @@ class Table:
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
         named = (f"{column.title} {self._alike(column)}" for column in alike)
-        title = ", ".join([*[in_words(self.asked)] * bool(self.asked), *named])
+        title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
             yield from wrapped(title)
         cells = [[c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike]
