@@ -58,7 +58,7 @@ def speed_table(lookup: Callable[[Array], Rebound], error: float, ends: tuple[fl
         if measured <= error:
             flags = np.asarray(lookup(speed[rows]).flags)
             return SpeedTable(speed[rows], e[rows], measured, count_flags(flags))
-        allowed -= 1.01 * (measured - error)
+        allowed = max(allowed - 1.01 * (measured - error), 0.0)
     reason = f"too small from {slowest:g} to {fastest:g} m/s: narrow the range, or raise it"
     raise ArgumentError("error", error, reason)
 

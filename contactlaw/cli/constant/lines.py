@@ -31,9 +31,9 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     sphere, pair = model.pair.sphere, model.pair
     beads = _bead_on_bead(model, found, keep)
     free = "linear_nohistory 0 0"
-    yield "# No friction: put your own after `tangential`. Define first where each wall is, as in"
-    yield '#     variable wall1 string "zplane 0 NULL"'
-    yield "# Bead on bead, by the same law at the same speeds; after `pair_style granular`."
+    yield "# No friction: put your own after `tangential`. Define before where each wall"
+    yield '# is, as in `variable wall1 string "zplane 0 NULL"`.'
+    yield "# Bead on bead by the same law at the same speeds; after `pair_style granular`."
     yield "pair_coeff * * " + hertz_material(sphere.youngs_modulus, beads.restitution, sphere.poissons_ratio, free)
     modulus = 2.0 * (1.0 - sphere.poissons_ratio**2) * pair.effective_modulus
     for n, wall in enumerate(found, start=1):
@@ -52,8 +52,9 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
             )
     types = (f"{n} {wall.name}" for n, wall in enumerate(found, start=2))
     yield from _comment(f"Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1.")
-    yield "# Bead on bead by the same law at the same speeds. `model hertz` reproduces this COR;"
-    yield "# its moduli are property/global, too, and above 1 GPa it needs `hard_particles yes`."
+    yield "# Bead on bead by the same law at the same speeds. `model hertz` reproduces this"
+    yield "# COR; it needs its moduli as property/global, and above 1 GPa"
+    yield "# `hard_particles yes`."
     size = 1 + len(found)
     matrix = np.ones((size, size))
     matrix[0] = matrix[:, 0] = [beads.restitution, *(wall.best.restitution for wall in found)]
@@ -65,8 +66,9 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
 def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of YADE, which is Python: ``betan`` by materials ``bead``, ``wall1`` and so on."""
     yield from _head(model, found, keep)
-    yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en; bead, wall1 and so on:"
-    yield "# what O.materials.append gives. Bead on bead by the same law at the same speeds."
+    yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en. The results of"
+    yield "# O.materials.append are called bead, wall1 and so on."
+    yield "# Bead on bead by the same law at the same speeds."
     pairs = [("bead", _bead_on_bead(model, found, keep))]
     pairs += [(f"wall{n}", wall.best) for n, wall in enumerate(found, start=1)]
     matches = (f"(bead, {other}, {betan(best.restitution):.6g})" for other, best in pairs)

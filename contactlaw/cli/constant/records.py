@@ -1,6 +1,5 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
-import contextlib
 import os
 from collections import Counter
 from collections.abc import Sequence

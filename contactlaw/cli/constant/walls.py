@@ -49,7 +49,7 @@ class Wall(NamedTuple):
     def name(self) -> str:
         """Name of the wall in the comments of an engine's lines."""
         name = "half-space" if math.isinf(self.thickness) else f"plate of {in_unit(self.thickness, 'm')}"
-        return f"{name}, number {self.plates} of the record" if self.plates else name
+        return f"{name}, in the record {self.plates}" if self.plates else name
 
 
 def walls(model: ImpactModel, recorded: Recorded, keep: Keep, plate: Callable[[float], Any]) -> list[Wall]:
@@ -83,7 +83,7 @@ def text(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Iterator[str]:
     yield from _table(found, keep, asked).text()
     yield ""
     yield from wrapped(meaning(keep))
-    yield "energy error: error of the energy that the wall takes in total."
+    yield "energy error: relative error of the energy that the wall takes in total."
     yield "height error: for 95 % of beads the rebound height is wrong by less than this."
     errors = sorted(wall.best.mean_energy_error for wall in found)
     ends = dict.fromkeys(f"{100.0 * error:z.2f}" for error in (errors[0], errors[-1]))
