@@ -7,7 +7,8 @@ from typing import Any
 
 from contactlaw import laws, quantities
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.constant import lines, records, walls
+from contactlaw.cli.constant import records, walls
+from contactlaw.cli.constant.lines import lines
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import asked
 from contactlaw.cli.parts.table import Column, Table, in_words
@@ -69,16 +70,17 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     if arguments.error is not None:
         raise ArgumentError("error", arguments.error, "only --table takes it")
-    write = {"lammps": lines.lammps, "liggghts": lines.liggghts, "yade": lines.yade}.get(arguments.form)
-    for n, recorded in enumerate(_recorded(arguments, single=write is not None)):
+    for_engine = arguments.form in ("lammps", "liggghts", "yade")
+    for n, recorded in enumerate(_recorded(arguments, single=for_engine)):
         model, wall, question = _asked(arguments, recorded)
         found = walls.walls(model, recorded, arguments.keep, wall)
-        if write is not None:
-            print(*write(model, found, arguments.keep), sep="\n")
+        table = walls.table(found, arguments.keep, question)
+        if for_engine:
+            print(*lines(arguments.form, model, recorded, found, arguments.keep), sep="\n")
         elif arguments.form == "csv":
-            walls.write_csv(found, arguments.keep, question, sys.stdout, head=n == 0)
+            table.write_csv(sys.stdout, head=n == 0)
         else:
-            print(*[""] * (n > 0), *walls.text(found, arguments.keep, question), sep="\n")
+            print(*[""] * (n > 0), *table.text(), "", *walls.explained(found, arguments.keep), sep="\n")
 
 
 def _asked(arguments: argparse.Namespace, recorded: Any = None) -> tuple[ImpactModel, Any, dict[str, Any]]:
@@ -114,29 +116,18 @@ def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recor
     if not arguments.files:
         return [records.combined(arguments.speed, *sizes)]
     first, found = arguments.files[0], records.read(*arguments.files)
-    if found[0].left_out:
-        wording.print_warning(f"{first}: {found[0].left_out}")
-    if len(found) > 1:
-        found = _of_names(arguments, found)
+    for left_out in dict.fromkeys(one.left_out for one in found if one.left_out):
+        wording.print_warning(f"{first}: {left_out}")
+    names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
+    for role in ("sphere", "plate") if len(found) > 1 else ():
+        if name := getattr(arguments, role):
+            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
+            if not found:
+                raise ArgumentError(role, name, f"the record has {names}")
     if single and len(found) > 1:
-        names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
-        raise ValueError(
-            f"{first}: has impacts of several pairs, {names}, and these lines are for one: choose it by --sphere "
-            "and --plate"
-        )
+        reason = "and these lines are for one: choose it by --sphere and --plate"
+        raise ValueError(f"{first}: has impacts of several pairs, {names}, {reason}")
     with wording.reading(first):
         for one in found:
             records.check_sphere(one, chosen.pair(arguments, one.pair).sphere)
     return [records.completed(one, *sizes) for one in found]
-
-
-def _of_names(arguments: argparse.Namespace, found: list[records.Recorded]) -> list[records.Recorded]:
-    """Impacts of the materials that --sphere and --plate name; of all if neither is given."""
-    for role in ("sphere", "plate"):
-        name = getattr(arguments, role)
-        if name is not None:
-            known = sorted({getattr(one.pair, role).name for one in found if one.pair})
-            if name not in known:
-                raise ArgumentError(role, name, f"the record has {', '.join(known)}")
-            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
-    return found
