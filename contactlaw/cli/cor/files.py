@@ -1,7 +1,6 @@
 """The file of ``contactlaw cor --out``: all impacts of a grid, as CSV or HDF5."""
 
 import io
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -11,14 +10,13 @@ import numpy as np
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.cli.parts.table import Table
-from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
 
 SUFFIXES = ".csv", ".h5", ".hdf5"
 _FORMAT, _SCHEMA = "contactlaw-sweep", 1
 
 
-def save(table: Table, model: ImpactModel, axes: Mapping[str, Sequence[float]], path: str | os.PathLike[str]) -> None:
+def save(table: Table, axes: Mapping[str, Sequence[float]], outside: str, path: str) -> None:
     """Write a grid of impacts; the file appears complete or not at all.
 
     In ``.h5`` the axes are HDF5 dimension scales, of which the last one changes fastest from row
@@ -32,12 +30,12 @@ def save(table: Table, model: ImpactModel, axes: Mapping[str, Sequence[float]], 
         return
     image = io.BytesIO()
     with h5py.File(image, "w", libver="v110") as file:
-        _fill(file, table, model, axes)
+        _fill(file, table, axes, outside)
     _atomic.write(path, image.getvalue())
 
 
-def _fill(file: h5py.File, table: Table, model: ImpactModel, axes: Mapping[str, Sequence[float]]) -> None:
-    file.attrs.update(format=_FORMAT, schema=_SCHEMA, contactlaw_version=VERSION, **table.asked, outside=model.outside)
+def _fill(file: h5py.File, table: Table, axes: Mapping[str, Sequence[float]], outside: str) -> None:
+    file.attrs.update(format=_FORMAT, schema=_SCHEMA, contactlaw_version=VERSION, **table.asked, outside=outside)
     units = {column.name: column.unit or "1" for column in table.columns} | {"flags": "1"}
     for name, values in axes.items():
         file.create_dataset(name, data=values, fletcher32=True)

@@ -54,7 +54,7 @@ def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
         subject += ", if the materials are right; their errors are not stated"
     sentences = [subject]
     for role in strong:
-        if _is_minimum(bodies[role]):
+        if bodies[role].specified_minimum:
             sentences.append(f"The {role}'s strength is a specified minimum: the real COR may be higher")
     for role, body in bodies.items():
         if body.is_polymer and not body.loss_factor:
@@ -63,11 +63,7 @@ def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
 
 
 def _has_error(body: Material) -> bool:
-    return any(math.isfinite(body.uncertainty.get(name, math.inf)) for name in _STRENGTHS)
-
-
-def _is_minimum(body: Material) -> bool:
-    return any(body.uncertainty.get(name) == math.inf for name in _STRENGTHS)
+    return not body.uncertainty.keys().isdisjoint(_STRENGTHS)
 
 
 def assumed(pair: Pair) -> Pair:
@@ -121,8 +117,3 @@ def _range(sizes: Array, unit: str) -> str:
     sizes = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)
     least, most = (in_unit(size, unit, 2).rstrip() for size in (sizes.min(), sizes.max()))
     return most if least == most else f"{least} to {most}"
-
-
-def in_caption(band: Band) -> str:
-    """Old piece, until compare uses `meaning`."""
-    return _HERE

@@ -80,11 +80,16 @@ def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:
     if below:
         whole = [Layers([(plate, one), *below]) for one in np.ravel(thickness).tolist()]
         thickness = whole if np.ndim(thickness) else whole[0]
-    if arguments.foundation is not None:
-        return Foundation(thickness, arguments.foundation)
-    if arguments.cylinder is not None:
-        return Shell(thickness, arguments.cylinder)
-    return thickness if arguments.bowl is None else Shell(thickness, arguments.bowl, "sphere")
+    option = next((name for name in ("foundation", "cylinder", "bowl") if getattr(arguments, name) is not None), "")
+    if not option:
+        return thickness
+    size = getattr(arguments, option)
+    try:
+        if option == "foundation":
+            return Foundation(thickness, size)
+        return Shell(thickness, size, "sphere" if option == "bowl" else "cylinder")
+    except ArgumentError as error:
+        raise ArgumentError(option, error.value, error.reason) from error
 
 
 def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float]:

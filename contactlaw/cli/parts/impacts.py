@@ -1,25 +1,21 @@
-"""Impacts as rows of a table: every combination of some speeds, radii and thicknesses."""
+"""Columns of impacts, and what was asked about them."""
 
 import csv
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, TextIO
 
 import numpy as np
 
 from contactlaw._arrays import Array, Integers
-from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
-from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.table import Column, Table
+from contactlaw.cli.parts.table import Column
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import Foundation, Shell
 from contactlaw.physical.validity import Validity, count_flags, explain
 
-_MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 _SHOWN: dict[str, Any] = {  # title, unit and number of these in one SI unit on a terminal
     "restitution": ("COR", "-", 1.0, "", ".4f"),
     "contact_time": ("time", "us", 1e6),
@@ -43,60 +39,6 @@ def asked(model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     units = UNITS | {"mass": "kg"}
     numbers = {f"{n}_{units[n]}": float(size) for n, size in sizes.items() if size is not None}
     return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
-
-
-def combinations(lists: dict[str, Sequence[float]]) -> dict[str, Array]:
-    """Every combination of some lists, as flat arrays; the last list changes fastest."""
-    count = math.prod(map(len, lists.values()))
-    if count > _MOST:
-        reason = f"every combination is {count} impacts, and {_MOST} is the most: give fewer values"
-        raise ArgumentError(", ".join(lists), None, reason)
-    grid = np.meshgrid(*lists.values(), indexing="ij")
-    return {name: values.ravel() for name, values in zip(lists, grid, strict=True)}
-
-
-def tabulate(
-    model: ImpactModel,
-    speeds: Sequence[float],
-    radii: Sequence[float],
-    thicknesses: Sequence[float],
-    solve: bool = False,
-    mass: float | None = None,
-    wall: Callable[[Array], Any] = lambda thickness: thickness,
-) -> Table:
-    """Look up every combination of speeds, radii and thicknesses [m/s, m, m], or `solve` it.
-
-    Along the rows, speeds change fastest. `wall` makes plates of thicknesses. The yield speed is
-    inf if nothing yields or an impact at yield is outside the table, and NaN if it is not known.
-    """
-    sizes = combinations({"radius": radii, "thickness": thicknesses, "speed": speeds})
-    r, h, v = sizes.values()
-    with wording.naming_impact(v, r, h, mass=mass):
-        rebound = (model.solve if solve else model.lookup)(v, r, wall(h), mass=mass)
-    first = slice(None, None, len(speeds))  # first row of each bead on each plate
-    plates = wall(h[first])
-    if isinstance(plates, Foundation | Shell):  # for which no yield speeds are searched
-        yields = np.full(h[first].size, math.nan)
-    else:
-        yields = yield_speeds(model, r[first], np.array(plates, dtype=float), mass)
-    yields = np.repeat(yields, len(speeds))
-    values = asdict(rebound) | sizes | {"yield_speed": yields}
-    flags = values.pop("flags")
-    return Table(COLUMNS, values, asked(model, mass=mass), flags)
-
-
-def yield_speeds(model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None) -> Array:
-    """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
-
-    Other impacts on the same plate may be inside the table.
-    """
-    try:
-        return np.asarray(model.yield_speed(radius, thickness, mass))
-    except ValueError:
-        if radius.size == 1:
-            return np.array([math.inf])
-        parts = zip(np.split(radius, radius.size), np.split(thickness, radius.size), strict=True)
-        return np.concatenate([yield_speeds(model, r, h, mass) for r, h in parts])
 
 
 # Old pieces, until fit, compare and constant use `Table`.

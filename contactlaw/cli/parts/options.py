@@ -147,6 +147,15 @@ def _half(size: float) -> float:
     return Written(0.5 * size, f"{size.text}/2") if isinstance(size, Written) else 0.5 * size
 
 
+def add_forms(command: Any) -> Any:
+    """Add the options of CSV and JSON, as `form`; return their group, for other forms of output."""
+    group = command.add_mutually_exclusive_group()
+    for form in ("csv", "json"):
+        what = f"print all fields as {form.upper()}, in SI units with every digit"
+        group.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
+    return group
+
+
 def add_errors(command: Any, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
     for name in sizes:

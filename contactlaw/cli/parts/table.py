@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlaw._arrays import Integers
 from contactlaw._escaped import cell, line
+from contactlaw._readable import in_unit
 from contactlaw.physical.validity import Validity, count_flags, explain
 
 WIDTH = 80  # of a line on a terminal
@@ -63,7 +64,7 @@ class Table:
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
         named = (f"{column.title} {self._alike(column)}" for column in alike)
-        title = ", ".join([*[in_words(self.asked)] * bool(self.asked), *named])
+        title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
             yield from wrapped(title)
         cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
@@ -75,7 +76,7 @@ class Table:
         yield from aligned([*cells.values(), *last])
         remarks = [*self.remarks()]
         if left_out:
-            remarks += wrapped(f"Too wide for {WIDTH} columns, see CSV: {', '.join(left_out)}.")
+            remarks += wrapped(f"CSV has more columns than fit here: {', '.join(left_out)}.")
         yield from [""] * bool(remarks) + remarks
 
     def remarks(self) -> Iterator[str]:
@@ -174,7 +175,7 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
     for column in columns:
         width, is_text = max(map(len, column)), column[1] == ""  # a column of texts has no unit
         padded.append([text.ljust(width) if is_text else text.rjust(width) for text in column])
-    yield from ("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+    yield from filter(None, ("  ".join(row).rstrip() for row in zip(*padded, strict=True)))  # units may be missing
 
 
 def wrapped(text: str, indent: str = "") -> list[str]:
@@ -188,17 +189,17 @@ def in_words(asked: Mapping[str, Any]) -> str:
     Examples
     --------
     >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
-    'glass on pom, law fem, radius 0.001 m'
+    'glass on pom, law fem, radius 1 mm'
     """
     sphere, plate, law, *sizes = asked.items()
     words = (f"{name.replace('_', ' ')} {size}" for name, size in (_sized(*size) for size in sizes))
     return line(", ".join([f"{sphere[1]} on {plate[1]}, law {law[1]}", *words]))
 
 
-def _sized(name: str, size: Any) -> tuple[str, str]:
-    """Name and size of an argument; its unit follows an underscore in its key."""
+def _sized(name: str, size: float) -> tuple[str, str]:
+    """Name and size of an argument; its SI unit follows an underscore in its key."""
     bare, _, unit = name.rpartition("_")
-    return bare, f"{size:g} {unit}"
+    return bare, in_unit(size, unit)
 
 
 def flag_names(flags: int) -> list[str]:
