@@ -15,6 +15,7 @@ from contactlaw.cli.parts import bands, chosen, impacts, wording
 from contactlaw.cli.parts.table import Column, Table
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import within
 from contactlaw.physical.plates import Foundation, Shell
 
 SIZES = "radius", "thickness", "speed"
@@ -128,6 +129,7 @@ def _yield_speeds(arguments: argparse.Namespace, model: ImpactModel, sizes: dict
 
 def _oblique(arguments: argparse.Namespace, model: ImpactModel, sizes: dict[str, Array], wall: Any) -> dict[str, Any]:
     """Integrate oblique impacts: a few of them need no table of the model."""
+    within("angle", sizes["angle"], 0.0, 89.999, "degrees from the normal")
     inclined, radius = np.radians(sizes["angle"]), sizes["radius"]
     speed, sliding = sizes["speed"] * np.cos(inclined), sizes["speed"] * np.sin(inclined)
     hit = model.oblique(speed, sliding, radius, wall, sizes["friction"], method="solve", mass=arguments.mass)

@@ -80,16 +80,11 @@ def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:
     if below:
         whole = [Layers([(plate, one), *below]) for one in np.ravel(thickness).tolist()]
         thickness = whole if np.ndim(thickness) else whole[0]
-    option = next((name for name in ("foundation", "cylinder", "bowl") if getattr(arguments, name) is not None), "")
-    if not option:
-        return thickness
-    size = getattr(arguments, option)
-    try:
-        if option == "foundation":
-            return Foundation(thickness, size)
-        return Shell(thickness, size, "sphere" if option == "bowl" else "cylinder")
-    except ArgumentError as error:
-        raise ArgumentError(option, error.value, error.reason) from error
+    if arguments.foundation is not None:
+        return Foundation(thickness, arguments.foundation)
+    if arguments.cylinder is not None:
+        return Shell(thickness, arguments.cylinder)
+    return thickness if arguments.bowl is None else Shell(thickness, arguments.bowl, "sphere")
 
 
 def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float]:
@@ -127,6 +122,10 @@ def check_quantities(arguments: argparse.Namespace) -> None:
         sizes = getattr(arguments, name, None)
         for size in () if sizes is None else np.atleast_1d(sizes).tolist():
             scalars(**{name: size})
+    for name in ("cylinder", "bowl"):
+        size = getattr(arguments, name, None)
+        if size is not None and abs(size) <= np.max(arguments.radius):
+            raise ArgumentError(name, size, "must be larger than the bead's radius; negative if beads hit from outside")
 
 
 def bead_radius(arguments: argparse.Namespace) -> float:
