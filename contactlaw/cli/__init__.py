@@ -28,8 +28,6 @@ _GROUPS = {
     "pages": ("explore", "report"),
 }
 _COMMANDS = [name for names in _GROUPS.values() for name in names]
-if not (Path(__file__).parent / "find.py").exists():  # until it is there
-    _COMMANDS.remove("find")
 _ABOUT = re.compile(r"``contactlaw \w+``: (.*)\.")
 _DONE, _REFUSED, _MISUSED, _INTERRUPTED = 0, 1, 2, 130
 
@@ -113,7 +111,7 @@ def _grouped() -> Iterator[str]:
     """Lines of the help with all subcommands, each with the sentence of its file's docstring."""
     for title, names in _GROUPS.items():
         yield f"{title}:"
-        for name in filter(_COMMANDS.__contains__, names):
+        for name in names:
             path = Path(__file__).parent / name
             file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
             about = _ABOUT.search(file.read_text(encoding="utf-8"))
