@@ -83,10 +83,10 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     table = Table(_columns(unknown), values, impacts.asked(model) | asked, values["flags"])
     table.write(sys.stdout, arguments.form)
     if arguments.form == "text":
-        band = max((answer.band for answer in answers if answer.band), key=bands.unknown)
+        band = next(answer.band for answer in answers if answer.band)
         of = {"thickness": "thicknesses", "speed": "speeds"}[unknown]
-        sentence = f"68 %: {of} whose predicted range contains the COR you asked for"
-        print("", *wrapped(f"{sentence}{bands.left_out(band, model.pair)}."), sep="\n")
+        subject = f"{of} whose predicted range contains the COR you asked for"
+        print("", *wrapped(f"68 %: {bands.meaning(band, model.pair, subject)}."), sep="\n")
 
 
 def _columns(unknown: str) -> list[Column]:

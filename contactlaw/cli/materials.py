@@ -46,10 +46,7 @@ def _run(arguments: argparse.Namespace) -> None:
     listed = sorted({body.name for body in own.values()}) or materials()
     bodies = [find(one, own) for one in ([name] if name else listed)]
     if arguments.json:
-        rows = [asdict(body) for body in bodies]
-        for errors in (row["uncertainty"] for row in rows):  # JSON has no inf; others are up to 1
-            errors |= {number: None for number, error in errors.items() if error > 1.0}
-        print(json.dumps(rows, indent=2))
+        print(json.dumps([asdict(body) for body in bodies], indent=2))
         return
     values = dict(zip((title for title, *_ in _TITLES), zip(*map(_numbers, bodies), strict=True), strict=True))
     Table(_COLUMNS[1:] if name else _COLUMNS[:_LISTED], values).write(sys.stdout)
