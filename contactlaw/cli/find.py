@@ -91,7 +91,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
 
 def _columns(unknown: str) -> list[Column]:
     by_name = {column.name: column for column in COLUMNS}
-    cor, *known = (by_name[name]._replace(is_input=True) for name in ("restitution", *_KNOWN[unknown]))
+    cor, *known = (by_name[name]._replace(is_input=True, digits=".4g") for name in ("restitution", *_KNOWN[unknown]))
     value = by_name[unknown]._replace(is_input=False)
     high = Column(f"{unknown}_high", value.unit)
     low = value._replace(name=f"{unknown}_low", title="68 %", to=high.name)

@@ -17,7 +17,7 @@ from contactlaw.cli.parts.impacts import units
 
 PAIR = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
 SIZES = ["--radius", "0.9mm", "--thickness", "0.5mm,inf"]
-SWEEP = ["sweep", *PAIR, "--radius", "0.5mm,0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0.5:60:4log"]
+SWEEP = ["cor", *PAIR, "--radius", "0.5mm,0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0.5:60:4log"]
 CONSTANT = ["constant", *PAIR, *SIZES, "--speed", "1:60:30log"]
 
 
