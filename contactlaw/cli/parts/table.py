@@ -138,7 +138,7 @@ class Table:
             yield dict(zip(names, known, strict=True)), flag_names(flag)
 
     def _alike(self, column: Column) -> str:
-        value = next(self._cells(column))
+        value = next(self._cells(column._replace(digits="")))
         return value if value == "inf" or column.shown == "-" else f"{value} {column.shown}"
 
     def _cells(self, column: Column) -> Iterator[str]:
