@@ -40,10 +40,7 @@ def add(commands: Any) -> None:
         options.add_name_of_law(command)
         command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])
-        output = command.add_mutually_exclusive_group()
-        for form in ("csv", "json"):
-            what = f"print all rows as {form.upper()}, in SI units with every digit"
-            output.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
+        options.add_forms(command)
         command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
