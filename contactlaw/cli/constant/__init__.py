@@ -10,7 +10,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw.cli.constant import records, walls
 from contactlaw.cli.constant.lines import lines
 from contactlaw.cli.parts import chosen, options, wording
-from contactlaw.cli.parts.impacts import asked
 from contactlaw.cli.parts.table import Column, Table, in_words
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import explain
@@ -72,24 +71,17 @@ def _run(arguments: argparse.Namespace) -> None:
         raise ArgumentError("error", arguments.error, "only --table takes it")
     for_engine = arguments.form in ("lammps", "liggghts", "yade")
     for n, recorded in enumerate(_recorded(arguments, single=for_engine)):
-        model, wall, question = _asked(arguments, recorded)
-        found = walls.walls(model, recorded, arguments.keep, wall)
-        table = walls.table(found, arguments.keep, question)
+        law = arguments.law or recorded.law or laws.DEFAULT
+        model = ImpactModel(chosen.pair(arguments, recorded.pair), law=law, outside=arguments.outside)
+        plate = functools.partial(chosen.wall, arguments, model.pair.given[1])
+        found = walls.walls(model, recorded, arguments.keep, plate)
+        table = walls.table(found, arguments.keep, chosen.asked(arguments, model))
         if for_engine:
             print(*lines(arguments.form, model, recorded, found, arguments.keep), sep="\n")
         elif arguments.form == "csv":
             table.write_csv(sys.stdout, head=n == 0)
         else:
             print(*[""] * (n > 0), *table.text(), "", *walls.explained(found, arguments.keep), sep="\n")
-
-
-def _asked(arguments: argparse.Namespace, recorded: Any = None) -> tuple[ImpactModel, Any, dict[str, Any]]:
-    """Model of the options and a record, function from thickness to wall, and names for the output."""
-    law = arguments.law or getattr(recorded, "law", None) or laws.DEFAULT
-    model = ImpactModel(chosen.pair(arguments, getattr(recorded, "pair", None)), law=law, outside=arguments.outside)
-    plate = model.pair.given[1]
-    names = asked(model) | {"plate": chosen.plate_in_words(arguments, plate.name)}
-    return model, functools.partial(chosen.wall, arguments, plate), names
 
 
 def _print_speed_table(arguments: argparse.Namespace) -> None:
@@ -100,12 +92,14 @@ def _print_speed_table(arguments: argparse.Namespace) -> None:
             raise ArgumentError(name, None, "--table takes one value")
     (radius,), (thickness,) = arguments.radius, arguments.thickness
     ends, error = (min(arguments.speed), max(arguments.speed)), _ERROR if arguments.error is None else arguments.error
-    model, wall, names = _asked(arguments)
+    arguments.law = arguments.law or laws.DEFAULT
+    model = chosen.model(arguments)
     with wording.naming_impact(ends, radius, thickness):
-        rows = model.speed_table(radius, wall(thickness), error, *ends)
+        plate = chosen.wall(arguments, model.pair.given[1], thickness)
+        rows = model.speed_table(radius, plate, error, *ends)
     for flag, count in rows.flags.items():
         wording.print_warning(f"{flag.name}, {count} of {len(rows.speed)} rows: {explain(flag)[0]}")
-    print(f"# {in_words(names | {'radius_m': radius, 'thickness_m': thickness})}, error {rows.error:.2g}")
+    print(f"# {in_words(chosen.asked(arguments, model, radius=radius, thickness=thickness))}, error {rows.error:.2g}")
     columns = Column("speed", "m/s"), Column("restitution")
     Table(columns, {"speed": rows.speed, "restitution": rows.restitution}).write_csv(sys.stdout)
 

@@ -68,7 +68,7 @@ def table(
         else:
             hit = (model.solve if arguments.solve else model.lookup)(speed, radius, wall, mass=mass)
             columns, values = impacts.COLUMNS, asdict(hit) | {"yield_speed": _yield_speeds(arguments, model, sizes)}
-    made = Table(columns, {**values, **sizes}, _asked(arguments, model), values["flags"])
+    made = Table(columns, {**values, **sizes}, chosen.asked(arguments, model, mass=arguments.mass), values["flags"])
     known = None if errors is None else uncertainty(arguments, model, made, errors)
     return bands.with_bands(made, known), known
 
@@ -95,13 +95,8 @@ def history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
         wall = _wall(arguments, model, thickness)
         contact = model.force_history(speed, radius, wall, samples, "solve", mass=arguments.mass)
     values = dict(zip((column.name for column in _HISTORY), contact, strict=True))
-    asked = _asked(arguments, model, speed=speed, radius=radius, thickness=thickness)
+    asked = chosen.asked(arguments, model, speed=speed, radius=radius, thickness=thickness, mass=arguments.mass)
     return Table(_HISTORY, values, asked, np.full(contact.time.size, int(contact.flags)))
-
-
-def _asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float) -> dict[str, Any]:
-    asked = impacts.asked(model, **sizes, mass=arguments.mass)
-    return asked | {"plate": chosen.plate_in_words(arguments, asked["plate"])}
 
 
 def _wall(arguments: argparse.Namespace, model: ImpactModel, thickness: Any) -> Any:
