@@ -56,12 +56,12 @@ def test_times_of_an_app(tmp_path, capsys):
 def test_times_between_bounces_and_their_error_are_no_contact_times(tmp_path, capsys):
     path = tmp_path / "drops.csv"
     path.write_text("drop_cm,t1_ms,t2_ms,time_error_ms\n30,380,300,1\n")
-    data = rebounds.completed(rebounds.checked(path), path, 2500.0, radius=2e-3)
+    data = rebounds.completed(rebounds.read(path), path, 2500.0, radius=2e-3)
     assert data.contact_time is None and data.restitution_error == pytest.approx([0.00287, 0.00578], rel=0.02)
     path.write_text("speed_m/s,time_us,time_error_us\n1,9,0.5\n")
-    assert rebounds.completed(rebounds.checked(path), path, 2500.0).contact_time_error == pytest.approx(5e-7)
+    assert rebounds.completed(rebounds.read(path), path, 2500.0).contact_time_error == pytest.approx(5e-7)
     path.write_text("speed_m/s,drop_cm,bounce_cm\n2.4,,18\n,30,17\n")
-    assert rebounds.completed(rebounds.checked(path), path, 2500.0, radius=2e-3).speed.size == 2
+    assert rebounds.completed(rebounds.read(path), path, 2500.0, radius=2e-3).speed.size == 2
 
 
 @pytest.mark.filterwarnings("ignore:the air changes")

@@ -51,7 +51,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    data, pair, known = chosen.of_file(arguments)
+    data, pair, known = chosen.of_file(arguments, arguments.data)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = compare(pair, data, arguments.law, **known.errors)
         if arguments.plot is not None:

@@ -103,7 +103,7 @@ def _run(arguments: argparse.Namespace) -> None:
         data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
         pair = chosen.pair(arguments, known)
     else:
-        data, pair, head = chosen.of_file(arguments)
+        data, pair, head = chosen.of_file(arguments, arguments.data)
         priors = _errors(head, data) | priors
     asked: dict[str, Any] = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     for name in ("radius", "thickness"):
