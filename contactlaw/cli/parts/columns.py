@@ -133,7 +133,7 @@ def _name_and_unit(head: str) -> tuple[str, str]:
 
 
 def _per_unit(head: str, column: TextColumn) -> float | None:
-    """Number of a column's units in one SI unit; None for the head of another column."""
+    """Count a column's units in one SI unit; None for the head of another column."""
     quantity, (name, unit) = column.quantity, _name_and_unit(head)
     units = {text.lower(): size for text, size in quantity.units.items()} if quantity else {}
     if name not in column.names:
@@ -148,11 +148,7 @@ def _per_unit(head: str, column: TextColumn) -> float | None:
 
 
 def numbers(
-    rows: Sequence[str],
-    delimiter: str,
-    names: Sequence[str],
-    wanted: Sequence[int],
-    wrong: list[str] | None = None,
+    rows: Sequence[str], delimiter: str, names: Sequence[str], wanted: Sequence[int], wrong: list[str] | None = None
 ) -> tuple[list[int], Array]:
     """Read some columns of a table's rows: the line of the file of each row with data, its numbers.
 

@@ -60,7 +60,7 @@ class Table:
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
         named = (f"{column.title} {self._alike(column)}" for column in alike)
-        title = ", ".join([*[in_words(self.asked)] * bool(self.asked), *named])
+        title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
             yield from wrapped(title)
         cells = [[c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike]
@@ -153,7 +153,7 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
     for column in columns:
         width, is_text = max(map(len, column)), column[1] == ""  # a column of texts has no unit
         padded.append([text.ljust(width) if is_text else text.rjust(width) for text in column])
-    yield from ("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+    yield from filter(None, ("  ".join(row).rstrip() for row in zip(*padded, strict=True)))  # units may be missing
 
 
 def wrapped(text: str, indent: str = "") -> list[str]:
