@@ -4,19 +4,18 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from typing import Any
 
 import numpy as np
 
-from contactlaw import laws, quantities
+from contactlaw import laws
 from contactlaw.cli.compare import figure
-from contactlaw.cli.parts import bands, chosen, impacts, options
+from contactlaw.cli.parts import bands, chosen, impacts, measured, options
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
 from contactlaw.comparison import Comparison, compare
 from contactlaw.model import ImpactModel
-from contactlaw.physical.pair import Pair
-from contactlaw.quantities import LENGTH, TIME
+from contactlaw.quantities import TIME
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
 _DISTINCT = 2.0  # standard errors by which a law is farther from the data than another one
@@ -33,56 +32,46 @@ def add(commands: Any) -> None:
         "error of each COR, height or time. Lines of TOML behind # above the table may state materials, sizes, "
         "their errors and the source",
     )
-    of_file = " (default: that of FILE)"
-    options.add_pair(command, of_file)
-    options.add_radius(command, "all beads", quantities.value, known=of_file)
-    what = f"thickness of all plates [m]; inf is a half-space{of_file}"
-    options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
-    what = f"standard error of the instants of bounces [s]{of_file}"
+    what = "standard error of the instants of bounces [s] (default: that of FILE)"
     options.add_quantity(command, "--time-error", TIME, what, metavar="T")
-    options.add_name_of_law(command)
-    add = command.add_mutually_exclusive_group().add_argument
-    add("--csv", action="store_true", help="print the rebounds as rows in SI units, every digit")
-    add("--json", action="store_true", help="print chi-squared, all laws and the rebounds; inf is null")
-    add("--plot", metavar="FILE", help="draw the model's band and the data into FILE (PNG, SVG, PDF)")
-    command.epilog = options.UNITS
+    output = measured.add_options(command)
+    output.add_argument("--csv", action="store_true", help="print the rebounds as rows in SI units, every digit")
+    output.add_argument("--json", action="store_true", help="print chi-squared, all laws and the rebounds")
 
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    data, pair, known = chosen.of_file(arguments, arguments.data)
-    if arguments.plot is not None:
-        with chosen.plot_file(arguments):
-            found = compare(pair, data, arguments.law, **known.errors)
-            about = in_words(_asked(pair, arguments.law))
-            about = f"{known.title}: {about}" if known.title else about
-            figure.figure(found, ImpactModel(pair, arguments.law), known.errors, about).save(arguments.plot)
-        return
-    found = compare(pair, data, arguments.law, **known.errors)
-    table = _rows(found, pair, arguments.law)
+    data, pair, head = chosen.of_file(arguments, arguments.data)
+    bodies = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
+    with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
+        found = compare(pair, data, arguments.law, **head.errors)
+        if arguments.plot is not None:
+            about = ": ".join(filter(None, (head.title, in_words(bodies))))
+            figure.figure(found, ImpactModel(pair, arguments.law), head.errors, about).save(arguments.plot)
+            return
+    table = _rows(found, bodies)
     if arguments.csv:
         table.write(sys.stdout, "csv")
         return
     by_law = dict[str, Comparison]()
     for name in laws.names():
-        with suppress(ValueError, RuntimeError):
-            by_law[name] = compare(pair, found.data, name, **known.errors)
+        with suppress(ValueError, RuntimeError):  # it cannot be used for this pair
+            by_law[name] = compare(pair, found.data, name, **head.errors)
     by_law = dict(sorted(by_law.items(), key=lambda item: item[1].if_exact))
     if arguments.json:
-        numbers = {"title": known.title, "reference": known.reference, **_numbers(found), "unknown": found.unknown}
+        numbers = {"title": head.title, "reference": head.reference, **_numbers(found), "unknown": found.unknown}
         numbers["laws"] = {name: _numbers(comparison) for name, comparison in by_law.items()}
         print(json.dumps(numbers | {"rebounds": table.records()}, indent=2))
         return
-    sentences = known.title, known.reference
-    print(*(line for text in filter(None, sentences) for line in wrapped(text)), *table.text(), "", sep="\n")
-    print(*(line for text in _judged(found) for line in wrapped(text)), "", *_nearest(by_law), sep="\n")
+    for sentence in filter(None, (head.title, head.reference)):
+        print(*wrapped(sentence), sep="\n")
+    print(*table.text(), "", sep="\n")
+    for sentence in _judged(found):
+        print(*wrapped(sentence), sep="\n")
+    print("", *_nearest(by_law), sep="\n")
 
 
-def _asked(pair: Pair, law: str) -> dict[str, str]:
-    return {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": law}
-
-
-def _rows(found: Comparison, pair: Pair, law: str) -> Table:
+def _rows(found: Comparison, bodies: dict[str, str]) -> Table:
     """Table of the rebounds: measured COR, its error, COR of the model, its range, and flags."""
     data, ends = found.data, {"low": found.band.low, "high": found.band.high}
     values = {"speed": data.speed, "radius": data.radius, "thickness": data.thickness}
@@ -91,7 +80,7 @@ def _rows(found: Comparison, pair: Pair, law: str) -> Table:
     columns += [Column("restitution", title="predicted"), Column("low", title="68 %", to="high"), Column("high")]
     values |= {"measured": data.restitution, "error": data.restitution_error, "restitution": found.restitution}
     values |= {name: np.where(np.isfinite(end), end, np.nan) for name, end in ends.items()}
-    return Table(columns, values, _asked(pair, law), found.flags)
+    return Table(columns, values, bodies, found.flags)
 
 
 def _judged(found: Comparison) -> Iterator[str]:
@@ -126,11 +115,14 @@ def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     if missing := [name for name in laws.names() if name not in by_law]:
         said.append(f"{', '.join(missing)} cannot be used for these materials.")
     yield from wrapped(" ".join(said))
-    errors = [float(np.sqrt(np.mean(np.square(one.band.causes["model"])))) for one in by_law.values()]
-    columns = [Column("law", title="law", shown=""), Column("difference", title="difference", digits=".3g")]
-    columns += [Column("error", title="law's error", digits=".3g"), Column("square", title="chi-squared", digits=".3g")]
-    values = {"law": [*by_law], "difference": [one.rms for one in by_law.values()], "error": errors}
-    yield from Table(columns, values | {"square": [one.if_exact for one in by_law.values()]}).text()
+    values = {
+        "law": [*by_law],
+        "difference": [one.rms for one in by_law.values()],
+        "law's error": [np.sqrt(np.mean(np.square(one.band.causes["model"]))) for one in by_law.values()],
+        "chi-squared": [one.if_exact for one in by_law.values()],
+    }
+    columns = [Column(name, title=name, shown="-" * (name != "law"), digits=".3g") for name in values]
+    yield from Table(columns, values).text()
     yield from wrapped(
         "Difference: rms of measured minus predicted COR. Law's error: the stated error of the law's COR for these "
         "impacts. Chi-squared: with the errors of data and materials alone."

@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.fit import figure, printed
-from contactlaw.cli.parts import chosen, options, own, rebounds, wording
+from contactlaw.cli.parts import chosen, measured, options, own, rebounds, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.table import in_words
 from contactlaw.fitting import Measurements, fit
@@ -46,10 +46,6 @@ def add(commands: Any) -> None:
     options.add_drop(command, quantities.values, "of a bead, or of all in FILE")
     what = "height of the bounce of each drop [m], without FILE"
     options.add_quantity(command, "--bounce", quantities.HEIGHT, what, quantities.values, metavar="Z")
-    options.add_pair(command, " (default: that of FILE)")
-    options.add_radius(command, "all beads", quantities.value)
-    what = "thickness of all plates [m]; inf is a half-space"
-    options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
     what = "coefficient of friction of all rebounds at angles, unless it is an --unknown"
     options.add_quantity(command, "--friction", quantities.FRICTION, what, metavar="MU")
     what = f"quantity to find, or up to three: {', '.join(UNKNOWNS)}"
@@ -63,11 +59,7 @@ def add(commands: Any) -> None:
         help="standard error of a stated value of one of these quantities, such as density=20kg/m3; may be "
         "repeated (default: stated values are exact)",
     )
-    options.add_name_of_law(command)
-    add = command.add_mutually_exclusive_group().add_argument
-    add("--json", action="store_true", help="print the whole fit in SI units")
-    add("--plot", metavar="FILE", help="draw the data and the fit with its band into FILE (PNG, SVG, PDF)")
-    command.epilog = options.UNITS
+    measured.add_options(command).add_argument("--json", action="store_true", help="print the whole fit in SI units")
 
 
 def _unknowns(text: str) -> tuple[str, ...]:

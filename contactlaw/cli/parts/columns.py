@@ -17,6 +17,8 @@ _UNIT = re.compile(r"\d\s*([^\W\d]|%)")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 _SPEED = "speed", "approach_speed", "normal_speed", "impact_speed"
 SPEEDS = (*_SPEED, *(name.replace("speed", "velocity") for name in _SPEED), "v")
+_TOO_MANY = "delete what is beyond the columns, or name it in the first line"
+_DECIMAL_COMMA = "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns"
 _TOO_FEW = "leave the cell of what was not measured empty, but keep what separates the cells"
 _MISSING = ("", "n/a", "n.a.", "na", "nan", "none", "-")  # cells of what was not measured
 
@@ -174,16 +176,17 @@ def numbers(
     lines, table = [], list[list[float]]()
     for line, row in enumerate(rows, start=2):
         fields = _fields(row, delimiter)
-        count = f"line {line} has {_counted(len(fields), 'cell')}, {row[:80]!r}, of {_counted(len(names), 'column')}"
+        count = f"line {line} fills {len(fields)} of {len(names)} columns, {row[:80]!r}"
         if len(fields) > len(names):
-            raise ValueError(f"{count}: {_too_many(row, delimiter)}")
+            comma = delimiter == "," and "." not in row and re.search(r"\d,\d", row)
+            raise ValueError(f"{count}: {_DECIMAL_COMMA if comma else _TOO_MANY}")
         if not fields:
             continue
         try:
             if len(fields) < max(wanted, default=-1) + 1 > row.count(delimiter) + 1:
                 raise ValueError(f"{count}: {_TOO_FEW}")
-            cells = [*fields, *[""] * (len(names) - len(fields))]
-            table.append([_number(cells[n].strip(), delimiter, wrong is not None, names[n], line) for n in wanted])
+            fields += [""] * (len(names) - len(fields))
+            table.append([_number(fields[n].strip(), delimiter, wrong is not None, names[n], line) for n in wanted])
             lines.append(line)
         except ValueError as error:
             if wrong is None:
@@ -212,14 +215,3 @@ def _fields(row: str, delimiter: str) -> list[str]:
     while found and not found[-1].strip():
         found.pop()
     return found
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"
-
-
-def _too_many(row: str, delimiter: str) -> str:
-    """Likely cause and remedy for a row with too many cells."""
-    if delimiter == "," and "." not in row and re.search(r"\d,\d", row):
-        return "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns"
-    return "delete what is beyond the columns, or name it in the first line"

@@ -1,13 +1,16 @@
-"""The figure of measured values, with a curve of the model for each group of similar rebounds."""
+"""What commands about measured rebounds share: their options, and the figure with curves of the model."""
 
+import argparse
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlaw import quantities
 from contactlaw._arrays import Array, Integers, Mask
 from contactlaw._readable import drawn
+from contactlaw.cli.parts import options
 from contactlaw.cli.parts.figure import AXES, MOST_CURVES, Curve, Figure, Points
 
 _SAMPLES = 120  # points of a curve
@@ -24,6 +27,20 @@ class Measured(NamedTuple):
     value: Array
     error: Array | None
     flags: Integers
+
+
+def add_options(command: argparse.ArgumentParser) -> Any:
+    """Add the options of commands that read measurements; return the group of what they print."""
+    of_file = " (default: that of FILE)"
+    options.add_pair(command, of_file)
+    options.add_radius(command, "all beads", quantities.value, known=of_file)
+    what = f"thickness of all plates [m]; inf is a half-space{of_file}"
+    options.add_quantity(command, "--thickness", quantities.LENGTH, what, metavar="H")
+    options.add_name_of_law(command)
+    command.epilog = options.UNITS
+    output = command.add_mutually_exclusive_group()
+    output.add_argument("--plot", metavar="FILE", help="draw data and model with its band into FILE (PNG, SVG, PDF)")
+    return output
 
 
 def figure_of(

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw import quantities
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, Integers
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import line
@@ -25,44 +25,44 @@ from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, find, spelled_out
 from contactlaw.quantities import FORCE, LENGTH, SHARE, SPEED, TIME, Quantity
 
+
+def _column(names: str, quantity: Quantity) -> TextColumn:
+    return TextColumn(tuple(names.split()), quantity)
+
+
 _KINDS = {
-    "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
-    "contact_time": (("contact_time", "time", "duration", "contact_duration"), TIME),
-    "peak_force": (("peak_force", "force", "max_force", "maximum_force"), FORCE),
-    "tangential_restitution": (("tangential_restitution", "tangential_cor", "e_t"), SHARE),
-    "rotational_restitution": (("rotational_restitution", "beta"), SHARE),
-    "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
+    "restitution": _column("restitution cor coefficient_of_restitution e e_n", SHARE),
+    "contact_time": _column("contact_time time duration contact_duration", TIME),
+    "peak_force": _column("peak_force force max_force maximum_force", FORCE),
+    "tangential_restitution": _column("tangential_restitution tangential_cor e_t", SHARE),
+    "rotational_restitution": _column("rotational_restitution beta", SHARE),
+    "spin": _column("spin rebound_spin angular_velocity", quantities.SPIN),
 }
-_MOST = 20  # bounces of a drop, in a row
-_LISTED = 5  # wrong rows that are named; more are counted
-# Names of heights and times, which `contactlaw.fitting.drops` turns into speeds and CORs.
-_NOTED: dict[str, tuple[tuple[str, ...], Quantity]]
-_NOTED = {f"t{n}": ((f"t{n}", f"t_{n}", f"time_{n}", f"time{n}"), TIME) for n in range(1, _MOST + 1)}
+# Heights and times of a drop, which `contactlaw.fitting.drops` turns into speeds and CORs.
+_MOST = 20  # bounces in a row of a table
+_NOTED = {f"t{n}": _column(f"t{n} t_{n} time{n} time_{n}", TIME) for n in range(1, _MOST + 1)}
 _NOTED |= {
-    f"bounce{n}": (tuple(f"{name}{n}" for name in ("bounce", "bounce_", "h", "h_", "bounce_height_")), LENGTH)
-    for n in range(2, _MOST + 1)
+    f"bounce{n}": _column(f"bounce{n} bounce_{n} h{n} h_{n} bounce_height_{n}", LENGTH) for n in range(2, _MOST + 1)
 }
-_NOTED["bounce"] = (("bounce", "bounce1", "bounce_1", "bounce_height", "rebound_height", "h1", "h_1"), LENGTH)
-_DROP = ("drop", "drop_height", "fall_height", "height", "h0", "h_0")
-_ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
+_NOTED["bounce"] = _column("bounce bounce1 bounce_1 bounce_height rebound_height h1 h_1", LENGTH)
+_MEASURED = _KINDS | _NOTED
+_ERRORS = "error", "standard_error", "std", "sd", "sigma", "uncertainty"
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
-    "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), quantities.ANGLE),
-    "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
-    "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
+    "angle": _column("angle impact_angle angle_of_incidence", quantities.ANGLE),
+    "sliding_speed": _column("sliding_speed tangential_speed", SPEED),
+    "friction": _column("friction coefficient_of_friction mu", quantities.FRICTION),
     **columns.SIZES,
-    "drop": TextColumn(_DROP, LENGTH),
-    **{field: TextColumn(*one) for field, one in _NOTED.items()},
-    "time_error": TextColumn(("time_error", "t_error"), TIME),
-    "drop_error": TextColumn(("drop_error", "drop_height_error"), LENGTH),
-    "bounce_error": TextColumn(("bounce_error", "bounce_height_error"), LENGTH),
-    **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
+    "drop": _column("drop drop_height fall_height height h0 h_0", LENGTH),
+    "time_error": _column("time_error t_error", TIME),
+    "drop_error": _column("drop_error drop_height_error", LENGTH),
+    "bounce_error": _column("bounce_error bounce_height_error", LENGTH),
+    **_MEASURED,
     **{
-        f"{field}_error": TextColumn(tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity)
+        f"{field}_error": TextColumn(tuple(f"{name}_{word}" for name in names for word in _ERRORS), quantity)
         for field, (names, quantity) in _KINDS.items()
     },
 }
-_MEASURED = _KINDS | _NOTED
 # Columns of the experiments "(In)elastic collision" and "Acoustic stopwatch" of phyphox, in all languages:
 # instants at which a bead was heard, and what phyphox derives from them without the drag of the air.
 _HEARD = re.compile(r"(start|(stop|bounce)( [0-9])?|event time) \(s\)", re.IGNORECASE)
@@ -73,7 +73,7 @@ class Read(NamedTuple):
     """Columns of a file in SI units, by the names of `Measurements`."""
 
     columns: dict[str, Array]
-    lines: list[int]  # line of the file of each rebound
+    lines: Integers  # line of the file of each rebound
     head: str  # comments above the table
     warnings: list[str]  # about what is left out or likely wrong
 
@@ -109,8 +109,8 @@ def _read(content: bytes) -> Read:
     if not rows:
         raise ValueError("it has no row after the first line")
     wanted, wrong = [one.place for one in found.values()], list[str]()
-    lines, table = columns.numbers(rows, delimiter, names, wanted, wrong)
-    warnings = _left_out(wrong, len(lines))
+    found_lines, table = columns.numbers(rows, delimiter, names, wanted, wrong)
+    lines, warnings = np.array(found_lines), _left_out(wrong, len(table))
     picked = {name: values / one.per_unit for (name, one), values in zip(found.items(), table.T, strict=True)}
     columns.halve_diameters(picked)
     if heard:
@@ -122,8 +122,8 @@ def _read(content: bytes) -> Read:
     measured = np.any([~np.isnan(picked[kind]) for kind in _MEASURED if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")
-    if empty := [str(line) for line, one in zip(lines, measured, strict=True) if not one]:
-        warnings.append(f"lines without a rebound are left out: {', '.join(empty)}")
+    if not measured.all():
+        warnings.append(f"lines without a rebound are left out: {', '.join(map(str, lines[~measured]))}")
     known, missing = _DERIVED if heard else (), _COLUMNS.keys() - found.keys()
     unused = [name for n, name in enumerate(names) if name and n not in wanted and not name.startswith(known)]
     if unused:
@@ -135,7 +135,7 @@ def _read(content: bytes) -> Read:
     comments = itertools.takewhile(lambda line: line.startswith("#"), columns.lines_of(content))
     return Read(
         {name: values[measured] for name, values in picked.items()},
-        [line for line, one in zip(lines, measured, strict=True) if one],
+        lines[measured],
         "\n".join(line[1:] for line in comments),
         warnings,
     )
@@ -162,9 +162,9 @@ def _check_heads(names: list[str], found: Mapping[str, Located]) -> None:
 def _left_out(wrong: list[str], good: int) -> list[str]:
     """Sentences about wrong rows, of which there have to be fewer than good ones."""
     if wrong and len(wrong) >= good:
-        raise ValueError(f"{wrong[0]} ({len(wrong)} of {len(wrong) + good} rows are wrong)")
-    more = len(wrong) - _LISTED
-    return [f"row left out: {one}" for one in wrong[:_LISTED]] + [f"rows left out: {more} more"] * (more > 0)
+        others = f" ({len(wrong)} of {len(wrong) + good} rows are wrong)" * (len(wrong) + good > 1)
+        raise ValueError(wrong[0] + others)
+    return [f"left out: {sentence}" for sentence in wrong]
 
 
 def _nearest(heads: list[str], fields: Iterable[str]) -> str:
@@ -182,8 +182,8 @@ def completed(table: Read, path: str | os.PathLike[str], density: float, **sizes
     sizes = {name: size for name, size in sizes.items() if size is not None}
     if twice := sizes.keys() & table.columns.keys():
         raise ArgumentError(min(twice), None, "the table has its own: leave this one out")
-    line, wrong = np.array(table.lines), list[str]()
-    values = table.columns | {name: np.full(line.size, size) for name, size in sizes.items()} | {"line": line}
+    values, wrong = table.columns | {"line": table.lines}, list[str]()
+    values |= {name: np.full(table.lines.size, size) for name, size in sizes.items()}
     for name in table.columns.keys() & {*INPUTS, "angle"}:
         if name != "speed" or "drop" not in values:  # else each row has one of these
             missing = np.isnan(values[name])
