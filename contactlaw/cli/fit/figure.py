@@ -40,7 +40,7 @@ def figure(found: Fit, about: str) -> Figure:
         found.flags[rows],
     )
     remarks = ["Band: one standard error of the fit"]
-    if others := [f"{AXES[name].label} ({n} values)" for name, n in counts.items() if name != kind]:
+    if others := [f"{AXES[name].label} ({n} value{'s' * (n != 1)})" for name, n in counts.items() if name != kind]:
         remarks.append(f"Measured, but not drawn: {', '.join(others)}")
     title = ", ".join(values_in_words(found)).replace("+-", "±")
     return figure_of(measured, predicted, title[0].upper() + title[1:], about, *remarks)

@@ -9,6 +9,7 @@ from contactlaw._readable import in_unit, percent, with_error
 from contactlaw.cli.parts.impacts import COLUMNS
 from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
 from contactlaw.fitting import Fit
+from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.validity import Validity
 
@@ -55,9 +56,11 @@ def rows(found: Fit) -> Table:
     """Table of the rebounds: sizes, and by how much each measured value differs from the fit."""
     data, count = found.data, len(found.data)
     sizes = {"speed": np.asarray(data.speed), "radius": found.radius, "thickness": found.thickness}
-    columns = [Column(name, title=name, digits=".0f") for name in ("rebound", "line")]
+    lines = np.asarray(data.line)
+    number = "line" if np.unique(lines).size == count else "rebound"
+    columns = [Column(number, title=number, digits=".0f")]
     columns += [column for column in COLUMNS if column.name in sizes.keys() - {*found.unknown}]
-    values: dict[str, Any] = sizes | {"rebound": np.arange(count), "line": np.asarray(data.line)}
+    values: dict[str, Any] = sizes | {"rebound": np.arange(count), "line": lines}
     if data.is_oblique:
         columns.append(Column("angle", "deg", "angle", "deg", is_input=True))
         normal, sliding = sizes["speed"], np.asarray(data.sliding_speed)
@@ -65,7 +68,8 @@ def rows(found: Fit) -> Table:
     for kind, off in found.residuals.items():
         values[kind] = np.full(count, np.nan)
         values[kind][found.rows[kind]] = off
-        columns.append(Column(kind, "", kind.replace("_", " "), "%", 100.0, digits="+z.2f"))
+        title = KINDS[kind].title.removesuffix(" restitution").split()[-1]
+        columns.append(Column(kind, "", title, "%", 100.0, digits="+z.2f"))
     return Table(columns, values, flags=found.flags)
 
 

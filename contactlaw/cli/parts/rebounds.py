@@ -162,7 +162,7 @@ def _check_heads(names: list[str], found: Mapping[str, Located]) -> None:
 def _left_out(wrong: list[str], good: int) -> list[str]:
     """Sentences about wrong rows, of which there have to be fewer than good ones."""
     if wrong and len(wrong) >= good:
-        others = f" ({len(wrong)} of {len(wrong) + good} rows are wrong)" * (len(wrong) + good > 1)
+        others = " (half of all rows or more are wrong)" * (len(wrong) + good > 1)
         raise ValueError(wrong[0] + others)
     return [f"left out: {sentence}" for sentence in wrong]
 
