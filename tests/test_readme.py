@@ -34,6 +34,7 @@ STATED = {
     "lammps": 2,
     "laws": 12,
     "materials": 4,
+    "measure": 2,
     "tutorial": 3,
     "walls": 4,
 }

@@ -37,10 +37,7 @@ def _run(arguments: argparse.Namespace) -> None:
     names = [arguments.name] if arguments.name else listed
     entries = [find(name, own) for name in names]
     if arguments.json:
-        rows = [asdict(entry) for entry in entries]
-        for errors in (row["uncertainty"] for row in rows):  # JSON has no inf; others are up to 1
-            errors |= {name: None for name, error in errors.items() if error > 1.0}
-        print(json.dumps(rows, indent=2))
+        print(json.dumps([asdict(entry) for entry in entries], indent=2))
         return
     headings = (f"{heading:>{width}s}" for heading, (width, *_) in _COLUMNS.items())
     print(f"{'name':25s}", *headings)

@@ -435,6 +435,7 @@ def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
 
 def _write_material(file: h5py.File, name: str, material: Material) -> None:
     values = asdict(material) | {"uncertainty": json.dumps(dict(material.uncertainty))}
+    values |= {"specified_minimum": int(material.specified_minimum)}
     values |= {"units": "Pa (moduli, strength, hardness), kg/m3"}
     group = file.create_group(name)
     group.attrs.update({key: value for key, value in values.items() if value is not None})
@@ -454,7 +455,10 @@ def _material(group: h5py.Group) -> Material:
         for name in names
         if name in _REQUIRED or name in group.attrs
     }
-    stored["uncertainty"] = json.loads(stored.get("uncertainty", "{}"))
+    errors = json.loads(stored.get("uncertainty", "{}"))
+    # 0.3 stored inf and negative numbers for specified minima, whose errors are not stated.
+    stored["uncertainty"] = {name: error for name, error in errors.items() if 0.0 <= error <= 1.0}
+    stored["specified_minimum"] = bool(stored.get("specified_minimum", 0.0))
     return Material(**stored)
 
 

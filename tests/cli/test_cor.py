@@ -204,17 +204,11 @@ def test_strengths_without_an_error_are_named(capsys):
     assert "as far as errors are known (errors of the strength of the bead are not)." in table
 
 
-def test_no_upper_end_is_printed_where_a_specified_minimum_matters(capsys):
-    asked = "--sphere soda-lime-glass --plate aluminium-6082-t6 --radius 1.5mm --speed 2.43"
-    why = "(no upper end: the yield strength of the plate is a specified minimum"
-    for command in (f"cor {asked} --thickness 5mm", f"thickness {asked} --cor 0.4"):
-        assert why in " ".join(printed(command, capsys).split())
-        (row,) = csv.DictReader(printed(f"{command} --csv", capsys).splitlines())
-        ends = [cell for name, cell in row.items() if "_low" in name or "_high" in name]
-        assert len(ends) > 1 and (ends[0] == "") == (ends[1] != "") == command.startswith("thickness")
-    record = json.loads(printed(f"{command} --json", capsys))[0]
-    assert record["thickness_low"] is None and record["thickness_high"] == float(ends[1])
-    assert re.search(r" 0.7179 +>0.714  8.089", printed(f"cor {asked},1e-3 --thickness 5mm", capsys))
+def test_a_specified_minimum_says_that_the_cor_may_be_higher(capsys):
+    asked = "cor --sphere soda-lime-glass --plate {} --radius 1.5mm --speed 2.43 --thickness 5mm"
+    said = "the strength of the plate is a specified minimum: the real COR may be higher"
+    for plate, is_minimum in (("aluminium-6082-t6", True), ("aluminium-6061-t6", False), ("steel-dc01", False)):
+        assert (said in printed(asked.format(plate), capsys)) == is_minimum
 
 
 @pytest.mark.parametrize(
@@ -242,7 +236,7 @@ def test_it_asks_for_what_narrows_the_band_most(asked, size, said, capsys):
         assert f"{0.5 * (high - low):.2g} of" in first
 
 
-@pytest.mark.parametrize("sphere", ["pmma loss_factor=handbook", "hdpe", "alumina"])
+@pytest.mark.parametrize("sphere", ["hdpe", "alumina"])
 def test_without_the_error_of_what_to_measure_first_the_band_is_as_narrow_as_said(sphere, capsys):
     asked = [
         "cor",

@@ -39,26 +39,14 @@ def with_bands(table: ImpactTable, bands: Uncertainty | None) -> tuple[ImpactTab
 
 def unknown(band: Band) -> str:
     """Say which errors that matter are not known; empty if all are."""
-    names = [name for name, size in band.causes.items() if np.isinf(size).any()]
-    minimum = "is a specified minimum, and nobody knows how far the real one exceeds it"
-    law = "how far the law is from finite elements is not known"
-    said = (law if name == "model" else f"the {name} {minimum}" for name in names)
-    return f"no {'range' if 'model' in names else 'upper end'}: {'; '.join(said)}" if names else ""
+    known = np.isfinite(band.causes["model"]).all()
+    return "" if known else "no range: how far the law is from finite elements is not known"
 
 
 def in_brackets(band: Band) -> str:
     """Band of one impact, with its causes, as text after its value."""
     low, high = (np.ravel(end).item() for end in (band.low, band.high))
-    if np.isinf([low, high]).all():
-        return "(no range)"
-    ends = (
-        f"{low:.3g} or more"
-        if np.isinf(high)
-        else f"{high:.3g} or less"
-        if np.isinf(low)
-        else f"{low:.3g} to {high:.3g}"
-    )
-    return f"({ends}; {_causes(band)})"
+    return "(no range)" if np.isinf(low) else f"({low:.3g} to {high:.3g}; {_causes(band)})"
 
 
 def assumed(pair: Pair) -> tuple[dict[str, str], Pair]:
@@ -66,9 +54,8 @@ def assumed(pair: Pair) -> tuple[dict[str, str], Pair]:
     why, bodies = dict[str, str](), list[Material]()
     for role, body in zip(("bead", "plate"), pair.given, strict=True):
         name = "hardness" if body.yield_strength is None else "yield_strength"
-        error = body.uncertainty.get(name)
-        if body.strength is not None and (error is None or error == math.inf):
-            remark = "a specified minimum" if error else "its error is not known"
+        if body.strength is not None and name not in body.uncertainty:
+            remark = "a specified minimum" if body.specified_minimum else "its error is not known"
             why |= {f"{name.replace('_', ' ')} of {of}": remark for of in (f"the {role}", "both bodies")}
             body = dataclasses.replace(body, uncertainty={**body.uncertainty, name: _ASSUMED})
         bodies.append(body)
@@ -109,10 +96,13 @@ def left_out(band: Band, pair: Pair) -> str:
     """Name what is not in the band and often matters most, unknown errors and viscosity, and ranges."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
     known = {"yield_strength", "hardness"}
-    names = [role for role, body in roles.items() if body.strength is not None and not body.uncertainty.keys() & known]
+    bodies = {role: body for role, body in roles.items() if body.strength is not None and not body.specified_minimum}
+    names = [role for role, body in bodies.items() if not body.uncertainty.keys() & known]
     parts = list(filter(None, [unknown(band)]))
-    if ranges := [role for role, body in roles.items() if min(body.uncertainty.values(), default=0.0) < 0.0]:
-        parts.append(f"strength of {' and '.join(ranges)} from the specified minimum to the most that is known")
+    minima = [
+        f"the strength of {role} is a specified minimum" for role, body in roles.items() if body.specified_minimum
+    ]
+    parts += [f"{' and '.join(minima)}: the real COR may be higher"] if minima else []
     if names and meaning(band) is _OF_ALL:
         subject = "strength" if len(names) == 1 else "strengths"
         parts.append(f"errors of the {subject} of {' and '.join(names)} are not")
@@ -136,8 +126,7 @@ def in_caption(band: Band) -> str:
 
 def _causes(band: Band) -> str:
     """Causes with the half widths that they alone make, the largest ones first."""
-    known = {name: size for name, size in band.causes.items() if np.isfinite(size).all()}
-    sizes = {name: np.asarray(size) for name, size in known.items()}
+    sizes = {name: np.asarray(size) for name, size in band.causes.items()}
     most = max((size.max() for size in sizes.values()), default=0.0)
     largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
     counted = (name for name in largest if sizes[name].max() >= _LEAST * most)

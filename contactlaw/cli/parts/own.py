@@ -8,12 +8,12 @@ from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
-from contactlaw.physical.materials import SHORT, Material, UnknownMaterialError, find, number_of
+from contactlaw.physical.materials import SHORT, WRITE_LOSS, Material, UnknownMaterialError, find, number_of
 
 _NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
 
 
-_TEXTS = "kind", "name", "loss_factor"
+_TEXTS = "kind", "name"
 _FIELDS = SHORT | {name: name for name in ("hardness", *_TEXTS)}
 
 # Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
@@ -47,6 +47,8 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
         given: dict[str, object] = {}
         first = re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;")
         for key, word in _NUMBER.findall(text):
+            if key == "loss_factor":
+                raise ValueError(f"loss_factor has a frequency, too: {WRITE_LOSS}")
             if key not in _FIELDS:
                 raise ValueError(unknown(key, _FIELDS))
             field = _FIELDS[key]
@@ -72,5 +74,7 @@ def changed(body: Material, given: dict[str, Any]) -> Material:
     """Body with other numbers, whose errors are those given; a hardness replaces its yield strength."""
     if "hardness" in given and body.hardening is None:
         given = {"yield_strength": None} | given
+    if "yield_strength" in given:
+        given = {"specified_minimum": False} | given
     errors = {key: error for key, error in body.uncertainty.items() if key not in given}
     return dataclasses.replace(body, **given | {"uncertainty": errors | given.get("uncertainty", {})})
