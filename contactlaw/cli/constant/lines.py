@@ -1,16 +1,16 @@
 """One COR per wall as lines that engines read: LAMMPS, LIGGGHTS, YADE."""
 
-import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from contactlaw._escaped import line
-from contactlaw._readable import in_unit, relative
+from contactlaw._readable import relative
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.cli.constant.walls import Wall, meaning
+from contactlaw.cli.parts.table import wrapped
 from contactlaw.dashpot import betan
 from contactlaw.engines.lammps.beads import hertz_material
 from contactlaw.model import ImpactModel
@@ -27,13 +27,13 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     LAMMPS takes E/(2 (1 - nu^2)) of a wall as the effective modulus, whatever the bead's material
     is. The line has the E for which this is the effective modulus of the pair.
     """
-    yield from _head("#", model, found, keep)
+    yield from _head(model, found, keep)
     sphere, pair = model.pair.sphere, model.pair
     beads = _bead_on_bead(model, found, keep)
     free = "linear_nohistory 0 0"
-    yield "# No friction: put your own after `tangential`. Define first where each wall is, as in"
-    yield '#     variable wall1 string "zplane 0 NULL"'
-    yield "# Bead on bead, by the same law at the same speeds; after `pair_style granular`."
+    yield "# No friction: put your own after `tangential`. Define before where each wall"
+    yield '# is, as in `variable wall1 string "zplane 0 NULL"`.'
+    yield "# Bead on bead by the same law at the same speeds; after `pair_style granular`."
     yield "pair_coeff * * " + hertz_material(sphere.youngs_modulus, beads.restitution, sphere.poissons_ratio, free)
     modulus = 2.0 * (1.0 - sphere.poissons_ratio**2) * pair.effective_modulus
     for n, wall in enumerate(found, start=1):
@@ -43,17 +43,18 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
 
 def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of LIGGGHTS: ``fix property/global``, type 1 for beads, one more for each wall."""
-    yield from _head("#", model, found, keep)
+    yield from _head(model, found, keep)
     beads = _bead_on_bead(model, found, keep)
-    for where, best in [("bead on bead", beads), *((_name(wall), wall.best) for wall in found)]:
+    for where, best in [("bead on bead", beads), *((wall.name, wall.best) for wall in found)]:
         if not best.restitution > _LIGGGHTS_LEAST:
             raise ValueError(
                 f"{where}: the COR is {best.restitution:.3g}, and LIGGGHTS takes none below {_LIGGGHTS_LEAST}"
             )
-    types = (f"{n} {_name(wall)}" for n, wall in enumerate(found, start=2))
-    yield f"# Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1."
-    yield "# Bead on bead by the same law at the same speeds. `model hertz` reproduces this COR;"
-    yield "# its moduli are property/global, too, and above 1 GPa it needs `hard_particles yes`."
+    types = (f"{n} {wall.name}" for n, wall in enumerate(found, start=2))
+    yield from _comment(f"Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1.")
+    yield "# Bead on bead by the same law at the same speeds. `model hertz` reproduces this"
+    yield "# COR; it needs its moduli as property/global, and above 1 GPa"
+    yield "# `hard_particles yes`."
     size = 1 + len(found)
     matrix = np.ones((size, size))
     matrix[0] = matrix[:, 0] = [beads.restitution, *(wall.best.restitution for wall in found)]
@@ -64,36 +65,35 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
 
 def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of YADE, which is Python: ``betan`` by materials ``bead``, ``wall1`` and so on."""
-    yield from _head("#", model, found, keep)
-    yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en; bead, wall1 and so on:"
-    yield "# what O.materials.append gives. Bead on bead by the same law at the same speeds."
+    yield from _head(model, found, keep)
+    yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en. The results of"
+    yield "# O.materials.append are called bead, wall1 and so on."
+    yield "# Bead on bead by the same law at the same speeds."
     pairs = [("bead", _bead_on_bead(model, found, keep))]
     pairs += [(f"wall{n}", wall.best) for n, wall in enumerate(found, start=1)]
     matches = (f"(bead, {other}, {betan(best.restitution):.6g})" for other, best in pairs)
     yield f"betan = MatchMaker(matches=[{', '.join(matches)}])"
 
 
-def _name(wall: Wall) -> str:
-    if math.isinf(wall.thickness):
-        return "half-space"
-    return f"plate of {in_unit(wall.thickness, 'm')}"
-
-
-def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
+def _head(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of a comment: the source of the numbers, and the errors of each."""
-    pair = line(f"{model.pair.sphere.name} on {model.pair.plate.name}")
-    yield f"{mark} contactlaw {VERSION}: {pair}, law {model.force_law.family}; SI units"
-    yield from (f"{mark} {sentence}." for sentence in meaning(keep).rstrip(".").split(". "))
+    pair = f"{model.pair.sphere.name} on {model.pair.plate.name}"
+    yield from _comment(f"contactlaw {VERSION}: {pair}, law {model.force_law.family}; SI units.")
+    yield from _comment(meaning(keep))
     for n, wall in enumerate(found, start=1):
         best = wall.best
-        yield (
-            f"{mark} wall{n}, {_name(wall)}: {best.impacts} impacts, COR {best.restitution:.6g}, "
-            f"spread {best.spread:.4f}, energy {relative(best.energy_error, '+z.2%')} (mean "
-            f"{relative(best.mean_energy_error, '+z.2%')}), rebound {relative(best.rebound_error)}"
+        error, of_mean = (relative(e, "+z.2%") for e in (best.energy_error, best.mean_energy_error))
+        yield from _comment(
+            f"wall{n}, {wall.name}: COR {best.restitution:.6g} of {best.impacts} impacts. For 95 % of beads the "
+            f"rebound height is wrong by less than {relative(best.rebound_error)}. The energy that the wall takes "
+            f"in total is wrong by {error}; with the plain mean of the CORs, {best.mean:.4f}, by {of_mean}."
         )
         for flag, count in best.flags.items():
-            (words,) = explain(flag)
-            yield f"{mark}     {flag.name}, {count} of {best.impacts}: {words}"
+            yield from _comment(f"    {flag.name}, {count} of {best.impacts}: {explain(flag)[0]}")
+
+
+def _comment(text: str) -> list[str]:
+    return wrapped(line(f"# {text}"), "#     ")
 
 
 def _bead_on_bead(model: ImpactModel, found: list[Wall], keep: Keep) -> Constant:

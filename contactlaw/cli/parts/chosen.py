@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import own, plots, rebounds, wording
+from contactlaw.cli.parts import figure, own, rebounds, wording
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
@@ -118,10 +118,14 @@ def check_quantities(arguments: argparse.Namespace) -> None:
         drops = arguments.drop
         fallen = rebounds_of({"drop": drops, "radius": bead_radius(arguments)}, density(arguments))["speed"].tolist()
         arguments.speed = tuple(fallen) if isinstance(drops, tuple) else fallen[0]
-    for name in ("speed", "radius", "thickness", "friction"):
-        given = getattr(arguments, name, None)
-        for value in () if given is None else np.atleast_1d(given).tolist():
-            scalars(**{name: value})
+    for name in ("speed", "radius", "thickness", "friction", "mass"):
+        sizes = getattr(arguments, name, None)
+        for size in () if sizes is None else np.atleast_1d(sizes).tolist():
+            scalars(**{name: size})
+    for name in ("cylinder", "bowl"):
+        size = getattr(arguments, name, None)
+        if size is not None and abs(size) <= np.max(arguments.radius):
+            raise ArgumentError(name, size, "must be larger than the bead's radius; negative if beads hit from outside")
 
 
 def bead_radius(arguments: argparse.Namespace) -> float:
@@ -143,6 +147,6 @@ def density(arguments: argparse.Namespace) -> float:
 def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     with wording.writing("plot", arguments.plot):
-        wording.check_suffix("path", arguments.plot, plots.SUFFIXES)
+        wording.check_suffix("path", arguments.plot, figure.SUFFIXES)
         yield
     print(arguments.plot)

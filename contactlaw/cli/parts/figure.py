@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SUFFIXES = ".png", ".svg", ".pdf"
 MOST_CURVES = 8  # more could not be distinguished
 _MOST_INSIDE = 5  # names of curves that have room among these
-_WIDE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
+WIDE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
 
 
 class Axis(NamedTuple):
@@ -108,7 +108,7 @@ class Figure:
                 colour = style.ORANGE if points.curve is None else self._colour(points.curve)
                 draw_points(axes, points, colour, x_size, y_size)
             least, largest = x.min() / x_size, x.max() / x_size
-            if AXES[self.x].may_be_logarithmic and largest >= _WIDE * least:
+            if AXES[self.x].may_be_logarithmic and largest >= WIDE * least:
                 axes.set(xscale="log")
                 width = math.log10(largest / least)
                 style.decades(axes.xaxis, (1.0,) if width > 4.0 else (1.0, 2.0, 5.0))

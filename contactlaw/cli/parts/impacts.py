@@ -1,43 +1,47 @@
-"""Impacts as rows of a table: every combination of some speeds, radii and thicknesses.
-
-A table is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
-"""
+"""Columns of impacts, and what was asked about them."""
 
 import csv
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, TextIO
 
 import numpy as np
 
 from contactlaw._arrays import Array, Integers
-from contactlaw._errors import ArgumentError
 from contactlaw._escaped import cell, line
-from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.table import Column as Column
+from contactlaw.cli.parts.table import Column
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical.plates import Foundation, Shell
 from contactlaw.physical.validity import Validity, count_flags, explain
 
-_MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
-
-
 _SHOWN: dict[str, Any] = {  # title, unit and number of these in one SI unit on a terminal
-    "restitution": ("COR",),
+    "restitution": ("COR", "-", 1.0, "", ".4f"),
     "contact_time": ("time", "us", 1e6),
     "peak_force": ("force", "N"),
-    **{f"{channel}_fraction": (channel,) for channel in Losses._fields},
+    **{f"{channel}_fraction": (channel, "%", 100.0, "", ".1f") for channel in Losses._fields},
 }
 COLUMNS = (
     Column("speed", "m/s", "speed", "m/s", is_input=True),
     Column("radius", "m", "radius", "mm", 1e3, is_input=True),
     Column("thickness", "m", "thickness", "mm", 1e3, is_input=True),
-    *(Column(n, one.unit.strip("1"), *_SHOWN.get(n, ())) for n, one in FIELDS.items()),
-    Column("yield_speed", "m/s", "yield at", "m/s"),
+    *(Column(name, field.unit.strip("1"), *_SHOWN.get(name, ())) for name, field in FIELDS.items()),
+    Column("yield_speed", "m/s"),
 )
+UNITS = {column.name: column.unit for column in COLUMNS}  # in SI, "" without one
+
+
+def asked(model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
+    """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
+    law, (sphere, plate) = model.force_law, model.pair.given
+    name = law.family if law.from_pair else law.name
+    units = UNITS | {"mass": "kg"}
+    numbers = {f"{n}_{units[n]}": float(size) for n, size in sizes.items() if size is not None}
+    return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
+
+
+# Old pieces, until fit, compare and constant use `Table`.
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +61,6 @@ class ImpactTable:
         return len(self.flags)
 
 
-def asked(model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
-    """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
-    law, (sphere, plate) = model.force_law, model.pair.given
-    name = law.family if law.from_pair else law.name
-    named = units() | {"mass": "kg"}
-    numbers = {f"{n}_{named[n]}": size for n, size in sizes.items() if size is not None}
-    return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
-
-
 def in_words(asked: dict[str, Any]) -> str:
     """Write what was asked as a title.
 
@@ -78,50 +73,6 @@ def in_words(asked: dict[str, Any]) -> str:
     sizes = [(*name.split("_"), value) for name, value in [*asked.items()][3:]]
     words = (f"{name} {one} {unit}" for name, unit, one in sizes)
     return line(", ".join([f"{sphere} on {plate}, law {law}", *words]))
-
-
-def tabulate(
-    model: ImpactModel,
-    speeds: Sequence[float],
-    radii: Sequence[float],
-    thicknesses: Sequence[float],
-    solve: bool = False,
-    mass: float | None = None,
-    wall: Callable[[Array], Any] = lambda thickness: thickness,
-) -> ImpactTable:
-    """Look up every combination of speeds, radii and thicknesses [m/s, m, m], or `solve` it.
-
-    Along the rows, speeds change fastest. `wall` makes plates of thicknesses.
-    """
-    count = len(speeds) * len(radii) * len(thicknesses)
-    if count > _MOST:
-        reason = f"every combination is {count} impacts, and {_MOST} is the most: give fewer values"
-        raise ArgumentError("speed, radius, thickness", None, reason)
-    r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
-    with wording.naming_impact(v, r, h, mass=mass):
-        rebound = (model.solve if solve else model.lookup)(v, r, wall(h), mass=mass)
-    first = slice(None, None, len(speeds))  # first row of each bead on each plate
-    plates = wall(h[first])
-    remember = isinstance(plates, Foundation | Shell)  # for which no yield speeds are searched
-    alike = h[first] if remember else np.array(plates, dtype=float)
-    yields = np.full(alike.size, math.nan) if remember else yield_speeds(model, r[first], alike, mass)
-    yields = np.repeat(yields, len(speeds))
-    found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
-    return ImpactTable({column.name: found[column.name] for column in COLUMNS}, found["flags"], asked(model, mass=mass))
-
-
-def yield_speeds(model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None) -> Array:
-    """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
-
-    Other impacts on the same plate may be inside the table.
-    """
-    try:
-        return np.asarray(model.yield_speed(radius, thickness, mass))
-    except ValueError:
-        if radius.size == 1:
-            return np.array([math.inf])
-        parts = zip(np.split(radius, radius.size), np.split(thickness, radius.size), strict=True)
-        return np.concatenate([yield_speeds(model, r, h, mass) for r, h in parts])
 
 
 def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[str]:

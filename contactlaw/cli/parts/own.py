@@ -67,7 +67,7 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
-        raise ArgumentError(option, None, wording.sentence(error, ())) from error
+        raise ArgumentError(option, None, wording.sentence(error, {})) from error
 
 
 def changed(body: Material, given: dict[str, Any]) -> Material:

@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlaw._arrays import Integers
 from contactlaw._escaped import cell, line
+from contactlaw._readable import in_unit
 from contactlaw.physical.validity import Validity, count_flags, explain
 
 WIDTH = 80  # of a line on a terminal
@@ -27,7 +28,7 @@ class Column(NamedTuple):
     shown: str = "-"  # unit on a terminal, without brackets
     scale: float = 1.0  # number of these units in one SI unit
     to: str = ""  # another column, up to which this one is the lower end of a range on a terminal
-    digits: str = ".4g"  # format of the numbers on a terminal
+    digits: str = ""  # format of the numbers on a terminal; ".4g", of a range ".3g"
     is_input: bool = False  # on a terminal the title has an input that is the same in all rows
 
     @property
@@ -56,26 +57,45 @@ class Table:
         return len(self.values[self.columns[0].name])
 
     def text(self) -> Iterator[str]:
-        """Lines for a terminal: what was asked, names, units, rows, and the meaning of the flags."""
+        """Lines for a terminal: what was asked, names, units, rows, and the meaning of the flags.
+
+        The last columns are left out if they do not fit into the width of a terminal.
+        """
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
         named = (f"{column.title} {self._alike(column)}" for column in alike)
         title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
             yield from wrapped(title)
-        cells = [[c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike]
-        flags = [] if self.flags is None else self.flags.tolist()
-        letters = dict(zip(count_flags(np.array(flags, dtype=int)), string.ascii_lowercase, strict=False))
-        if letters:
-            marks = ("".join(mark for flag, mark in letters.items() if row & flag) for row in flags)
-            cells.append(["flags", "", *marks])
-        yield from aligned(cells)
-        counts, total = self.counts or count_flags(np.array(flags, dtype=int)), self.total or len(self)
-        if letters:
-            yield ""
-        for flag, mark in letters.items():
+        cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
+        marks = self._marks()
+        last = [["flags", "", *marks]] * any(marks)
+        left_out = list[str]()
+        while max(map(len, aligned([*cells.values(), *last]))) > WIDTH and len(cells) > 1:
+            left_out.insert(0, cells.popitem()[0])
+        yield from aligned([*cells.values(), *last])
+        remarks = [*self.remarks()]
+        if left_out:
+            remarks += wrapped(f"CSV has more columns than fit here: {', '.join(left_out)}.")
+        yield from [""] * bool(remarks) + remarks
+
+    def remarks(self) -> Iterator[str]:
+        """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
+        counts, total = self._counts(), self.total or len(self)
+        for flag, mark in self._letters().items():
             (words,) = explain(flag)
             yield from wrapped(f"{mark}: {flag.name}, {counts[flag]} of {total}: {words}", "   ")
+
+    def _counts(self) -> Mapping[Validity, int]:
+        return self.counts or count_flags(np.zeros(0, dtype=int) if self.flags is None else self.flags)
+
+    def _letters(self) -> dict[Validity, str]:
+        return dict(zip(self._counts(), string.ascii_lowercase, strict=False))
+
+    def _marks(self) -> list[str]:
+        """Letters of the flags of each row."""
+        flags = [] if self.flags is None else self.flags.tolist()
+        return ["".join(mark for flag, mark in self._letters().items() if row & flag) for row in flags]
 
     def write_csv(self, out: TextIO, head: bool = True) -> None:
         """Write rows with every digit, below a line of names with SI units."""
@@ -118,7 +138,7 @@ class Table:
             yield dict(zip(names, known, strict=True)), flag_names(flag)
 
     def _alike(self, column: Column) -> str:
-        value = next(self._cells(column))
+        value = next(self._cells(column._replace(digits="")))
         return value if value == "inf" or column.shown == "-" else f"{value} {column.shown}"
 
     def _cells(self, column: Column) -> Iterator[str]:
@@ -126,16 +146,18 @@ class Table:
         if values.dtype.kind not in "iuf":
             return map(str, values.tolist())
         if not column.to:
-            return ("-" if math.isnan(value) else f"{value:{column.digits}}" for value in values * column.scale)
+            return (
+                "-" if math.isnan(value) else f"{value:{column.digits or '.4g'}}" for value in values * column.scale
+            )
         ends = zip(values * column.scale, self.values[column.to] * column.scale, strict=True)
-        return (_range(low, high) for low, high in ends)
+        return (_range(low, high, column.digits or ".3g") for low, high in ends)
 
 
-def _range(low: float, high: float) -> str:
+def _range(low: float, high: float, digits: str) -> str:
     """Write a range, one end of which may be NaN: not known."""
     if math.isnan(low):
-        return "-" if math.isnan(high) else f"<{high:.3g}"
-    return f">{low:.3g}" if math.isnan(high) else f"{low:.3g}-{high:.3g}"
+        return "-" if math.isnan(high) else f"<{high:{digits}}"
+    return f">{low:{digits}}" if math.isnan(high) else f"{low:{digits}}-{high:{digits}}"
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -167,17 +189,17 @@ def in_words(asked: Mapping[str, Any]) -> str:
     Examples
     --------
     >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
-    'glass on pom, law fem, radius 0.001 m'
+    'glass on pom, law fem, radius 1 mm'
     """
     sphere, plate, law, *sizes = asked.items()
     words = (f"{name.replace('_', ' ')} {size}" for name, size in (_sized(*size) for size in sizes))
     return line(", ".join([f"{sphere[1]} on {plate[1]}, law {law[1]}", *words]))
 
 
-def _sized(name: str, size: Any) -> tuple[str, str]:
-    """Name and size of an argument; its unit follows an underscore in its key."""
+def _sized(name: str, size: float) -> tuple[str, str]:
+    """Name and size of an argument; its SI unit follows an underscore in its key."""
     bare, _, unit = name.rpartition("_")
-    return bare, f"{size:g} {unit}"
+    return bare, in_unit(size, unit)
 
 
 def flag_names(flags: int) -> list[str]:
