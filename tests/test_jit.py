@@ -356,14 +356,12 @@ DEMO = "--out OUT --beads"
 COMMANDS = [
     f"contactlaw cor {BEAD} --thickness 1mm --speed 5",
     f"contactlaw cor {BEAD} --thickness 1mm --speed 1:5:4 --plot OUT.png",
-    f"contactlaw sweep {BEAD} --thickness 1mm,2mm --speed 1:5:3 --out OUT.csv",
-    f"contactlaw constant {BEAD} --thickness 1mm --speed 1,10 --table",
+    f"contactlaw cor {BEAD} --thickness 1mm,2mm --speed 1:5:3 --out OUT.csv",
+    f"contactlaw constant --table {BEAD} --thickness 1mm --speed 1,10",
     f"contactlaw constant {BEAD} --thickness 1mm --speed 1,5 --lammps",
-    f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 30 --friction 0.2",
-    f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --plot OUT.png",
-    f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --fluent OUT.c",
-    f"contactlaw history {BEAD} --thickness 1mm --speed 5",
-    f"contactlaw history {BEAD} --thickness 1mm --speed 5 --solve",
+    f"contactlaw cor {BEAD} --thickness 1mm --speed 5 --angle 30 --friction 0.2",
+    f"contactlaw cor {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --plot OUT.png",
+    f"contactlaw cor --history {BEAD} --thickness 1mm --speed 5",
     f"contactlaw fit rebounds.csv {BEAD} --thickness 1mm --unknown yield_strength",
     f"contactlaw compare rebounds.csv {BEAD} --thickness 1mm",
     "contactlaw materials",
@@ -411,7 +409,7 @@ print(json.dumps(found))
 @pytest.mark.parametrize(
     "given",
     [
-        [one for one in COMMANDS if one.split()[1] in ("cor", "constant", "history")],
+        [one for one in COMMANDS if one.split()[1] in ("cor", "constant")],
         pytest.param(COMMANDS, marks=pytest.mark.long),
     ],
     ids=["common", "all"],

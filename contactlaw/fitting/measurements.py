@@ -119,8 +119,7 @@ class Measurements:
 
     def __post_init__(self) -> None:
         """Check every value and store flat arrays."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        given = {name: values for name, values in given.items() if values is not None}
+        given = {name: values for name, values in vars(self).items() if values is not None}
         if not given.keys() & KINDS.keys():
             reason = f"have to hold at least one of {', '.join(KINDS)}, got none"
             raise ArgumentError("data", None, reason)
@@ -246,11 +245,8 @@ def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
         if errors is not None:
             raise ArgumentError(f"{name}_error", None, f"there is no {name} that it is of")
         return
-    wrong = ~(np.isnan(values) | ((values >= kind.least) & (values <= kind.largest)))
-    if wrong.any():
-        n = int(np.argmax(wrong))
-        limits = f"{kind.least:g} and {kind.largest:g} [{kind.unit}] ({kind.hint})"
-        raise ArgumentError(name, values[n], f"must lie between {limits}", n)
+    known = np.where(np.isnan(values), kind.least, values)
+    within(name, known, kind.least, kind.largest, f"[{kind.unit}] ({kind.hint})")
     if np.isnan(values).all():
         raise ArgumentError(name, None, "no rebound has one: leave it out")
     if errors is None:

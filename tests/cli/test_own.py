@@ -1,9 +1,12 @@
 """Materials of one's own on the command line, and lengths that are likelier millimetres."""
 
 import json
+import math
+import re
 
 import pytest
 from command_line import refused
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw.cli import main
@@ -32,6 +35,7 @@ like = "pmma"
 loss_factor = [0.011, 1e3]
 uncertainty = {loss_factor = 0.98}
 """
+PAGE = (ROOT / "docs/materials.md").read_text("utf-8")
 IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".split()
 
 
@@ -76,6 +80,21 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     assert main(["materials", "--materials", str(path)]) == 0
     _, *rows = capsys.readouterr().out.splitlines()
     assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"], ["soft", "2.700"]]
+
+
+@pytest.mark.parametrize(
+    ("like", "low", "high"),
+    [("pmma", 0.002, 0.06), *((name, 0.003, 0.1) for name in ("hdpe", "polypropylene", "polystyrene"))],
+)
+def test_the_lines_of_handbooks_are_those_of_their_extremes(like, low, high, tmp_path):
+    """In the logarithm, as if every value between the extremes were as likely."""
+    rows = re.findall(r"^\| ([a-z, ]+) \| `(loss_factor = .*?)`, `(uncertainty = .*?)` \|$", PAGE, re.MULTILINE)
+    (lines,) = [lines for names, *lines in rows if like in names.split(", ")]
+    path = tmp_path / "mine.toml"
+    path.write_text("\n".join(["[mine]", f'like = "{like}"', *lines]))
+    mine = cl.read_materials(path)["mine"]
+    assert mine.loss_factor == (pytest.approx(math.sqrt(low * high), rel=0.02), 1e3)
+    assert mine.uncertainty["loss_factor"] == pytest.approx(math.log(high / low) / math.sqrt(12.0), rel=0.02)
 
 
 def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):

@@ -86,3 +86,10 @@ def test_of_each_row_either_a_drop_or_a_speed_and_what_is_refused_or_left_out():
         cl.Measurements.of(one, density=2.5)
     with pytest.raises(cl.ArgumentError, match="radius: got 1e-05; such a bead has fallen at its terminal speed"):
         flight.of_height([0.3, np.nan], 1e-5, 2500.0)
+
+
+def test_recordings_are_heard_by_others():
+    """As by phyphox, whose exports tests/cli/test_fit.py reads."""
+    assert not {"bounces", "Bounces"} & {*cl.__all__}
+    with pytest.raises(AttributeError, match="no attribute 'bounces'"):
+        cl.bounces  # noqa: B018

@@ -54,14 +54,14 @@ def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
 
 
-def of_file(arguments: argparse.Namespace) -> tuple[Measurements, Pair, rebounds.Conditions]:
+def of_file(arguments: argparse.Namespace, path: str) -> tuple[Measurements, Pair, rebounds.Conditions]:
     """Read a table of rebounds; options come before what the head of the file says."""
-    read = rebounds.checked(arguments.data)
-    with wording.reading(arguments.data):
-        known = rebounds.conditions(read, arguments.materials)
+    table = rebounds.read(path)
+    with wording.reading(path):
+        known = rebounds.conditions(table, arguments.materials)
     bodies = pair(arguments, SimpleNamespace(**known.bodies))
     options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
-    return rebounds.completed(read, arguments.data, bodies.sphere.density, **known.values | options), bodies, known
+    return rebounds.completed(table, path, bodies.sphere.density, **known.values | options), bodies, known
 
 
 def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:
