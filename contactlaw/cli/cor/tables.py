@@ -70,7 +70,7 @@ def table(arguments: argparse.Namespace, model: ImpactModel) -> tuple[Table, Unc
         else:
             hit = (model.solve if arguments.solve else model.lookup)(speed, radius, wall, mass=mass)
             columns, values = impacts.COLUMNS, asdict(hit) | {"yield_speed": _yield_speeds(arguments, model, sizes)}
-    made = Table(columns, {**values, **sizes}, _asked(arguments, model), values["flags"])
+    made = Table(columns, {**values, **sizes}, chosen.asked(arguments, model, mass=arguments.mass), values["flags"])
     without = any(getattr(arguments, name) not in (None, False) for name in BANDLESS)
     known = None if without else uncertainty(arguments, model, made)
     return bands.with_bands(made, known), known
@@ -97,13 +97,8 @@ def _history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
         wall = _wall(arguments, model, thickness)
         contact = model.force_history(speed, radius, wall, samples, "solve", mass=arguments.mass)
     forces = dict(zip((column.name for column in _HISTORY), contact, strict=True))
-    asked = _asked(arguments, model, speed=speed, radius=radius, thickness=thickness)
+    asked = chosen.asked(arguments, model, speed=speed, radius=radius, thickness=thickness, mass=arguments.mass)
     return Table(_HISTORY, forces, asked, np.full(contact.time.size, int(contact.flags)))
-
-
-def _asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float) -> dict[str, Any]:
-    asked = impacts.asked(model, **sizes, mass=arguments.mass)
-    return asked | {"plate": chosen.plate_in_words(arguments, asked["plate"])}
 
 
 def _wall(arguments: argparse.Namespace, model: ImpactModel, thickness: Any) -> Any:
