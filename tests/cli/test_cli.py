@@ -264,19 +264,23 @@ def test_wrong_usage_is_status_2(argv, capsys):
 
 def test_materials(capsys):
     assert main(["materials"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
+    head, units, *lines = capsys.readouterr().out.split("\n\n")[0].splitlines()
+    assert head.split() == ["name", "E", "nu", "rho", "yield", "H", "B", "n"]
+    assert [line.split()[0] for line in lines] == list(cl.materials())
     assert main(["materials", "--json"]) == 0
     listed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     glass = next(entry for entry in listed if entry["name"] == "glass")
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
-    assert main(["materials", "glass"]) == 0
-    assert "Table 1" in capsys.readouterr().out
-    shown = {line.split()[0]: line.split()[4:] for line in lines[1:]}
-    assert shown["glass"] == 6 * ["-"]
-    assert shown["stainless-steel-304-ball"] == ["-", "3.119", "-", "-", "-", "-"]
-    assert shown["copper-ofhc-annealed"] == ["90.0", "-", "292", "0.31", "0.025", "-"]
-    assert len({len(line) for line in lines}) == 1
+    shown = {line.split()[0]: line.split()[3:] for line in lines}
+    assert shown["glass"] == ["2.5", *4 * ["-"]]
+    assert shown["stainless-steel-304-ball"] == ["8", "-", "3.119", "-", "-"]
+    assert shown["copper-ofhc-annealed"] == ["8.94", "90", "-", "292", "0.31"]
+    assert len({len(line) for line in (head, units, *lines)}) == 1
+    assert main(["materials", "copper-ofhc-annealed"]) == 0
+    head, _, numbers, *text = capsys.readouterr().out.splitlines()
+    assert head.split()[-3:] == ["C", "tan", "delta"]
+    assert numbers.split() == ["115", "0.343", *shown["copper-ofhc-annealed"], "0.025", "-"]
+    assert "copper-ofhc-annealed: Oxygen-free copper" in " ".join(text)
 
 
 def test_table_info_and_check(capsys):
