@@ -21,7 +21,7 @@ def figure(found: Comparison, model: ImpactModel, errors: Mapping[str, float], a
         "restitution", sizes, np.asarray(data.restitution), np.asarray(data.restitution_error), found.flags
     )
     title = f"Measured COR beside the model: chi-squared {found.chi_squared:.3g} for {len(data)} rebounds"
-    band = f"Band: {bands.in_caption(found.band)}"
+    band = f"Band: {bands.meaning(found.band, model.pair)}"
     return figure_of(measured, lambda impact: curve(model, impact, errors), title, about, "Nothing is fitted", band)
 
 

@@ -197,9 +197,10 @@ def completed(table: Read, path: str | os.PathLike[str], density: float, **sizes
                 data = Measurements(**rebounds)
                 break
             except ArgumentError as error:
-                if error.element is None:
+                line = rebounds["line"]
+                if error.element is None and (error.value is None or line.size > 1):
                     raise
-                n = int(rebounds["line"][error.element])
+                n = int(line[error.element or 0])
                 wrong.append(f"line {n}: {ArgumentError(error.name, error.value, error.reason)}")
                 values = {name: column[values["line"] != n] for name, column in values.items()}
     for warning in warnings:
