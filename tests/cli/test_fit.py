@@ -414,7 +414,7 @@ def test_heights_in_place_of_speeds_and_cors(capsys):
     assert json.loads(capsys.readouterr().out)["speed"] == pytest.approx(float(fell.down))
     refused(["cor", *GLASS[:-1], "1mm,2mm", "--thickness", "3mm", "--drop", "1cm"], "--drop: takes one", capsys=capsys)
     refused(["fit", *GLASS, "--unknown", "thickness"], "--drop, --bounce: give these without", capsys=capsys)
-    refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got 30.0", capsys=capsys)
+    refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got '30'", capsys=capsys)
     refused(["fit", *GLASS, "--unknown", "thickness", "--bounce", "9cm"], "--drop: a bounce alone", capsys=capsys)
     small = [*GLASS[:-1], "10um", "--thickness", "3mm", "--drop", "30cm"]
     refused(["cor", *small], "--radius: got 1e-05; such a bead has fallen", capsys=capsys)
