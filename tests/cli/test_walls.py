@@ -41,7 +41,7 @@ def test_what_swings_is_that_of_the_model(option, wall, capsys):
     model = cl.ImpactModel(cl.Pair("glass", "steel-s235"))
     exact = model.solve(2.0, 1e-3, wall([0.5e-3, 1e-3])).restitution
     assert [float(row["restitution"]) for row in found] == pytest.approx(exact.tolist(), abs=1e-6)
-    main(["history", *BARE.replace("0.5mm,", "").split()[1:], *option.split(), "--samples", "3"])
+    main(["cor", "--history", *BARE.replace("0.5mm,", "").split()[1:], *option.split(), "--samples", "3"])
     assert "steel-s235 (" in capsys.readouterr().out
 
 

@@ -140,7 +140,7 @@ def _fields(table: Table, known: Uncertainty | None) -> Iterator[str]:
             low, high = (f"{np.ravel(end).item() / scale:.3g}" for end in (band.low, band.high))
             shown = f"{shown:20s}  68 %: {low} to {high}"
         yield f"{name:20s}  {shown}"
-    flags = int(np.ravel(table.flags)[0])
+    flags = 0 if table.flags is None else int(table.flags.flat[0])
     lines = [", ".join(flag_names(flags)) or "none: inside every limit", *explain(flags)]
     for title, text in zip(["flags", *[""] * len(lines)], lines, strict=False):
         yield from wrapped(f"{title:20s}  {text}", " " * 22)

@@ -94,9 +94,9 @@ def history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
     with wording.naming_impact(speed, radius, thickness, mass=arguments.mass):
         wall = _wall(arguments, model, thickness)
         contact = model.force_history(speed, radius, wall, samples, "solve", mass=arguments.mass)
-    values = dict(zip((column.name for column in _HISTORY), contact, strict=True))
+    forces = dict(zip((column.name for column in _HISTORY), contact, strict=True))
     asked = _asked(arguments, model, speed=speed, radius=radius, thickness=thickness)
-    return Table(_HISTORY, values, asked, np.full(contact.time.size, int(contact.flags)))
+    return Table(_HISTORY, forces, asked, np.full(contact.time.size, int(contact.flags)))
 
 
 def _asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float) -> dict[str, Any]:

@@ -53,7 +53,7 @@ def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
     elif [*band.causes] == ["model"]:
         subject += ", if the materials are right; their errors are not stated"
     sentences = [subject]
-    for role in strong:
+    for role in unstated:
         if bodies[role].specified_minimum:
             sentences.append(f"The {role}'s strength is a specified minimum: the real COR may be higher")
     for role, body in bodies.items():
