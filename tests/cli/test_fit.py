@@ -417,4 +417,4 @@ def test_heights_in_place_of_speeds_and_cors(capsys):
     refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got '30'", capsys=capsys)
     refused(["fit", *GLASS, "--unknown", "thickness", "--bounce", "9cm"], "--drop: a bounce alone", capsys=capsys)
     small = [*GLASS[:-1], "10um", "--thickness", "3mm", "--drop", "30cm"]
-    refused(["cor", *small], "--radius: got 1e-05; such a bead has fallen", capsys=capsys)
+    refused(["cor", *small], "--radius: got '10um'; such a bead has fallen", capsys=capsys)
