@@ -110,8 +110,6 @@ def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     if large:
         why = "only because the stated error of the law itself is large"
         said.append(f"{', '.join(large)} would pass the test above, too, but {why}.")
-    if missing := [name for name in laws.names() if name not in by_law]:
-        said.append(f"{', '.join(missing)} cannot be used for these materials.")
     yield from wrapped(" ".join(said))
     values = {
         "law": [*by_law],
@@ -123,5 +121,6 @@ def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     yield from Table(columns, values).text()
     yield from wrapped(
         "Difference: rms of measured minus predicted COR. Law's error: the stated error of the law's COR for these "
-        "impacts. Chi-squared: with the errors of data and materials alone."
+        "impacts. Chi-squared: with the errors of data and materials alone. Laws that are not "
+        "listed cannot be used for these materials."
     )

@@ -239,10 +239,8 @@ def conditions(table: Read, materials: Mapping[str, Material]) -> Conditions:
 
 
 def _quantity(name: str, text: Any, quantity: Quantity) -> float:
-    try:
+    with wording.reading(f"{name} in its head"):
         return quantities.value(str(text), quantity)
-    except ValueError as error:
-        raise ValueError(f"{name} in its head: {error}") from None
 
 
 def _check_keys(head: Mapping[str, Any], known: tuple[str, ...]) -> None:
