@@ -230,7 +230,9 @@ def conditions(table: Read, materials: Mapping[str, Material]) -> Conditions:
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f'the lines with # above its table are no TOML, as title = "...": {error}') from None
     _check_keys(head, (*_TEXTS, *_SIZES, *OF_ALL, "sphere", "plate"))
-    bodies = {role: _body(role, head[role], materials) for role in ("sphere", "plate") if role in head}
+    bodies: dict[str, Material] = {
+        role: _body(role, head[role], materials) for role in ("sphere", "plate") if role in head
+    }
     errors = {name: _quantity(name, head[name], SHARE) for name in _SIZES if name in head}
     values = {name: _quantity(name, head[name], _COLUMNS[name].quantity or SHARE) for name in OF_ALL if name in head}
     columns.halve_diameters(values)
