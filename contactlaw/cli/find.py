@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts import bands, chosen, impacts, options, wording
+from contactlaw.cli.parts import bands, chosen, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
 from contactlaw.fitting.drops import rebounds_of
@@ -40,10 +40,7 @@ def add(commands: Any) -> None:
         options.add_name_of_law(command)
         command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])
-        output = command.add_mutually_exclusive_group()
-        for form in ("csv", "json"):
-            what = f"print all rows as {form.upper()}, in SI units with every digit"
-            output.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
+        options.add_forms(command)
         command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
@@ -62,11 +59,10 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
     answers: Any = getattr(model, unknown)(*np.array(questions).T, **errors, **layers)
 
-    asked = {"plate": chosen.plate_in_words(arguments, plate.name)}
     remarks, rows = [], []
     for (cor, *sizes), answer in zip(questions, answers, strict=True):
         if answer.remark:
-            impact = in_words(impacts.asked(model, **dict(zip(known, sizes, strict=True))) | asked)
+            impact = in_words(chosen.asked(arguments, model, **dict(zip(known, sizes, strict=True))))
             remarks.append(f"{impact}, COR {cor:g}: {answer.remark}")
         found = [*zip(answer.value, answer.low, answer.high, answer.flags, strict=True)]
         rows += [(cor, *sizes, *solution, answer.remark) for solution in found or [(math.nan, math.nan, math.nan, 0)]]
@@ -75,12 +71,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     for remark in remarks:
         wording.print_warning(remark)
 
-    names = ("restitution", *known, unknown, f"{unknown}_low", f"{unknown}_high", "flags", "remark")
-    values = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
-    low, high = values[names[4]], values[names[5]]
-    low[np.isinf(low)] = np.nan
-    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
-    table = Table(_columns(unknown), values, impacts.asked(model) | asked, values["flags"])
+    table = _table(unknown, rows, chosen.asked(arguments, model))
     table.write(sys.stdout, arguments.form)
     if arguments.form == "text":
         band = next(answer.band for answer in answers if answer.band)
@@ -89,10 +80,16 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
         print("", *wrapped(f"68 %: {bands.meaning(band, model.pair, subject)}."), sep="\n")
 
 
-def _columns(unknown: str) -> list[Column]:
+def _table(unknown: str, rows: list[tuple[Any, ...]], asked: dict[str, Any]) -> Table:
+    """Table of the rows; ends of a range that are not known become NaN."""
+    known = _KNOWN[unknown]
+    names = ("restitution", *known, unknown, f"{unknown}_low", f"{unknown}_high", "flags", "remark")
+    values = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
+    low, high = values[names[4]], values[names[5]]
+    low[np.isinf(low)] = np.nan
+    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
     by_name = {column.name: column for column in COLUMNS}
-    cor, *known = (by_name[name]._replace(is_input=True) for name in ("restitution", *_KNOWN[unknown]))
+    cor, *inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in ("restitution", *known))
     value = by_name[unknown]._replace(is_input=False)
-    high = Column(f"{unknown}_high", value.unit)
-    low = value._replace(name=f"{unknown}_low", title="68 %", to=high.name)
-    return [cor, *known, value, low, high, Column("remark")]
+    ends = value._replace(name=names[4], title="68 %", to=names[5]), Column(names[5], value.unit)
+    return Table([cor, *inputs, value, *ends, Column("remark")], values, asked, values["flags"])

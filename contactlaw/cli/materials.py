@@ -11,18 +11,20 @@ from contactlaw.cli.parts import options
 from contactlaw.cli.parts.table import Column, Table, wrapped
 from contactlaw.physical.materials import Material, find, materials
 
-_COLUMNS = (
-    Column("name", title="name", shown=""),
-    Column("youngs_modulus", title="E", shown="GPa", scale=1e-9),
-    Column("poissons_ratio", title="nu"),
-    Column("density", title="rho", shown="kg/m3", digits=".5g"),
-    Column("yield_strength", title="yield", shown="MPa", scale=1e-6),
-    Column("hardness", title="H", shown="GPa", scale=1e-9),
-    Column("factor", title="B", shown="MPa", scale=1e-6),
-    Column("exponent", title="n"),
-    Column("rate", title="C"),
-    Column("loss_factor", title="tan delta"),
+# Title and unit of each column, and the number of these units in one SI unit.
+_TITLES: tuple[tuple[str, str, float], ...] = (
+    ("name", "", 1.0),
+    ("E", "GPa", 1e-9),
+    ("nu", "-", 1.0),
+    ("rho", "g/cm3", 1e-3),
+    ("yield", "MPa", 1e-6),
+    ("H", "GPa", 1e-9),
+    ("B", "MPa", 1e-6),
+    ("n", "-", 1.0),
+    ("C", "-", 1.0),
+    ("tan delta", "-", 1.0),
 )
+_COLUMNS = [Column(title, title=title, shown=unit, scale=scale) for title, unit, scale in _TITLES]
 _LISTED = 8  # columns of the catalogue; one material has all others
 _MEANING = (
     "E Young's modulus, nu Poisson's ratio, rho density, yield: yield strength, H hardness; hardening: flow stress "
@@ -46,7 +48,7 @@ def _run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps([asdict(body) for body in bodies], indent=2))
         return
-    values = dict(zip((column.name for column in _COLUMNS), zip(*map(_numbers, bodies), strict=True), strict=True))
+    values = dict(zip((title for title, *_ in _TITLES), zip(*map(_numbers, bodies), strict=True), strict=True))
     Table(_COLUMNS[1:] if name else _COLUMNS[:_LISTED], values).write(sys.stdout)
     print("", *wrapped(f"{_MEANING}{_OF_ONE * bool(name)}."), sep="\n")
     if name:

@@ -44,10 +44,11 @@ def _info(arguments: argparse.Namespace) -> None:
     strengths = stored.law.strengths
     strength = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
     extent = f"inelasticity 0 to {lam:g}, overload to {chi:g}, {strength}{stored.grid.shape}"
-    print(*wrapped(f"law {stored.law.family}: {stored.law.source}"), *wrapped(extent), "", sep="\n")
-    settings = asdict(stored.settings)
-    columns = Column("setting", title="setting", shown=""), Column("value", title="value", digits="g")
-    print(*Table(columns, {"setting": [*settings], "value": [*settings.values()]}).text(), "", sep="\n")
+    print(*wrapped(f"law {stored.law.family}: {stored.law.source}"), *wrapped(extent), sep="\n")
+    print(
+        *wrapped(f"settings: {', '.join(f'{name} {value:g}' for name, value in asdict(stored.settings).items())}"),
+        sep="\n",
+    )
     _print_certificate(stored.certificate, table.bounds(stored.law))
 
 
@@ -98,11 +99,9 @@ def _print_certificate(certificate: table.Certificate | None, limits: dict[str, 
         print("no certificate")
         return
     errors = {"median": certificate.median, "99 %": certificate.percentile_99, "largest": certificate.largest}
-    names = [*certificate.largest]
-    values = {title: [sizes[name] for name in names] for title, sizes in (errors | {"bound": limits}).items()}
-    columns = [
-        Column("field", title="field", shown=""),
-        *(Column(title, title=title, digits=".1e") for title in values),
-    ]
-    print(f"errors at {certificate.points} random points, seed {certificate.seed}")
-    print(*Table(columns, {"field": names} | values).text(), sep="\n")
+    errors["bound"] = limits
+    fields = [*certificate.largest]
+    columns = [Column("field", title="field", shown=""), *(Column(name, title=name, digits=".1e") for name in errors)]
+    values = {"field": fields} | {name: [sizes[field] for field in fields] for name, sizes in errors.items()}
+    print("", f"errors at {certificate.points} random points, seed {certificate.seed}", sep="\n")
+    print(*Table(columns, values).text(), sep="\n")

@@ -110,7 +110,7 @@ def test_the_commands_say_the_same(steel, capsys):
     assert (other["restitution"], other["thickness"]) == (0.99, None) and other["remark"].startswith("no thickness: ")
     assert row["thickness"] == one.value[0] and row["thickness_high"] == one.high[0]
     assert (row["plate"], row["speed"], row["restitution"], row["remark"]) == ("glass", 2.0, 0.5, "")
-    assert said.endswith("\n") and "law fem, speed 2 m/s, radius 0.001 m, COR 0.99: no thickness" in said
+    assert said.endswith("\n") and "law fem, speed 2 m/s, radius 1 mm, COR 0.99: no thickness" in said
     assert main(["find", "speed", *STEEL, "--cor", "90%", "--thickness", "5mm"]) == 0
     asked, names, _, row, *_ = capsys.readouterr().out.splitlines()
     assert asked == "stainless-steel-304-ball on glass, law fem, COR 0.9, radius 1 mm, thickness 5 mm"

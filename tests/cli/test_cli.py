@@ -249,7 +249,7 @@ def test_the_options_of_cor_are_in_groups(capsys):
 def test_every_option_is_explained(name, parser):
     for action in parser._actions:
         assert action.help, (name, action.dest)
-        if action.nargs != 0 and action.default not in (None, False, argparse.SUPPRESS):
+        if action.nargs != 0 and action.default not in (None, False, [], argparse.SUPPRESS):
             assert "default" in action.help, (name, action.dest)
     assert parser.format_help()  # no stray per cent sign
     assert parser.description

@@ -13,8 +13,8 @@ SPEED = ["find", "speed", *PAIR]
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([*THICKNESS, "--cor", "1.5", "--speed", "2"], "--cor: got 1.5; must lie between"),
-        ([*THICKNESS, "--cor", "0.5", "--speed", "-2"], "--speed: got -2.0; must lie between"),
+        ([*THICKNESS, "--cor", "1.5", "--speed", "2"], "--cor: got '1.5'; must lie between"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "-2"], "--speed: got '-2'; must lie between"),
         ([*THICKNESS, "--cor", "0.99", "--speed", "2"], "COR 0.99: no thickness: "),
         ([*SPEED, "--cor", "0.01", "--thickness", "inf"], "COR 0.01: no speed: "),
         ([*THICKNESS, "--bounce", "1cm", "--speed", "1,2"], "--bounce: takes a single --speed or --drop"),
@@ -23,7 +23,7 @@ SPEED = ["find", "speed", *PAIR]
         ([*SPEED, "--cor", "0.5", "--thickness", "10um"], "--thickness: even at 0.0001 m/s the impact is outside"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--on", "steel-s235"], "expected a material and a thickness"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--plate", "glas"], "unknown material 'glas'"),
-        ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--radius-error", "2"], "--radius-error: got 2.0"),
+        ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--radius-error", "2"], "--radius-error: got '2'"),
     ],
 )
 def test_refused_questions_are_status_1_and_one_sentence(words, message, capsys):

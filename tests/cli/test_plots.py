@@ -191,8 +191,8 @@ def test_every_curve_is_named_and_nothing_overlaps(drawn, tmp_path, radii, plate
     asked = " ".join(f"--{name} {','.join(map(str, listed))}" for name, listed in sizes)
     figure = picture(drawn, tmp_path, f"{asked} --law myc --no-band --outside solve")
     (axes,) = figure.axes
-    legend = axes.get_legend()
-    labels = legend.get_texts() if legend else []
+    legends = [*filter(None, [axes.get_legend()]), *figure.legends]
+    labels = [text for legend in legends for text in legend.get_texts()]
     assert [text.get_text() for text in labels] == names
     ticks = [
         tick

@@ -130,7 +130,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
     chosen = ["--sphere", "glass", "--plate", "glass"]
     assert main(["constant", path, "--lammps", *chosen]) == 0
     assert main(["constant", path, "--sphere", "PMMA"]) == 1
-    assert "--sphere: got 'PMMA'; the record has gamma-alumina, glass" in capsys.readouterr().err
+    assert "--sphere: got 'PMMA'; the record has gamma-alumina on glass, " in capsys.readouterr().err
 
 
 def test_several_files_of_a_run_are_one(run, tmp_path):

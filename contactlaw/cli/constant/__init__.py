@@ -7,9 +7,9 @@ from typing import Any
 
 from contactlaw import laws, quantities
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.constant import lines, records, walls
+from contactlaw.cli.constant import records, walls
+from contactlaw.cli.constant.lines import lines
 from contactlaw.cli.parts import chosen, options, wording
-from contactlaw.cli.parts.impacts import asked
 from contactlaw.cli.parts.table import Column, Table, in_words
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import explain
@@ -69,25 +69,19 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     if arguments.error is not None:
         raise ArgumentError("error", arguments.error, "only --table takes it")
-    write = {"lammps": lines.lammps, "liggghts": lines.liggghts, "yade": lines.yade}.get(arguments.form)
-    for n, recorded in enumerate(_recorded(arguments, single=write is not None)):
-        model, wall, question = _asked(arguments, recorded)
-        found = walls.walls(model, recorded, arguments.keep, wall)
-        if write is not None:
-            print(*write(model, found, arguments.keep), sep="\n")
+    for_engine = arguments.form in ("lammps", "liggghts", "yade")
+    for n, recorded in enumerate(_recorded(arguments, single=for_engine)):
+        law = arguments.law or recorded.law or laws.DEFAULT
+        model = ImpactModel(chosen.pair(arguments, recorded.pair), law=law, outside=arguments.outside)
+        plate = functools.partial(chosen.wall, arguments, model.pair.given[1])
+        found = walls.walls(model, recorded, arguments.keep, plate)
+        table = walls.table(found, arguments.keep, chosen.asked(arguments, model))
+        if for_engine:
+            print(*lines(arguments.form, model, recorded, found, arguments.keep), sep="\n")
         elif arguments.form == "csv":
-            walls.write_csv(found, arguments.keep, question, sys.stdout, head=n == 0)
+            table.write_csv(sys.stdout, head=n == 0)
         else:
-            print(*[""] * (n > 0), *walls.text(found, arguments.keep, question), sep="\n")
-
-
-def _asked(arguments: argparse.Namespace, recorded: Any = None) -> tuple[ImpactModel, Any, dict[str, Any]]:
-    """Model of the options and a record, function from thickness to wall, and names for the output."""
-    law = arguments.law or getattr(recorded, "law", None) or laws.DEFAULT
-    model = ImpactModel(chosen.pair(arguments, getattr(recorded, "pair", None)), law=law, outside=arguments.outside)
-    plate = model.pair.given[1]
-    names = asked(model) | {"plate": chosen.plate_in_words(arguments, plate.name)}
-    return model, functools.partial(chosen.wall, arguments, plate), names
+            print(*[""] * (n > 0), *table.text(), "", *walls.explained(found, arguments.keep), sep="\n")
 
 
 def _print_speed_table(arguments: argparse.Namespace) -> None:
@@ -98,12 +92,14 @@ def _print_speed_table(arguments: argparse.Namespace) -> None:
             raise ArgumentError(name, None, "--table takes one value")
     (radius,), (thickness,) = arguments.radius, arguments.thickness
     ends, error = (min(arguments.speed), max(arguments.speed)), _ERROR if arguments.error is None else arguments.error
-    model, wall, names = _asked(arguments)
+    arguments.law = arguments.law or laws.DEFAULT
+    model = chosen.model(arguments)
     with wording.naming_impact(ends, radius, thickness):
-        rows = model.speed_table(radius, wall(thickness), error, *ends)
+        plate = chosen.wall(arguments, model.pair.given[1], thickness)
+        rows = model.speed_table(radius, plate, error, *ends)
     for flag, count in rows.flags.items():
         wording.print_warning(f"{flag.name}, {count} of {len(rows.speed)} rows: {explain(flag)[0]}")
-    print(f"# {in_words(names | {'radius_m': radius, 'thickness_m': thickness})}, error {rows.error:.2g}")
+    print(f"# {in_words(chosen.asked(arguments, model, radius=radius, thickness=thickness))}, error {rows.error:.2g}")
     columns = Column("speed", "m/s"), Column("restitution")
     Table(columns, {"speed": rows.speed, "restitution": rows.restitution}).write_csv(sys.stdout)
 
@@ -114,29 +110,18 @@ def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recor
     if not arguments.files:
         return [records.combined(arguments.speed, *sizes)]
     first, found = arguments.files[0], records.read(*arguments.files)
-    if found[0].left_out:
-        wording.print_warning(f"{first}: {found[0].left_out}")
-    if len(found) > 1:
-        found = _of_names(arguments, found)
+    for left_out in dict.fromkeys(one.left_out for one in found if one.left_out):
+        wording.print_warning(f"{first}: {left_out}")
+    names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
+    for role in ("sphere", "plate") if len(found) > 1 else ():
+        if name := getattr(arguments, role):
+            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
+            if not found:
+                raise ArgumentError(role, name, f"the record has {names}")
     if single and len(found) > 1:
-        names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
-        raise ValueError(
-            f"{first}: has impacts of several pairs, {names}, and these lines are for one: choose it by --sphere "
-            "and --plate"
-        )
+        reason = "and these lines are for one: choose it by --sphere and --plate"
+        raise ValueError(f"{first}: has impacts of several pairs, {names}, {reason}")
     with wording.reading(first):
         for one in found:
             records.check_sphere(one, chosen.pair(arguments, one.pair).sphere)
     return [records.completed(one, *sizes) for one in found]
-
-
-def _of_names(arguments: argparse.Namespace, found: list[records.Recorded]) -> list[records.Recorded]:
-    """Impacts of the materials that --sphere and --plate name; of all if neither is given."""
-    for role in ("sphere", "plate"):
-        name = getattr(arguments, role)
-        if name is not None:
-            known = sorted({getattr(one.pair, role).name for one in found if one.pair})
-            if name not in known:
-                raise ArgumentError(role, name, f"the record has {', '.join(known)}")
-            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
-    return found

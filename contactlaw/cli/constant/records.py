@@ -1,7 +1,6 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
 import os
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -97,12 +96,10 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
     density = found.mass / sphere_mass(1.0, found.radius)
     others = density[~(np.isclose(density, sphere.density, rtol=_SAME) | found.body)]
     if others.size:
-        counts = Counter(f"{one:.4g}" for one in others.tolist())
-        listed = ", ".join(f"{n} of {one} kg/m3" for one, n in counts.most_common(5))
         raise ValueError(
-            f"{len(others)} of {len(density)} impacts are of beads of other material than "
-            f"{sphere.name!r} of {sphere.density:g} kg/m3: {listed}: save those of each material "
-            "in a file of its own, and name it with --sphere"
+            f"{others.size} of {density.size} impacts are of beads of other material than {sphere.name!r} of "
+            f"{sphere.density:g} kg/m3, with densities from {others.min():.4g} to {others.max():.4g} kg/m3: save "
+            "those of each material in a file of its own, and name it with --sphere"
         )
 
 

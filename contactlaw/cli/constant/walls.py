@@ -1,17 +1,13 @@
 """One COR for each wall of a machine, one per thickness, as text or CSV."""
 
-import dataclasses
-import functools
 import math
-import operator
 import textwrap
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.answers.constant import Constant, Keep
@@ -36,13 +32,10 @@ _COLUMNS = (
 
 
 class Wall(NamedTuple):
-    """A wall, its impacts with speeds [m/s], radii [m] and weights [-], and one COR for all."""
+    """A wall, and one COR for all impacts on it."""
 
-    plates: str  # their numbers in the record, "" if it has none
+    plates: str  # numbers of its plates in the record, "" if it has none
     thickness: float
-    speed: Array
-    radius: Array
-    weights: Array
     best: Constant
 
     @property
@@ -61,15 +54,28 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep, plate: Callable[[f
     found = []
     for thickness in thicknesses.tolist():
         on_it = recorded.thickness == thickness
-        v, r, w, mass, plates = (
-            None if column is None else column[on_it]
-            for column in (recorded.speed, recorded.radius, recorded.weights, recorded.mass, recorded.plate)
-        )
-        numbers = ", ".join(map(str, np.unique([] if plates is None else plates).tolist()))
+        v, r, w = (column[on_it] for column in (recorded.speed, recorded.radius, recorded.weights))
+        mass, plates = (None if column is None else column[on_it] for column in (recorded.mass, recorded.plate))
+        numbers = "" if plates is None else ", ".join(map(str, np.unique(plates).tolist()))
         with wording.naming_impact(v, r, thickness):
             best = model.constant(v, r, plate(thickness), keep, w, mass)
-        found.append(Wall(textwrap.shorten(numbers, 12, placeholder=" ..."), thickness, v, r, w, best))
+        found.append(Wall(textwrap.shorten(numbers, 12, placeholder=" ..."), thickness, best))
     return found
+
+
+def table(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Table:
+    """Rows of the walls with their CORs and errors."""
+    best = [wall.best for wall in found]
+    values = {column.name: [getattr(one, column.name, keep) for one in best] for column in _COLUMNS}
+    values["plates"], values["thickness"], _ = zip(*found, strict=True)
+    return Table(
+        [column for column in _COLUMNS if column.name != "plates" or any(values["plates"])],
+        values,
+        asked,
+        np.array([sum(one.flags) for one in best]),
+        sum((Counter(one.flags) for one in best), Counter()),
+        sum(one.impacts for one in best),
+    )
 
 
 def meaning(keep: Keep) -> str:
@@ -78,36 +84,11 @@ def meaning(keep: Keep) -> str:
     return f"COR: with it the wall {keeps} in total as with the COR of each impact."
 
 
-def text(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Iterator[str]:
-    """Lines for a terminal: a row for each wall with its COR and errors, and what these mean."""
-    yield from _table(found, keep, asked).text()
-    yield ""
+def explained(found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines for a terminal below the table: what its columns mean."""
     yield from wrapped(meaning(keep))
     yield "energy error: relative error of the energy that the wall takes in total."
     yield "height error: for 95 % of beads the rebound height is wrong by less than this."
     errors = sorted(wall.best.mean_energy_error for wall in found)
     ends = dict.fromkeys(f"{100.0 * error:z.2f}" for error in (errors[0], errors[-1]))
     yield from wrapped(f"With the plain mean of the CORs the energy error would be {' to '.join(ends)} %.")
-
-
-def write_csv(found: list[Wall], keep: Keep, asked: dict[str, Any], out: TextIO, head: bool) -> None:
-    """Write a row for each wall with every digit; flags are NAME:impacts, with bars between them."""
-    table = _table(found, keep, asked)
-    dataclasses.replace(table, columns=[*table.columns, Column("flags")], flags=None).write_csv(out, head)
-
-
-def _table(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Table:
-    best = [wall.best for wall in found]
-    values = {column.name: [getattr(one, column.name, keep) for one in best] for column in _COLUMNS}
-    values["plates"], values["thickness"] = (
-        [getattr(wall, name) for wall in found] for name in ("plates", "thickness")
-    )
-    values["flags"] = ["|".join(f"{flag.name}:{count}" for flag, count in one.flags.items()) for one in best]
-    return Table(
-        [column for column in _COLUMNS if column.name != "plates" or any(values["plates"])],
-        values,
-        asked,
-        np.array([functools.reduce(operator.or_, one.flags, 0) for one in best]),
-        sum((Counter(one.flags) for one in best), Counter()),
-        sum(one.impacts for one in best),
-    )

@@ -17,17 +17,8 @@ from contactlaw.cli.parts.table import Table, flag_names, in_words, wrapped
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import explain
 
-_ERRORS = "speed_error", "radius_error", "thickness_error"
-_OF_BAND = "sphere_error", "plate_error", *_ERRORS, "causes"
-# Options that go with no band, and others with which they do not go.
-_ALONE = {
-    "no_band": _OF_BAND,
-    "angle": (*_OF_BAND, "history"),
-    "history": _OF_BAND,
-    "cylinder": _OF_BAND,
-    "bowl": _OF_BAND,
-    "foundation": _OF_BAND,
-}
+_OF_BAND = "sphere_error", "plate_error", *tables.ERRORS, "causes"
+_EXCLUDED = dict.fromkeys(tables.BANDLESS, _OF_BAND) | {"angle": (*_OF_BAND, "history")}
 _NEEDED = {"angle": "friction", "friction": "angle", "samples": "history"}
 
 
@@ -49,7 +40,7 @@ def add(commands: Any) -> None:
     group.add_argument("--solve", action="store_true", help="integrate the equation in place of using its table")
     options.add_wall(command.add_argument_group("walls"))
     group = command.add_argument_group("errors")
-    options.add_errors(group, [name.removesuffix("_error") for name in _ERRORS])
+    options.add_errors(group, [name.removesuffix("_error") for name in tables.ERRORS])
     group.add_argument("--causes", action="store_true", help="say how much each error widens the 68 %% range")
     group.add_argument("--no-band", action="store_true", help="leave out the 68 %% range, which takes longest")
     group = command.add_argument_group("output")
@@ -72,12 +63,11 @@ def _run(arguments: argparse.Namespace) -> None:
     model = chosen.model(arguments)
     if arguments.plot is not None:
         with chosen.plot_file(arguments):
-            figure = figures.of_history if arguments.history else figures.of_lists
-            figure(arguments, model, _errors(arguments)).save(arguments.plot)
+            figures.figure(arguments, model).save(arguments.plot)
     elif arguments.out is not None:
         with wording.writing("out", arguments.out):
             wording.check_suffix("out", arguments.out, files.SUFFIXES)
-            table, _ = _table(arguments, model)
+            table, _ = tables.table(arguments, model)
             axes = {"time": table.values["time"]} if arguments.history else tables.axes(arguments)
             files.save(table, axes, model.outside, arguments.out)
         print(*wrapped(f"{arguments.out}: {len(table)} rows, {in_words(table.asked)}"), *table.remarks(), sep="\n")
@@ -91,42 +81,26 @@ def _check(arguments: argparse.Namespace) -> None:
     for name, other in _NEEDED.items():
         if name in used and other not in used:
             raise ArgumentError(name, None, f"needs --{other}, too")
-    for name, others in _ALONE.items():
+    for name, others in _EXCLUDED.items():
         for other in others:
             if {name, other} <= used:
                 raise ArgumentError(other, None, f"does not go with --{name}: leave out one of them".replace("_", "-"))
 
 
-def _errors(arguments: argparse.Namespace) -> dict[str, float] | None:
-    """Errors of speed and sizes; None if there is to be no band."""
-    if any(getattr(arguments, name) not in (None, False) for name in _ALONE):
-        return None
-    return {name: getattr(arguments, name) for name in _ERRORS}
-
-
-def _table(arguments: argparse.Namespace, model: ImpactModel) -> tuple[Table, Uncertainty | None]:
-    if arguments.history:
-        return tables.history(arguments, model), None
-    return tables.table(arguments, model, _errors(arguments))
-
-
 def _print(arguments: argparse.Namespace, model: ImpactModel) -> None:
-    table, known = _table(arguments, model)
+    table, known = tables.table(arguments, model)
     is_text = arguments.form == "text" and not arguments.history
-    is_single = is_text and len(table) == 1 and arguments.angle is None
-    if is_single:
+    if is_text and len(table) == 1 and arguments.angle is None:
         print(*_fields(table, known), sep="\n")
     else:
         table.write(sys.stdout, arguments.form if is_text or arguments.form == "json" else "csv")
-    errors = _errors(arguments)
-    if is_text and known and errors is not None:
-        sentences = [f"68 %: {bands.meaning(known.restitution, model.pair)}."]
+    if is_text and known:
         assumed = ImpactModel(bands.assumed(model.pair), law=arguments.law)
-        first = known if assumed.pair == model.pair else tables.uncertainty(arguments, assumed, table, errors)
-        print("", *wrapped(" ".join([*sentences, bands.measure_first(first.restitution, model.pair)])), sep="\n")
+        first = known if assumed.pair == model.pair else tables.uncertainty(arguments, assumed, table)
+        meaning = f"68 %: {bands.meaning(known.restitution, model.pair)}."
+        print("", *wrapped(f"{meaning} {bands.measure_first(first.restitution, model.pair)}"), sep="\n")
         if arguments.causes:
-            units = {name: unit for name, unit in impacts.UNITS.items() if hasattr(known, name)}
-            print("", *wrapped(bands.causes(known, units if is_single else {"restitution": ""})), sep="\n")
+            print("", *wrapped(bands.causes(known.restitution)), sep="\n")
 
 
 def _fields(table: Table, known: Uncertainty | None) -> Iterator[str]:

@@ -19,18 +19,15 @@ _SAMPLES = 200  # points of a curve
 _SLOWEST = 0.1  # times the speed stated, where an axis without a list begins
 
 
-def of_history(arguments: argparse.Namespace, model: ImpactModel, _: object) -> Figure:
-    """Draw the force over time."""
-    table = tables.history(arguments, model)
-    curve = Curve(table.values["time"], table.values["force"], flags=table.flags)
-    return Figure("Contact force", in_words(table.asked), "time", "force", [curve])
-
-
-def of_lists(arguments: argparse.Namespace, model: ImpactModel, errors: dict[str, float] | None) -> Figure:
-    """Draw a curve over one of the lists for each value of another one.
+def figure(arguments: argparse.Namespace, model: ImpactModel) -> Figure:
+    """Draw the force over time, or a curve over one of the lists for each value of another one.
 
     The axis is the list of more than 8 values, otherwise the first one that has two finite values.
     """
+    if arguments.history:
+        table, _ = tables.table(arguments, model)
+        curve = Curve(table.values["time"], table.values["force"], flags=table.flags)
+        return Figure("Contact force", in_words(table.asked), "time", "force", [curve])
     y = "restitution" if arguments.angle is None else "tangential_restitution"
     lists = {name: sorted({*listed}) for name, listed in reversed(tables.axes(arguments).items())}
     if not any(map(_is_axis, lists.values())):
@@ -49,7 +46,7 @@ def of_lists(arguments: argparse.Namespace, model: ImpactModel, errors: dict[str
     drawn_curves, remarks = [], []
     for value in lists.get(varied, [0.0]):
         chosen_lists = {axis: x.tolist()} | ({varied: [value]} if varied else {})
-        table, known = tables.table(argparse.Namespace(**vars(arguments) | chosen_lists), model, errors)
+        table, known = tables.table(argparse.Namespace(**vars(arguments) | chosen_lists), model)
         ends = {end: table.values.get(f"{y}_{end}") for end in ("low", "high")}
         more = {"flags": table.flags, "overload": table.values["overload"]}
         drawn_curves.append(Curve(x, table.values[y], _named(varied, value) if varied else "", **ends, **more))

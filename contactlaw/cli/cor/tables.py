@@ -19,6 +19,8 @@ from contactlaw.physical.arguments import within
 from contactlaw.physical.plates import Foundation, Shell
 
 SIZES = "radius", "thickness", "speed"
+ERRORS = "speed_error", "radius_error", "thickness_error"
+BANDLESS = "no_band", "angle", "history", "cylinder", "bowl", "foundation"  # options without a band
 _MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 _SAMPLES = 256  # rows of a history
 _OBLIQUE = (
@@ -49,10 +51,10 @@ def axes(arguments: argparse.Namespace) -> dict[str, Sequence[float]]:
     return {name: getattr(arguments, name) for name in names}
 
 
-def table(
-    arguments: argparse.Namespace, model: ImpactModel, errors: dict[str, float] | None
-) -> tuple[Table, Uncertainty | None]:
-    """Answer every combination of the lists; with errors of the sizes, add the bands."""
+def table(arguments: argparse.Namespace, model: ImpactModel) -> tuple[Table, Uncertainty | None]:
+    """Answer every combination of the lists, with bands unless an option rules them out."""
+    if arguments.history:
+        return _history(arguments, model), None
     lists, mass = axes(arguments), arguments.mass
     count = math.prod(map(len, lists.values()))
     if count > _MOST:
@@ -68,22 +70,22 @@ def table(
         else:
             hit = (model.solve if arguments.solve else model.lookup)(speed, radius, wall, mass=mass)
             columns, values = impacts.COLUMNS, asdict(hit) | {"yield_speed": _yield_speeds(arguments, model, sizes)}
-    made = Table(columns, {**values, **sizes}, _asked(arguments, model), values["flags"])
-    known = None if errors is None else uncertainty(arguments, model, made, errors)
+    made = Table(columns, {**values, **sizes}, chosen.asked(arguments, model, mass=arguments.mass), values["flags"])
+    without = any(getattr(arguments, name) not in (None, False) for name in BANDLESS)
+    known = None if without else uncertainty(arguments, model, made)
     return bands.with_bands(made, known), known
 
 
-def uncertainty(
-    arguments: argparse.Namespace, model: ImpactModel, table: Table, errors: dict[str, float]
-) -> Uncertainty:
+def uncertainty(arguments: argparse.Namespace, model: ImpactModel, table: Table) -> Uncertainty:
     """Find the bands of the impacts of a table."""
+    errors = {name: getattr(arguments, name) for name in ERRORS}
     radius, thickness, speed = (table.values[name] for name in SIZES)
     wall = _wall(arguments, model, thickness)
     with wording.naming_impact(speed, radius, thickness, mass=arguments.mass):
         return model.uncertainty(speed, radius, wall, **errors, mass=arguments.mass)
 
 
-def history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
+def _history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
     """Integrate one impact, which needs no table of the model."""
     sizes = axes(arguments)
     for name, values in sizes.items():
@@ -95,13 +97,8 @@ def history(arguments: argparse.Namespace, model: ImpactModel) -> Table:
         wall = _wall(arguments, model, thickness)
         contact = model.force_history(speed, radius, wall, samples, "solve", mass=arguments.mass)
     forces = dict(zip((column.name for column in _HISTORY), contact, strict=True))
-    asked = _asked(arguments, model, speed=speed, radius=radius, thickness=thickness)
+    asked = chosen.asked(arguments, model, speed=speed, radius=radius, thickness=thickness, mass=arguments.mass)
     return Table(_HISTORY, forces, asked, np.full(contact.time.size, int(contact.flags)))
-
-
-def _asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float) -> dict[str, Any]:
-    asked = impacts.asked(model, **sizes, mass=arguments.mass)
-    return asked | {"plate": chosen.plate_in_words(arguments, asked["plate"])}
 
 
 def _wall(arguments: argparse.Namespace, model: ImpactModel, thickness: Any) -> Any:

@@ -2,13 +2,10 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._readable import in_unit
 from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.table import Column, Table
 from contactlaw.physical.materials import Material
@@ -98,22 +95,17 @@ def measure_first(band: Band, pair: Pair) -> str:
     return f"{subject} better: its error changes the COR by {size:.2g}."
 
 
-def causes(bands: Any, units: Mapping[str, str]) -> str:
-    """Name the largest causes of some bands, with the half widths that they alone make."""
-    parts = (f"{name.replace('_', ' ')}: {_causes(getattr(bands, name), unit)}" for name, unit in units.items())
-    return f"Half the width of the range by cause. {'. '.join(parts)}.".replace("restitution:", "COR:")
-
-
-def _causes(band: Band, unit: str) -> str:
+def causes(band: Band) -> str:
+    """Name the largest causes of a band of the COR, with the half widths that they alone make."""
     sizes = {name: np.asarray(size) for name, size in band.causes.items() if np.isfinite(size).all()}
     most = max((size.max() for size in sizes.values()), default=0.0)
     largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
     named = (name for name in largest if sizes[name].max() >= _LEAST * most)
-    return ", ".join(f"{'law' if name == 'model' else name} {_range(sizes[name], unit)}" for name in named)
+    parts = (f"{'law' if name == 'model' else name} {_range(sizes[name])}" for name in named)
+    return f"Half the width of the COR's range by cause: {', '.join(parts)}."
 
 
-def _range(sizes: Array, unit: str) -> str:
-    # Smaller sizes are errors of integration.
-    sizes = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)
-    least, most = (in_unit(size, unit, 2).rstrip() for size in (sizes.min(), sizes.max()))
+def _range(sizes: Array) -> str:
+    sizes = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # smaller ones are errors of integration
+    least, most = (f"{size:.2g}" for size in (sizes.min(), sizes.max()))
     return most if least == most else f"{least} to {most}"

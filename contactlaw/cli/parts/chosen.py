@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import figure, own, rebounds, wording
+from contactlaw.cli.parts import figure, impacts, own, rebounds, wording
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
@@ -107,6 +107,12 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
         size = getattr(arguments, name, None)
         words += "" if size is None else f" ({name} {in_unit(size, unit)})"
     return words
+
+
+def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
+    """Repeat what the user asked: names of materials, wall and law, and sizes in SI units."""
+    names = impacts.asked(model, **sizes)
+    return names | {"plate": plate_in_words(arguments, names["plate"])}
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:

@@ -68,7 +68,8 @@ class Table:
         if title:
             yield from wrapped(title)
         cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
-        marks = self._marks()
+        letters = self._letters()
+        marks = ["".join(mark for flag, (mark, _) in letters.items() if row & flag) for row in self._row_flags()]
         last = [["flags", "", *marks]] * any(marks)
         left_out = list[str]()
         while max(map(len, aligned([*cells.values(), *last]))) > WIDTH and len(cells) > 1:
@@ -81,21 +82,18 @@ class Table:
 
     def remarks(self) -> Iterator[str]:
         """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
-        counts, total = self._counts(), self.total or len(self)
-        for flag, mark in self._letters().items():
+        for flag, (mark, count) in self._letters().items():
             (words,) = explain(flag)
-            yield from wrapped(f"{mark}: {flag.name}, {counts[flag]} of {total}: {words}", "   ")
+            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ")
 
-    def _counts(self) -> Mapping[Validity, int]:
-        return self.counts or count_flags(np.zeros(0, dtype=int) if self.flags is None else self.flags)
+    def _letters(self) -> dict[Validity, tuple[str, int]]:
+        """Letter of each flag, and its number of impacts."""
+        counts = self.counts or count_flags(np.array(self._row_flags(), dtype=int))
+        return {flag: (mark, counts[flag]) for mark, flag in zip(string.ascii_lowercase, counts, strict=False)}
 
-    def _letters(self) -> dict[Validity, str]:
-        return dict(zip(self._counts(), string.ascii_lowercase, strict=False))
-
-    def _marks(self) -> list[str]:
-        """Letters of the flags of each row."""
-        flags = [] if self.flags is None else self.flags.tolist()
-        return ["".join(mark for flag, mark in self._letters().items() if row & flag) for row in flags]
+    def _row_flags(self) -> list[int]:
+        flags: list[int] = [0] * len(self) if self.flags is None else self.flags.tolist()
+        return flags
 
     def write_csv(self, out: TextIO, head: bool = True) -> None:
         """Write rows with every digit, below a line of names with SI units."""
@@ -132,8 +130,7 @@ class Table:
         """Values of each row by name, None for one that is not known, and the names of its flags."""
         names = [column.name for column in self.columns]
         values = zip(*(np.asarray(self.values[name]).tolist() for name in names), strict=True)
-        flags = [0] * len(self) if self.flags is None else self.flags.tolist()
-        for row, flag in zip(values, flags, strict=True):
+        for row, flag in zip(values, self._row_flags(), strict=True):
             known = (None if isinstance(value, float) and math.isnan(value) else value for value in row)
             yield dict(zip(names, known, strict=True)), flag_names(flag)
 
