@@ -94,7 +94,7 @@ class Figure:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a whole file, in the format that its suffix names; matplotlib is loaded here."""
-        parts: list[Any] = [*self.curves, *self.points]
+        parts: list[Curve | Points] = [*self.curves, *self.points]
         x = np.concatenate([part.x[np.isfinite(part.x)] for part in parts])
         y = np.concatenate([part.y for part in parts])
         labels = [part.label for part in parts if part.label]
