@@ -245,13 +245,52 @@ def test_the_options_of_cor_are_in_groups(capsys):
     assert re.findall(r"^(\w+):$", shown, re.MULTILINE) == ["options", "impact", "walls", "errors", "output"]
 
 
+LISTS = ["--radius", "0.5mm,0.9mm", "--thickness", "0.3mm,1mm,inf", "--speed", "1,70"]
+STEEL = ["cor", "--sphere", "stainless-steel-304", "--plate", "aluminium-6082-t6"]
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        IMPACT,
+        [*IMPACT, "--causes", "--on", "steel-s235:3mm", "--mass", "5mg", "--speed", "60"],
+        [*MANY, "--causes"],
+        [*STEEL, *LISTS, "--outside", "solve"],
+        [*STEEL, *LISTS, "--angle", "30,60", "--friction", "0.1,0.4"],
+        [*IMPACT, "--angle", "30", "--friction", "0.1", "--cylinder", "50mm"],
+        [*STEEL, *LISTS, "--outside", "solve", "--out", "a-file-of-a-grid-in-the-folder-of-the-user.csv"],
+        [*IMPACT, "--sphere", "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer", "--law", "fem", "--no-band"],
+        ["materials"],
+        ["materials", "stainless-steel-304"],
+        ["find", "thickness", "--cor", "0.5", *STEEL[1:], "--radius", "1mm,2mm", "--speed", "1,3"],
+        [
+            "constant",
+            *STEEL[1:],
+            "--radius",
+            "1mm",
+            "--thickness",
+            "0.5mm,1mm",
+            "--speed",
+            "1,70",
+            "--outside",
+            "solve",
+        ],
+    ],
+)
+def test_no_line_is_wider_than_a_terminal(argv, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(argv) == 0
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+
+
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))
-def test_every_option_is_explained(name, parser):
+def test_every_option_is_explained(name, parser, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
     for action in parser._actions:
         assert action.help, (name, action.dest)
         if action.nargs != 0 and action.default not in (None, False, [], argparse.SUPPRESS):
             assert "default" in action.help, (name, action.dest)
-    assert parser.format_help()  # no stray per cent sign
+    assert max(map(len, parser.format_help().splitlines())) <= 80  # and no stray per cent sign
     assert parser.description
 
 

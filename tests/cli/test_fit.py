@@ -226,7 +226,7 @@ def test_friction_from_a_table_with_angles(table, capsys, tmp_path, figures):
     )
     assert curve.y[60] == pytest.approx(hit.tangential_restitution, rel=1e-4)
     wrong = [*options, "--unknown", "plate_density", "--friction", "-1"]
-    refused(["fit", path, *wrong], "--friction: got -1.0", capsys=capsys)
+    refused(["fit", path, *wrong], "--friction: got '-1'", capsys=capsys)
     path = table("normal speed,angle,beta", "3,60,0.1")
     wrong = ["fit", path, *options, "--unknown", "friction"]
     refused(wrong, "with angles the speed is that of the bead", capsys=capsys)
@@ -391,19 +391,19 @@ def test_a_record_of_a_run_is_fitted(run, found, capsys):
 def test_times_between_bounces_and_their_error_are_no_contact_times(tmp_path):
     path = tmp_path / "drops.csv"
     path.write_text("drop_cm,t1_ms,t2_ms,time_error_ms\n30,380,300,1\n")
-    data = tables.completed(tables.checked(path), path, 2500.0, radius=2e-3)
+    data = tables.completed(tables.read(path), path, 2500.0, radius=2e-3)
     assert data.contact_time is None and data.restitution_error == pytest.approx([0.00287, 0.00578], rel=0.02)
     path.write_text("speed_m/s,time_us,time_error_us\n1,9,0.5\n")
-    assert tables.completed(tables.checked(path), path, 2500.0).contact_time_error == pytest.approx(5e-7)
+    assert tables.completed(tables.read(path), path, 2500.0).contact_time_error == pytest.approx(5e-7)
     path.write_text("speed_m/s,drop_cm,bounce_cm\n2.4,,18\n,30,17\n")
-    assert tables.completed(tables.checked(path), path, 2500.0, radius=2e-3).speed.size == 2
+    assert tables.completed(tables.read(path), path, 2500.0, radius=2e-3).speed.size == 2
 
 
 @pytest.mark.filterwarnings("ignore:the air changes")
 def test_heights_in_place_of_speeds_and_cors(capsys):
     fell, rose = (flight.of_height(z, 2e-3, cl.material("glass").density) for z in (0.3, 0.12))
-    assert main(["thickness", *GLASS, "--drop", "30cm", "--bounce", "12cm", "--json"]) == 0
-    (found,) = json.loads(capsys.readouterr().out)
+    assert main(["find", "thickness", *GLASS, "--drop", "30cm", "--bounce", "12cm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
     assert found["speed"] == pytest.approx(float(fell.down))
     assert found["restitution"] == pytest.approx(float(rose.up / fell.down))
     noted = ["--drop", "30cm", "--bounce", "12cm", "--unknown", "thickness", "--json"]
@@ -414,7 +414,7 @@ def test_heights_in_place_of_speeds_and_cors(capsys):
     assert json.loads(capsys.readouterr().out)["speed"] == pytest.approx(float(fell.down))
     refused(["cor", *GLASS[:-1], "1mm,2mm", "--thickness", "3mm", "--drop", "1cm"], "--drop: takes one", capsys=capsys)
     refused(["fit", *GLASS, "--unknown", "thickness"], "--drop, --bounce: give these without", capsys=capsys)
-    refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got 30.0", capsys=capsys)
+    refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got '30'", capsys=capsys)
     refused(["fit", *GLASS, "--unknown", "thickness", "--bounce", "9cm"], "--drop: a bounce alone", capsys=capsys)
     small = [*GLASS[:-1], "10um", "--thickness", "3mm", "--drop", "30cm"]
-    refused(["cor", *small], "--radius: got 1e-05; such a bead has fallen", capsys=capsys)
+    refused(["cor", *small], "--radius: got '10um'; such a bead has fallen", capsys=capsys)

@@ -15,6 +15,7 @@ from contactlaw.cli.parts import bands, chosen, impacts, measured, options
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
 from contactlaw.comparison import Comparison, compare
 from contactlaw.model import ImpactModel
+from contactlaw.physical.pair import Pair
 from contactlaw.quantities import TIME
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
@@ -66,7 +67,7 @@ def _run(arguments: argparse.Namespace) -> None:
     for sentence in filter(None, (head.title, head.reference)):
         print(*wrapped(sentence), sep="\n")
     print(*table.text(), "", sep="\n")
-    for sentence in _judged(found):
+    for sentence in _judged(found, pair):
         print(*wrapped(sentence), sep="\n")
     print("", *_nearest(by_law), sep="\n")
 
@@ -83,18 +84,15 @@ def _rows(found: Comparison, bodies: dict[str, str]) -> Table:
     return Table(columns, values, bodies, found.flags)
 
 
-def _judged(found: Comparison) -> Iterator[str]:
+def _judged(found: Comparison, pair: Pair) -> Iterator[str]:
     """Sentences about the range and about chi-squared."""
-    yield f"68 %: {bands.in_caption(found.band)}."
+    yield f"68 %: {bands.meaning(found.band, pair)}."
     agree = found.probability >= _UNLIKELY
     yield (
         f"Chi-squared is {found.chi_squared:.3g} for {len(found.data)} rebounds. If the model and all stated errors "
         f"are right, it is as large or larger in {100.0 * found.probability:.3g} % of cases: the data "
         f"{'agree with the model' if agree else 'differ from the model by more than the stated errors explain'}."
     )
-    for cause in found.unknown:
-        what = "law" if cause == "model" else cause
-        yield f"The error of the {what} is not known, is not in chi-squared, and may explain differences."
 
 
 def _numbers(comparison: Comparison) -> dict[str, float]:
@@ -112,8 +110,6 @@ def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     if large:
         why = "only because the stated error of the law itself is large"
         said.append(f"{', '.join(large)} would pass the test above, too, but {why}.")
-    if missing := [name for name in laws.names() if name not in by_law]:
-        said.append(f"{', '.join(missing)} cannot be used for these materials.")
     yield from wrapped(" ".join(said))
     values = {
         "law": [*by_law],
@@ -125,5 +121,6 @@ def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     yield from Table(columns, values).text()
     yield from wrapped(
         "Difference: rms of measured minus predicted COR. Law's error: the stated error of the law's COR for these "
-        "impacts. Chi-squared: with the errors of data and materials alone."
+        "impacts. Chi-squared: with the errors of data and materials alone. Laws that are not "
+        "listed cannot be used for these materials."
     )

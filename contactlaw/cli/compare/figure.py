@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw.cli.parts import bands
 from contactlaw.cli.parts.figure import Figure
 from contactlaw.cli.parts.measured import Measured, figure_of
@@ -21,11 +20,11 @@ def figure(found: Comparison, model: ImpactModel, errors: Mapping[str, float], a
         "restitution", sizes, np.asarray(data.restitution), np.asarray(data.restitution_error), found.flags
     )
     title = f"Measured COR beside the model: chi-squared {found.chi_squared:.3g} for {len(data)} rebounds"
-    band = f"Band: {bands.in_caption(found.band)}"
+    band = f"Band: {bands.meaning(found.band, model.pair)}"
     return figure_of(measured, lambda impact: curve(model, impact, errors), title, about, "Nothing is fitted", band)
 
 
-def curve(model: ImpactModel, impact: Mapping[str, Any], errors: Mapping[str, float]) -> dict[str, Array]:
+def curve(model: ImpactModel, impact: Mapping[str, Any], errors: Mapping[str, float]) -> dict[str, Any]:
     """Predict what a `Curve` of the COR of some impacts has besides its name and abscissa."""
     hit = model.solve(**impact)
     cor, band = np.asarray(hit.restitution), model.uncertainty(**impact, **errors).restitution

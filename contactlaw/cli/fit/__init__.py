@@ -19,6 +19,7 @@ from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.table import in_words
 from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import HDF5, read_record
@@ -142,18 +143,13 @@ def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
     pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
     if len(pairs) > 1:
-        wanted = {role: getattr(arguments, role) for role in ("sphere", "plate")}
-        named = [
-            n
-            for n, pair in pairs.items()
-            if all(name in (None, getattr(pair, role).name) for role, name in wanted.items())
-        ]
+        wanted = arguments.sphere, arguments.plate
+        named = [n for n, pair in pairs.items() if all(map(_is_of, wanted, (pair.sphere, pair.plate)))]
         if len(named) != 1:
             names = ", ".join(f"{pair.sphere.name} on {pair.plate.name}" for pair in pairs.values())
             raise ValueError(f"{first}: has impacts of several pairs, {names}: choose one by --sphere and --plate")
-        rows, pairs = record.rows.copy(), {0: pairs[named[0]]}
-        rows["plate"][record.which != named[0]] = -1  # left in their places, since rows are named
-        record = replace(record, rows=rows)
+        pairs = {0: pairs[named[0]]}
+        record.rows["plate"][record.which != named[0]] = -1  # left in their places, since rows are named
     with wording.reading(first):
         data = Measurements.of(record, unknown)
     for size in ("radius", "thickness"):
@@ -162,3 +158,7 @@ def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[
                 raise ArgumentError(size, None, "the record has its own: leave this one out")
             data = replace(data, **{size: value})
     return data, next(iter(pairs.values()), None)
+
+
+def _is_of(name: str | None, body: Material) -> bool:
+    return name in (None, body.name)

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts.figure import AXES, Figure
 from contactlaw.cli.parts.measured import Measured, figure_of
@@ -22,7 +21,7 @@ def figure(found: Fit, about: str) -> Figure:
     if data.is_oblique:
         sizes["angle"] = np.degrees(np.arctan2(sliding, normal))
 
-    def predicted(impact: dict[str, Any]) -> dict[str, Array]:
+    def predicted(impact: dict[str, Any]) -> dict[str, Any]:
         angle = np.radians(impact.pop("angle", 0.0))
         speed = impact.pop("speed")
         along = {"sliding_speed": speed * np.sin(angle)} if data.is_oblique else {}

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw._readable import in_unit, percent, with_error
+from contactlaw._readable import percent, rounded, scale_of, with_error
 from contactlaw.cli.parts.impacts import COLUMNS
 from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
 from contactlaw.fitting import Fit
@@ -32,8 +32,8 @@ def text(found: Fit) -> Iterator[str]:
         for m in range(n):
             yield f"The errors of {found.unknown[m]} and {name} have the correlation {found.correlation[n, m]:.2f}."
     for kind, off in found.residuals.items():
-        what, many = kind.replace("_", " "), "s" * (off.size > 1)
-        yield f"{what}: {off.size} value{many}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
+        values = f"{off.size} value{'s' * (off.size > 1)}"
+        yield f"{KINDS[kind].title}: {values}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
     for note in found.notes:
         if note.partition(",")[0] not in Validity.__members__:  # the table of the rebounds explains flags
             yield from wrapped(f"- {note}", "  ")
@@ -49,7 +49,8 @@ def _number(found: Fit, name: str) -> str:
 
 
 def _size(error: float, name: str) -> str:
-    return in_unit(error, UNKNOWNS[name].unit, 2).rstrip() if np.isfinite(error) else "not known"
+    unit, size = scale_of(error, UNKNOWNS[name].unit)
+    return f"{rounded(error / size)} {unit}".rstrip() if np.isfinite(error) else "not known"
 
 
 def rows(found: Fit) -> Table:

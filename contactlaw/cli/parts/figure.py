@@ -94,9 +94,10 @@ class Figure:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a whole file, in the format that its suffix names; matplotlib is loaded here."""
-        x = np.concatenate([part.x[np.isfinite(part.x)] for part in (*self.curves, *self.points)])
-        y = np.concatenate([part.y for part in (*self.curves, *self.points)])
-        labels = [part.label for part in (*self.curves, *self.points) if part.label]
+        parts: list[Curve | Points] = [*self.curves, *self.points]
+        x = np.concatenate([part.x[np.isfinite(part.x)] for part in parts])
+        y = np.concatenate([part.y for part in parts])
+        labels = [part.label for part in parts if part.label]
         with style.applied():
             figure = style.figure(9.0, 6.0, self.title, ". ".join([self.about, *self._remarks()]))
             axes = figure.subplots()

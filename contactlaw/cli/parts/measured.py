@@ -44,7 +44,7 @@ def add_options(command: argparse.ArgumentParser) -> Any:
 
 
 def figure_of(
-    measured: Measured, predicted: Callable[[dict[str, Any]], dict[str, Array]], title: str, about: str, *remarks: str
+    measured: Measured, predicted: Callable[[dict[str, Any]], dict[str, Any]], title: str, about: str, *remarks: str
 ) -> Figure:
     """Figure over the angle, or over the size that varies most.
 

@@ -197,9 +197,10 @@ def completed(table: Read, path: str | os.PathLike[str], density: float, **sizes
                 data = Measurements(**rebounds)
                 break
             except ArgumentError as error:
-                if error.element is None:
+                line = rebounds["line"]
+                if error.element is None and (error.value is None or line.size > 1):
                     raise
-                n = int(rebounds["line"][error.element])
+                n = int(line[error.element or 0])
                 wrong.append(f"line {n}: {ArgumentError(error.name, error.value, error.reason)}")
                 values = {name: column[values["line"] != n] for name, column in values.items()}
     for warning in warnings:
@@ -229,7 +230,9 @@ def conditions(table: Read, materials: Mapping[str, Material]) -> Conditions:
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f'the lines with # above its table are no TOML, as title = "...": {error}') from None
     _check_keys(head, (*_TEXTS, *_SIZES, *OF_ALL, "sphere", "plate"))
-    bodies = {role: _body(role, head[role], materials) for role in ("sphere", "plate") if role in head}
+    bodies: dict[str, Material] = {
+        role: _body(role, head[role], materials) for role in ("sphere", "plate") if role in head
+    }
     errors = {name: _quantity(name, head[name], SHARE) for name in _SIZES if name in head}
     values = {name: _quantity(name, head[name], _COLUMNS[name].quantity or SHARE) for name in OF_ALL if name in head}
     columns.halve_diameters(values)
@@ -238,10 +241,8 @@ def conditions(table: Read, materials: Mapping[str, Material]) -> Conditions:
 
 
 def _quantity(name: str, text: Any, quantity: Quantity) -> float:
-    try:
+    with wording.reading(f"{name} in its head"):
         return quantities.value(str(text), quantity)
-    except ValueError as error:
-        raise ValueError(f"{name} in its head: {error}") from None
 
 
 def _check_keys(head: Mapping[str, Any], known: tuple[str, ...]) -> None:
