@@ -59,8 +59,9 @@ FILES = {
     "reporting": "limits gallery page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
-    "cli/parts": "wording table columns impacts bands options plots own rebounds chosen layout figure old_figure",
+    "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",
+    "cli/cor": "tables figures files",
     "cli/fit": "printed figure",
     "physical": (
         "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "

@@ -114,7 +114,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
             own = next(one for one in text.splitlines() if one.startswith(wall))
             assert own.removeprefix(wall).split()[0] == str(count)
     capsys.readouterr()
-    assert main(["constant", "--record", path, "--csv"]) == 0
+    assert main(["constant", path, "--csv"]) == 0
     head, *rows = (line.split(",") for line in capsys.readouterr().out.splitlines())
     found = {tuple(row[head.index(name)] for name in ("sphere", "plate")): row for row in rows}
     rows = run[1].collisions()
@@ -125,12 +125,12 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
         weight = rows["approach_speed"][own] ** 2 * rows["radius"][own] ** 3
         best = np.sqrt(np.average(rows["restitution"][own] ** 2, weights=weight))
         assert float(row[head.index("restitution")]) == pytest.approx(best, rel=1e-6)
-    assert main(["constant", "--record", path, "--lammps"]) == 1
+    assert main(["constant", path, "--lammps"]) == 1
     assert "has impacts of several pairs" in capsys.readouterr().err
     chosen = ["--sphere", "glass", "--plate", "glass"]
-    assert main(["constant", "--record", path, "--lammps", *chosen]) == 0
-    assert main(["constant", "--record", path, "--sphere", "PMMA"]) == 1
-    assert "--sphere: got 'PMMA'; the record has gamma-alumina, glass" in capsys.readouterr().err
+    assert main(["constant", path, "--lammps", *chosen]) == 0
+    assert main(["constant", path, "--sphere", "PMMA"]) == 1
+    assert "--sphere: got 'PMMA'; the record has gamma-alumina on glass, " in capsys.readouterr().err
 
 
 def test_several_files_of_a_run_are_one(run, tmp_path):

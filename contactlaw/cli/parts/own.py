@@ -3,7 +3,7 @@
 import dataclasses
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlaw._errors import ArgumentError
@@ -26,6 +26,19 @@ _LIKELY = {
 }
 
 
+def unknown(name: str, known: Iterable[str]) -> str:
+    """Say that a name is not among those known, and which of them is like it.
+
+    Examples
+    --------
+    >>> unknown("thicknes", ["radius", "thickness"])
+    "unknown 'thicknes'; did you mean thickness? known: radius, thickness"
+    """
+    names = [*known]
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"
+
+
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
     """Material of an option: a name of the catalogue or of the user's own, numbers, or a name and what differs."""
     try:
@@ -37,9 +50,7 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             if key == "loss_factor":
                 raise ValueError(f"loss_factor has a frequency, too: {WRITE_LOSS}")
             if key not in _FIELDS:
-                near = difflib.get_close_matches(key, _FIELDS, n=1)
-                hint = f"did you mean {near[0]}? " if near else ""
-                raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_FIELDS)}")
+                raise ValueError(unknown(key, _FIELDS))
             field = _FIELDS[key]
             if field in given:
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
@@ -56,7 +67,7 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
-        raise ArgumentError(option, None, wording.sentence(error, ())) from error
+        raise ArgumentError(option, None, wording.sentence(error, {})) from error
 
 
 def changed(body: Material, given: dict[str, Any]) -> Material:
