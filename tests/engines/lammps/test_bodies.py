@@ -119,7 +119,7 @@ def test_one_constant_is_that_of_the_recorded_impacts(name, tmp_path, capsys):
         np.save(tmp_path / name, rows)
     else:
         np.savetxt(tmp_path / name, rows, delimiter=",", header=",".join(rows.dtype.names))
-    command = ["constant", "--record", str(tmp_path / name), "--csv", "--law", "myc"]
+    command = ["constant", str(tmp_path / name), "--csv", "--law", "myc"]
     pair = ["--sphere", PAIR.sphere.name, "--plate", PAIR.plate.name]
     assert main(command + pair * (name != "run.h5")) == 0
     head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
