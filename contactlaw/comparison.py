@@ -45,7 +45,7 @@ class Comparison:
         Share of cases in which chance alone makes `chi_squared` as large; small if the model
         differs by more than the errors explain.
     if_exact : float
-        `chi_squared` if the law had no error of its own: by this laws are told from each other.
+        `chi_squared` as if the law had no error of its own. The law with the least is the nearest.
     rms : float
         Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
     unknown : tuple of str

@@ -96,7 +96,7 @@ class Linear(NamedTuple):
         """Linear fit with these slopes (m, p) and standard errors (m,) of the values."""
         scaled = slopes / error[:, None]
         held = np.diag([one.prior**-2.0 + _RIDGE for one in predictor.parameters])
-        return cls(scaled, np.linalg.inv(scaled.T @ scaled + held))
+        return cls(scaled, np.asarray(np.linalg.inv(scaled.T @ scaled + held)))
 
     def covariances(self, error: Array, model: ModelCovariance | None) -> Errors:
         """Propagate errors of the values, the priors and the model; None: its errors are not known."""
@@ -166,17 +166,17 @@ def _cells(kind: Places, *places: Array) -> tuple[Places, Array]:
         width *= 2.0
 
 
-def student(freedom: float) -> float:
-    """Factor that widens an error which was itself estimated from few data.
+def student(freedom: Array) -> Array:
+    """Factors that widen errors which were themselves estimated from few data.
 
     With it 68.3 % of the true values lie within the error, as with a known standard error.
 
     Examples
     --------
-    >>> round(student(2.0), 2), round(student(1e9), 2)
-    (1.32, 1.0)
+    >>> student(np.array([2.0, 1e9])).round(2)
+    array([1.32, 1.  ])
     """
     from scipy.special import stdtrit
 
     within = 0.5 * (1.0 + math.erf(1.0 / math.sqrt(2.0)))
-    return float(stdtrit(freedom, within))
+    return np.asarray(stdtrit(freedom, within))

@@ -14,7 +14,7 @@ from contactlaw._arrays import Array, Integers, Mask, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.measurements import NORMAL, Measurements
+from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, Parameter, parameters, setting, with_loss_factors
@@ -201,10 +201,10 @@ def fit(
     enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
-    data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
+    unknown, priors = (unknown,) if isinstance(unknown, str) else tuple(unknown), priors or {}
+    data = Measurements.of(data, {*unknown} - {*priors}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)
-    varied = parameters(pair, data, unknown, priors or {}, given)
+    varied = parameters(pair, data, unknown, priors, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied)
     descent = search.Descent(predictor, to_the_lowest=True)
     ended = _least_squares(predictor, descent)
@@ -266,27 +266,24 @@ def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, erro
     for _ in range(_SETTLED):
         left = 1.0 - errors.Linear.of(predictor, slopes, error).leverages()
         error = error.copy()
-        for part, pool in _pools(values):
-            square = float(np.sum(off[pool] ** 2)) / max(float(left[pool].sum()), _LEAST_FREEDOM)
-            error[part] = max(math.sqrt(square), _LEAST) * fitted[part]
+        for part, pool, freedom in _pools(values, left):
+            error[part] = max(math.sqrt(float(np.sum(off[pool] ** 2)) / freedom), _LEAST) * fitted[part]
     return error, float(left.sum())
 
 
-def _pools(values: Values) -> Iterator[tuple[Mask, Mask]]:
-    """Values that share one unknown error, and the values from whose scatter it is found.
+def _pools(values: Values, left: Array) -> Iterator[tuple[Mask, Mask, float]]:
+    """Values that share one unknown error, those from whose scatter it is found, and the freedom of these.
 
-    Both are the values of one kind. Kinds with few values take the scatter of all kinds.
+    Both are the values of one kind. Kinds with few values take the scatter of all kinds. Of each
+    value `left` is what the parameters leave of its degree of freedom.
     """
     unknown = np.isnan(values.error)
-    kinds = [(values.kind == kind) & unknown for kind in np.unique(values.kind[unknown])]
-    few = np.zeros_like(unknown)
-    for of_kind in kinds:
-        if np.count_nonzero(of_kind) >= _POOLED:
-            yield of_kind, of_kind
-        else:
-            few |= of_kind
-    if few.any():
-        yield few, unknown
+    counts = np.bincount(values.kind[unknown], minlength=len(KINDS))
+    group = np.where(counts[values.kind] < _POOLED, -1, values.kind)
+    for n in np.unique(group[unknown]):
+        part = unknown & (group == n)
+        pool = unknown if n < 0 else part
+        yield part, pool, max(float(left[pool].sum()), _LEAST_FREEDOM)
 
 
 class _State(NamedTuple):
@@ -314,9 +311,8 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     _check_strengths(predictor, at, fitted, doubt, model_error)
     widths = np.zeros(at.size)
     if freedom > 0.0:
-        left = 1.0 - linear.leverages()
-        pools = [(part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)]
-        widths = np.array([errors.student(one) for one in linear.freedoms(pools).tolist()])
+        pools = [(part, freed) for part, _, freed in _pools(values, 1.0 - linear.leverages())]
+        widths = errors.student(linear.freedoms(pools))
     found = found.widened(widths)
     used = found.statistical if freedom > 0.0 else found.total
     identify.check(names, at[unknowns], used[unknowns, unknowns])

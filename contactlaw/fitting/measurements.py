@@ -245,8 +245,11 @@ def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:
         if errors is not None:
             raise ArgumentError(f"{name}_error", None, f"there is no {name} that it is of")
         return
-    known = np.where(np.isnan(values), kind.least, values)
-    within(name, known, kind.least, kind.largest, f"[{kind.unit}] ({kind.hint})")
+    wrong = ~(np.isnan(values) | ((values >= kind.least) & (values <= kind.largest)))
+    if wrong.any():
+        n = int(np.argmax(wrong))
+        limits = f"{kind.least:g} and {kind.largest:g} [{kind.unit}] ({kind.hint})"
+        raise ArgumentError(name, values[n], f"must lie between {limits}", n)
     if np.isnan(values).all():
         raise ArgumentError(name, None, "no rebound has one: leave it out")
     if errors is None:

@@ -1,4 +1,4 @@
-"""Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
+"""Remarks on a fit, in words; some name signs of mistaken units, materials or measurements."""
 
 import math
 from collections.abc import Iterator
@@ -82,7 +82,7 @@ def notes(
         sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
         yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
     flags = np.asarray(hit.flags)
-    for flag, _ in count_flags(flags).items():
+    for flag in count_flags(flags):
         (words,) = explain(flag)
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
     yield from _above_one(predictor)
@@ -164,8 +164,7 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
         rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
         if rows.size:
-            which = f"rebounds {listed(rows)}"
-            which = predictor.data.rebound(rows[0]) if rows.size == 1 else which
+            which = predictor.data.rebound(rows[0]) if rows.size == 1 else f"rebounds {listed(rows)}"
             yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
 
 

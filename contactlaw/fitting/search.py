@@ -102,8 +102,8 @@ def scan(predictor: Predictor) -> list[Array]:
     from scipy.interpolate import CubicSpline
 
     axes = _axes(predictor)
-    free = [n for n, axis in enumerate(axes.points) if axis.size > 1]
-    grid = [axes.points[n] for n in free]
+    free = [n for n, axis in enumerate(axes) if axis.size > 1]
+    grid = [axes[n] for n in free]
     predicted = _predicted(predictor, axes).reshape(*(axis.size for axis in grid), -1)
     for n, axis in enumerate(grid):  # points between those of the grid, and predictions there by splines
         grid[n] = np.linspace(axis[0], axis[-1], (axis.size - 1) * _FINER[min(3, len(free))] + 1)
@@ -112,9 +112,9 @@ def scan(predictor: Predictor) -> list[Array]:
     off = (predicted - predictor.values.value) / soft
     starts = []
     for bottom in _bottoms(grid, off)[:_MOST] if free else [np.empty(0)]:
-        start = np.array([axis[0] for axis in axes.points])
+        start = np.array([axis[0] for axis in axes])
         start[free] = bottom
-        starts.append(np.clip(axes.values(start), *limits(predictor)))
+        starts.append(np.clip(_trial(predictor, start), *limits(predictor)))
     return starts
 
 
@@ -123,7 +123,7 @@ def attainable(predictor: Predictor) -> Array:
     axes = _axes(predictor)
     free = [n for n, one in enumerate(predictor.parameters) if one.is_free]
     if [predictor.parameters[n].name for n in free] == ["thickness"]:  # up to a half-space
-        axes.points[free[0]] = np.append(axes.points[free[0]], np.log(limits(predictor)[1][free]))
+        axes[free[0]] = np.append(axes[free[0]], np.log(limits(predictor)[1][free]))
     return _predicted(predictor, axes)
 
 
@@ -151,25 +151,19 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     return [np.log(one.at) for one in _apart(bottoms, _SAME_MINIMUM)]
 
 
-class _Axes(NamedTuple):
-    """Grid of the parameters' logarithms; if a radius is sought, too, R/H replaces thickness."""
-
-    points: list[Array]
-    by_radius: tuple[int, int] | None  # indices of thickness and radius, if both are sought
-
-    def values(self, coordinates: Array) -> Array:
-        """Parameters at a point."""
-        found = np.exp(coordinates)
-        if self.by_radius is not None:
-            thickness, radius = self.by_radius
-            found[thickness] = found[radius] / found[thickness]
-        return found
+def _trial(predictor: Predictor, point: Array) -> Array:
+    """Trial at a point of the grid, where R/H replaces the thickness if a radius is sought, too."""
+    found = np.exp(point)
+    place = {one.name: n for n, one in enumerate(predictor.parameters) if one.is_free}
+    if {"thickness", "radius"} <= place.keys():
+        found[place["thickness"]] = found[place["radius"]] / found[place["thickness"]]
+    return found
 
 
-def _predicted(predictor: Predictor, axes: _Axes) -> Array:
+def _predicted(predictor: Predictor, axes: list[Array]) -> Array:
     """Predict the measured values at all points of the grid, one after the other."""
     count = predictor.values.value.size
-    points = np.array(list(itertools.product(*axes.points)))
+    points = np.array(list(itertools.product(*axes)))
     found = np.empty((len(points), count))
     bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
     bodies.sort(key=lambda n: not predictor.parameters[n].changes(predictor.law))  # one law after the other
@@ -177,7 +171,7 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
     groups = int(group.max()) + 1
     for n in progress_bar(iter(range(groups)), groups):
         part = group.ravel() == n
-        found[part] = predictor.at_trials(np.array([axes.values(point) for point in points[part]]))
+        found[part] = predictor.at_trials(np.array([_trial(predictor, point) for point in points[part]]))
     return found
 
 
@@ -212,8 +206,8 @@ def _middle(one: Parameter, predictor: Predictor) -> float:
     return float(np.median(np.asarray(other)[np.isfinite(other)]))
 
 
-def _axes(predictor: Predictor) -> _Axes:
-    """Trial values of each parameter; one value where it is not scanned."""
+def _axes(predictor: Predictor) -> list[Array]:
+    """Logarithms of trial values of each parameter; one value where it is not scanned."""
     parameters, data = predictor.parameters, predictor.data
     scanned = {one.name for one in parameters if one.is_free}
     laws = min(3, sum(one.is_free and one.changes(predictor.law) for one in parameters))
@@ -241,9 +235,7 @@ def _axes(predictor: Predictor) -> _Axes:
                 ends = _THICKEST * thickness.max(), _SLENDEREST * thickness.min()
                 axis = np.geomspace(*ends, _SLENDERNESS)
         points.append(np.log(np.sort(axis)))
-    names = [one.name for one in parameters]
-    both = {"thickness", "radius"} <= scanned
-    return _Axes(points, (names.index("thickness"), names.index("radius")) if both else None)
+    return points
 
 
 def _onset(predictor: Predictor, n: int) -> float:

@@ -228,5 +228,5 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
     if not data.is_oblique:
         sizes["friction"] = sizes["sliding_speed"] = None
     # copies: for read-only arrays kernels would be compiled once more
-    copies = (None if size is None else np.array(size) for size in sizes.values())
+    copies: Any = (None if size is None else np.array(size) for size in sizes.values())
     return Setting(with_numbers((pair.sphere, pair.plate), numbers), *copies)

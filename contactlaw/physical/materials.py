@@ -259,10 +259,10 @@ class Material:
         object.__setattr__(self, "rate", _rate(self))
         object.__setattr__(self, "loss_factor", _loss_factor(self))
         object.__setattr__(self, "uncertainty", _uncertainty(self))
-        if not isinstance(self.specified_minimum, bool):
+        if self.specified_minimum not in (False, True):
             reason = "must be True or False: whether yield_strength is a specified minimum"
             raise ArgumentError("specified_minimum", self.specified_minimum, reason)
-        object.__setattr__(self, "specified_minimum", self.specified_minimum and strength is not None)
+        object.__setattr__(self, "specified_minimum", bool(self.specified_minimum) and strength is not None)
 
     @property
     def flow(self) -> Flow | None:

@@ -121,4 +121,4 @@ def test_the_commands_say_the_same(steel, capsys):
     assert [row["thickness"] for row in rows] == [None, None] and rows[1]["remark"]
     assert main(["find", "speed", *STEEL, "--cor", "0.9,0.01", "--thickness", "inf"]) == 0
     _, names, _, row, none, *_ = capsys.readouterr().out.splitlines()
-    assert names.split() == ["COR", "speed", "68", "%"] and none.split() == ["0.01", "-", "-"]
+    assert names.split()[:4] == ["COR", "speed", "68", "%"] and none.split() == ["0.01", "-", "-"]

@@ -245,13 +245,52 @@ def test_the_options_of_cor_are_in_groups(capsys):
     assert re.findall(r"^(\w+):$", shown, re.MULTILINE) == ["options", "impact", "walls", "errors", "output"]
 
 
+LISTS = ["--radius", "0.5mm,0.9mm", "--thickness", "0.3mm,1mm,inf", "--speed", "1,70"]
+STEEL = ["cor", "--sphere", "stainless-steel-304", "--plate", "aluminium-6082-t6"]
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        IMPACT,
+        [*IMPACT, "--causes", "--on", "steel-s235:3mm", "--mass", "5mg", "--speed", "60"],
+        [*MANY, "--causes"],
+        [*STEEL, *LISTS, "--outside", "solve"],
+        [*STEEL, *LISTS, "--angle", "30,60", "--friction", "0.1,0.4"],
+        [*IMPACT, "--angle", "30", "--friction", "0.1", "--cylinder", "50mm"],
+        [*STEEL, *LISTS, "--outside", "solve", "--out", "a-file-of-a-grid-in-the-folder-of-the-user.csv"],
+        [*IMPACT, "--sphere", "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer", "--law", "fem", "--no-band"],
+        ["materials"],
+        ["materials", "stainless-steel-304"],
+        ["find", "thickness", "--cor", "0.5", *STEEL[1:], "--radius", "1mm,2mm", "--speed", "1,3"],
+        [
+            "constant",
+            *STEEL[1:],
+            "--radius",
+            "1mm",
+            "--thickness",
+            "0.5mm,1mm",
+            "--speed",
+            "1,70",
+            "--outside",
+            "solve",
+        ],
+    ],
+)
+def test_no_line_is_wider_than_a_terminal(argv, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(argv) == 0
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+
+
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))
-def test_every_option_is_explained(name, parser):
+def test_every_option_is_explained(name, parser, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
     for action in parser._actions:
         assert action.help, (name, action.dest)
         if action.nargs != 0 and action.default not in (None, False, [], argparse.SUPPRESS):
             assert "default" in action.help, (name, action.dest)
-    assert parser.format_help()  # no stray per cent sign
+    assert max(map(len, parser.format_help().splitlines())) <= 80  # and no stray per cent sign
     assert parser.description
 
 
@@ -264,19 +303,23 @@ def test_wrong_usage_is_status_2(argv, capsys):
 
 def test_materials(capsys):
     assert main(["materials"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
+    head, units, *lines = capsys.readouterr().out.split("\n\n")[0].splitlines()
+    assert head.split() == ["name", "E", "nu", "rho", "yield", "H", "B", "n"]
+    assert [line.split()[0] for line in lines] == list(cl.materials())
     assert main(["materials", "--json"]) == 0
     listed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     glass = next(entry for entry in listed if entry["name"] == "glass")
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
-    assert main(["materials", "glass"]) == 0
-    assert "Table 1" in capsys.readouterr().out
-    shown = {line.split()[0]: line.split()[4:] for line in lines[1:]}
-    assert shown["glass"] == 6 * ["-"]
-    assert shown["stainless-steel-304-ball"] == ["-", "3.119", "-", "-", "-", "-"]
-    assert shown["copper-ofhc-annealed"] == ["90.0", "-", "292", "0.31", "0.025", "-"]
-    assert len({len(line) for line in lines}) == 1
+    shown = {line.split()[0]: line.split()[3:] for line in lines}
+    assert shown["glass"] == ["2.5", *4 * ["-"]]
+    assert shown["stainless-steel-304-ball"] == ["8", "-", "3.119", "-", "-"]
+    assert shown["copper-ofhc-annealed"] == ["8.94", "90", "-", "292", "0.31"]
+    assert len({len(line) for line in (head, units, *lines)}) == 1
+    assert main(["materials", "copper-ofhc-annealed"]) == 0
+    head, _, numbers, *text = capsys.readouterr().out.splitlines()
+    assert head.split()[-3:] == ["C", "tan", "delta"]
+    assert numbers.split() == ["115", "0.343", *shown["copper-ofhc-annealed"], "0.025", "-"]
+    assert "copper-ofhc-annealed: Oxygen-free copper" in " ".join(text)
 
 
 def test_table_info_and_check(capsys):

@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
         default=[],
         metavar="FILE",
         help="recorded impacts of one run: files .h5, or .npy with an engine's rows, or one text table with a column "
-        "speed_m/s and, optionally, radius_m, thickness_m, weight and plate",
+        "speed_m/s and, optionally, radius_m, thickness_m, weight and plate (default: impacts at --speed)",
     )
     what = "normal approach speeds [m/s], each of which is equally frequent"
     options.add_quantity(impacts, "--speed", SPEED, what, quantities.values, metavar="V")

@@ -143,12 +143,12 @@ def _by_pair(record: Record) -> list[Recorded]:
 def _on_plates(rows: dict[str, Array]) -> Recorded:
     """Impacts among some rows; without a column plate all are on plates."""
     zeros = np.zeros(rows["speed"].size)
-    rows = {"kind": zeros} | rows
-    rows = {name: values[rows.get("plate", zeros) >= 0] for name, values in rows.items()}
-    kind = rows.pop("kind")
+    on_plate = rows.get("plate", zeros) >= 0
+    known: dict[str, Any] = {name: values[on_plate] for name, values in ({"kind": zeros} | rows).items()}
+    kind = known.pop("kind")
     impact, left_out = only_impacts(kind)
-    rows["body"] = kind == Kind.OF_BODY
-    return Recorded(**{name: values[impact] for name, values in rows.items()}, left_out=left_out)
+    known["body"] = kind == Kind.OF_BODY
+    return Recorded(**{name: values[impact] for name, values in known.items()}, left_out=left_out)
 
 
 def _text(content: bytes) -> Recorded:

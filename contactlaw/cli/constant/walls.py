@@ -66,7 +66,7 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep, plate: Callable[[f
 def table(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Table:
     """Rows of the walls with their CORs and errors."""
     best = [wall.best for wall in found]
-    values = {column.name: [getattr(one, column.name, keep) for one in best] for column in _COLUMNS}
+    values: dict[str, Any] = {column.name: [getattr(one, column.name, keep) for one in best] for column in _COLUMNS}
     values["plates"], values["thickness"], _ = zip(*found, strict=True)
     return Table(
         [column for column in _COLUMNS if column.name != "plates" or any(values["plates"])],

@@ -26,7 +26,7 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "coefficient of restitution and more, of one impact or many"
     command = options.command(commands, "cor", about, _run)
-    command.usage = "%(prog)s --sphere NAME --plate NAME --radius R --thickness H --speed V [options]"
+    command.usage = "%(prog)s --sphere NAME --plate NAME --radius R --thickness H\n  --speed V [options]"
     group = command.add_argument_group("impact")
     options.add_pair(group)
     options.add_sizes(group, quantities.values)

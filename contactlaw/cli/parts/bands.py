@@ -41,7 +41,7 @@ def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
     bodies = {"bead": pair.given[0], "plate": pair.given[1]}
     strong = {role: body for role, body in bodies.items() if body.strength is not None}
     unstated = [role for role, body in strong.items() if not _has_error(body)]
-    if not np.isfinite([band.low, band.high]).any():
+    if not np.isfinite(band.low).any():
         subject = "no range, because the error of this law is not known"
     elif len(unstated) == 2:
         subject += ", if the strengths are right; their errors are not stated"
