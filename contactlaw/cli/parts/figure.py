@@ -116,7 +116,7 @@ class Figure:
             if self.curves:
                 axes.set_xlim(least, largest)
             if len(labels) > _MOST_INSIDE:
-                figure.legend(loc="outside right upper")
+                figure.legend(loc="outside right center")
             elif len(labels) > 1:
                 axes.legend(loc="best")
             content = io.BytesIO()
