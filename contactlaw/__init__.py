@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from contactlaw.answers.sensitivity import Sensitivity
     from contactlaw.answers.uncertainty import Uncertainty
     from contactlaw.comparison import Comparison, compare
-    from contactlaw.fitting.bounces import Bounces, bounces
     from contactlaw.fitting.fit import Fit, fit
     from contactlaw.fitting.identify import UnidentifiedError
     from contactlaw.fitting.measurements import Measurements
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from contactlaw.physical.history import ForceHistory
     from contactlaw.physical.materials import Material, material, materials, read_materials
     from contactlaw.physical.measured import measured_law
-    from contactlaw.physical.mobility import Mobility
     from contactlaw.physical.pair import Pair
     from contactlaw.physical.plates import Foundation, Layers, Orthotropic, Shell
     from contactlaw.physical.rebound import Rebound
@@ -45,7 +43,6 @@ if TYPE_CHECKING:
 __all__ = [
     "ArgumentError",
     "Bodies",
-    "Bounces",
     "Comparison",
     "Fit",
     "ForceHistory",
@@ -55,7 +52,6 @@ __all__ = [
     "LoadSignal",
     "Material",
     "Measurements",
-    "Mobility",
     "Orthotropic",
     "Pair",
     "Rebound",
@@ -66,7 +62,6 @@ __all__ = [
     "UnidentifiedError",
     "Validity",
     "__version__",
-    "bounces",
     "compare",
     "edge_distance",
     "explain",
@@ -86,7 +81,6 @@ __all__ = [
 _MODULES = {
     "_errors": "ArgumentError",
     "comparison": "Comparison compare",
-    "fitting.bounces": "Bounces bounces",
     "fitting.fit": "Fit fit",
     "fitting.identify": "UnidentifiedError",
     "fitting.measurements": "Measurements",
@@ -95,7 +89,6 @@ _MODULES = {
     "physical.history": "ForceHistory",
     "physical.materials": "Material material materials read_materials",
     "physical.measured": "measured_law",
-    "physical.mobility": "Mobility",
     "physical.pair": "Pair",
     "physical.plates": "Foundation Layers Orthotropic Shell",
     "physical.rebound": "Rebound",

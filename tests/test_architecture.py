@@ -53,18 +53,19 @@ FILES = {
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
-    "fitting": "drops bounces measurements unknowns predictions errors identify search notes fit",
+    "fitting": "drops measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
-    "reporting": "limits gallery page surface meshes run summary charts figures files",
+    "reporting": "limits page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
-    "cli/parts": "wording columns impacts bands options plots own rebounds chosen layout figure",
+    "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",
+    "cli/cor": "tables figures files",
     "cli/fit": "printed figure",
     "physical": (
-        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "
+        "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "
         "scaling measured validity history bodies rebound oblique"
     ),
 }
