@@ -20,7 +20,6 @@ from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.answers.solver import RTOL, solved_within
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
-from contactlaw.equation.force import room_for
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
@@ -153,20 +152,7 @@ def _slide_all(
             slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
             spring = _spring_at(springs, n)
             out = tangential_force(
-                rows[n],
-                friction,
-                kappa,
-                law,
-                spring,
-                state,
-                deepest[n],
-                overlap[n],
-                -up,
-                at,
-                slip,
-                step,
-                0.0,
-                room_for(law),
+                rows[n], friction, kappa, law, spring, state, deepest[n], overlap[n], -up, at, slip, step, 0.0
             )
         else:
             clear_friction(rows[n])

@@ -43,24 +43,26 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": (
-        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator zener few_steps"
+        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator "
+        "near_edge zener"
     ),
-    "table": "lookup axes grid splines shapes sweep certificate nodes slides file cache",
+    "table": "lookup grid sweep shapes certificate table slides file cache",
     "answers": (
         "few backend solver tabulated edges beads compiled constant histories loads oblique varied "
         "sensitivity speed_table law_errors uncertainty inverse"
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
-    "fitting": "drops bounces measurements unknowns predictions errors identify search notes fit",
+    "fitting": "drops measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
-    "reporting": "limits gallery page surface meshes run summary charts figures files",
+    "reporting": "limits page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
     "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
-    "cli/parts": "wording table columns impacts bands options plots own rebounds chosen layout figure old_figure",
+    "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",
+    "cli/cor": "tables figures files",
     "cli/fit": "printed figure",
     "physical": (
         "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "
@@ -70,7 +72,7 @@ FILES = {
 FILES = {folder: names.split() for folder, names in FILES.items()}
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),
-    *(ROOT / f"table/{name}.py" for name in ("lookup", "shapes", "splines", "axes", "grid")),
+    *(ROOT / f"table/{name}.py" for name in ("lookup", "grid")),
 ]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # The size of each room, which may only fall. Of Python tokens count, without comments, docstrings and
@@ -337,7 +339,7 @@ FORCE = """
 from contactlaw import _jit, laws
 from contactlaw.equation import force
 _jit.enable_caching()
-law = laws.law('myc').data
+law = force.alone(laws.law('myc').data)
 print(force.loading(law, 2.5), force.loading(law, 0.5))
 """
 ANSWERS = """
@@ -348,7 +350,7 @@ from contactlaw.softsphere import Contacts
 model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')
 law = model.force_law.data
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0],
-      force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1),
+      model.force_law.loading(2.5), zener.solve(force.HERTZ, 0.1, 1.0, 1e-9).restitution,
       model.lookup(12.0, 0.9e-3, 1e-3).peak_force,
       model.force_history(5.0, 0.9e-3, 1e-3).force.max(),
       Contacts(model, 0.9e-3, 1e-3).advance(np.array([1e-6]), 1e-9)[0])

@@ -14,8 +14,8 @@ from contactlaw._arrays import Array, Places
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.solver import Solver
-from contactlaw.equation.few_steps import restitution_near
-from contactlaw.equation.force import at_strength, room_for
+from contactlaw.equation import near_edge, zener
+from contactlaw.equation.force import at_strength
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes, share_of_solid
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
@@ -96,9 +96,11 @@ def _cor_near(
     thin = pair.plate.inelasticity * root * (ratio * ratio) * mass / known.inelasticity
     thin = 1.0 if relaxes(pair.plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
-    room = room_for(law)
-    own = law if room == 0 else at_strength(law, known.strength, np.empty(room))
-    return restitution_near(own, response, known.inelasticity, y, min(thin, 1.0), rate)
+    own = at_strength(law, known.strength)
+    none = np.empty((0, 0))
+    notes = zener.Notes(none, none, none, none, none)
+    one = near_edge.follow(own, response, known.inelasticity, y, min(thin, 1.0), rate, near_edge.QUICK, notes, 0)
+    return near_edge.restitution(one, y) if one.ended else math.nan
 
 
 def _each(

@@ -20,7 +20,7 @@ from contactlaw.physical.validity import alone
 Number = tuple[str, str]  # body, "sphere" or "plate", and field of its Material, or "flow_stress"
 
 # The COR of a pair with a rate of strain is within 1e-6 of that with laws of any strength.
-FINE = Fineness(5, 1e-8, 3.0, 0.15, REACH, 1e-4)
+FINE = Fineness(1e-8, 3.0, 0.02, REACH, 1e-4)
 _MARGIN = 1.001  # of the rate beyond that of the impacts
 
 
@@ -37,7 +37,8 @@ def with_number(body: Material, name: str, value: float) -> Material:
     if name == "hardening" and body.flow is not None:
         new |= {name: (value, body.flow.exponent), "yield_strength": body.flow.strength}
     errors = {of: error for of, error in body.uncertainty.items() if of != name}
-    return dataclasses.replace(body, **new, uncertainty=errors)
+    is_minimum = body.specified_minimum and name != "yield_strength"
+    return dataclasses.replace(body, **new, uncertainty=errors, specified_minimum=is_minimum)
 
 
 def with_numbers(bodies: tuple[Material, Material], numbers: Mapping[Number, float]) -> Pair:

@@ -373,7 +373,7 @@ class Function:
         if called in (np.zeros, np.empty):
             sizes = getattr(node.args[0], "elts", node.args[:1])
             found = (self.value(one).known for one in sizes)
-            return Value(Array(shape=tuple(self._program.most if n is UNKNOWN else n for n in found)), name)
+            return Value(Array(shape=tuple(found)), name)
         if name == "_array_at":
             return self._at_address(*node.args)
         values = [self.value(one) for one in node.args]

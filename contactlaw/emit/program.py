@@ -16,7 +16,7 @@ class Program:
     Functions are made anew for each value of parameters whose names are in `fixed`. `names` are for
     kernels, NamedTuples and dtypes, and for tuples by the types of their members; others get their
     own. A name may be kept for what is not written here, under any key. `instead` of some kernels
-    others are written. Arrays whose length is first known in a call have room for `most` numbers. Kernels that are
+    others are written. Kernels that are
     written by hand have the types of their results in `elsewhere`, and are declared.
     """
 
@@ -26,10 +26,8 @@ class Program:
         fixed: Collection[str] = (),
         names: Mapping[Any, str] | None = None,
         instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
-        most: int = 0,
     ) -> None:
         self.language, self.fixed, self.instead = language, fixed, instead or {}
-        self.most = most
         self.elsewhere: dict[Callable[..., Any], Type] = {}
         self._given: dict[Any, str] = dict(names or {})
         self._names = {*self._given.values()}

@@ -31,8 +31,6 @@ Edge = Literal["free", "supported", "clamped"]
 KINDS: tuple[str, ...] = get_args(Edge)
 SIZE = 18  # of half of a response, six numbers: their rates, four for each block, and weights
 LONGEST = 50.0  # [T_H]; contacts that end take up to 25 for lambda up to 1
-_AT_ONCE = 2 * SIZE  # place of the number that `near` adds
-_QUICK = 120.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
 
 
 class Memory(NamedTuple):
@@ -71,37 +69,6 @@ def part(edges: Edges | None, some: Any) -> Edges | None:
     return None if edges is None else Edges(*(values[some] for values in edges))
 
 
-@kernel
-def near(edges: Edges | None, n: int, unit: float, rtol: float) -> Array | None:
-    """Response in the law's scale, whose time is `unit` times that of Hertz's scale.
-
-    A last number has been added: what follows the force at once. It stands for all rates that
-    explicit steps would have to follow for little; the finer the steps, the fewer these are.
-    """
-    if edges is None:
-        return None
-    scaled, given = np.zeros(2 * SIZE + 1), edges.response[n]
-    scaled[_AT_ONCE] = 1.0
-    quick = min(_QUICK[0] * (1e-6 / rtol) ** 0.175, _QUICK[1])
-    for block in range(6):
-        at = SIZE * (block // 3) + 4 * (block % 3)
-        weight = SIZE * (block // 3) + 12 + 2 * (block % 3)
-        first, second = edges.coupling[n] * given[weight], edges.coupling[n] * given[weight + 1]
-        turns = given[at + 2] > 0.0
-        if edges.rate[n] * max(given[at], given[at + 1], given[at + 2]) > quick:
-            scaled[_AT_ONCE] += first if turns else first + second
-        else:
-            scaled[at : at + 4] = given[at : at + 4] * (edges.rate[n] / unit)
-            scaled[weight], scaled[weight + 1] = first, second
-    return scaled
-
-
-@kernel
-def at_touch(response: Array | None) -> Memories | None:
-    """Memory at first touch; None for an endless plate."""
-    return None if response is None else NO_MEMORY
-
-
 @kernel(inline=True)
 def weighted(r: Array, m: Memories) -> float:
     """Sum over the memory with the weights of the response."""
@@ -112,100 +79,6 @@ def weighted(r: Array, m: Memories) -> float:
 def _half(r: Array, at: int, m: Memory) -> float:
     first = r[at + 12] * m.x1 + r[at + 13] * m.y1 + r[at + 14] * m.x2
     return float(first + r[at + 15] * m.y2 + r[at + 16] * m.x3 + r[at + 17] * m.y3)
-
-
-@kernel(inline=True)
-def drive(response: Array | None, f: float, memory: Memories | None) -> float:
-    """Speed of the plate over its mobility."""
-    if response is None or memory is None:
-        return f
-    return float(response[_AT_ONCE] * f + weighted(response, memory))
-
-
-@kernel
-def _change(r: Array, at: int, f: float, m: Memory, pace: float) -> Memory:
-    return Memory(
-        pace * (r[at] * (f - m.x1) + r[at + 2] * m.y1),
-        pace * (r[at + 3] * f - r[at + 2] * m.x1 - r[at + 1] * m.y1),
-        pace * (r[at + 4] * (f - m.x2) + r[at + 6] * m.y2),
-        pace * (r[at + 7] * f - r[at + 6] * m.x2 - r[at + 5] * m.y2),
-        pace * (r[at + 8] * (f - m.x3) + r[at + 10] * m.y3),
-        pace * (r[at + 11] * f - r[at + 10] * m.x3 - r[at + 9] * m.y3),
-    )
-
-
-@kernel(inline=True)
-def remember(response: Array | None, f: float, memory: Memories | None, pace: float) -> Memories | None:
-    """Change of the memory per ds, from dt/ds."""
-    if response is None or memory is None:
-        return None
-    return Memories(_change(response, 0, f, memory.first, pace), _change(response, SIZE, f, memory.second, pace))
-
-
-@kernel
-def _moved(
-    m: Memory,
-    w1: float,
-    k1: Memory,
-    w2: float,
-    k2: Memory,
-    w3: float,
-    k3: Memory,
-    w4: float,
-    k4: Memory,
-    w5: float,
-    k5: Memory,
-) -> Memory:
-    return Memory(
-        m.x1 + (w1 * k1.x1 + w2 * k2.x1 + w3 * k3.x1 + w4 * k4.x1 + w5 * k5.x1),
-        m.y1 + (w1 * k1.y1 + w2 * k2.y1 + w3 * k3.y1 + w4 * k4.y1 + w5 * k5.y1),
-        m.x2 + (w1 * k1.x2 + w2 * k2.x2 + w3 * k3.x2 + w4 * k4.x2 + w5 * k5.x2),
-        m.y2 + (w1 * k1.y2 + w2 * k2.y2 + w3 * k3.y2 + w4 * k4.y2 + w5 * k5.y2),
-        m.x3 + (w1 * k1.x3 + w2 * k2.x3 + w3 * k3.x3 + w4 * k4.x3 + w5 * k5.x3),
-        m.y3 + (w1 * k1.y3 + w2 * k2.y3 + w3 * k3.y3 + w4 * k4.y3 + w5 * k5.y3),
-    )
-
-
-@kernel(inline=True)
-def moved(
-    m: Memories | None,
-    w1: float,
-    k1: Memories | None,
-    w2: float,
-    k2: Memories | None,
-    w3: float,
-    k3: Memories | None,
-    w4: float,
-    k4: Memories | None,
-    w5: float,
-    k5: Memories | None,
-) -> Memories | None:
-    """Memory at a stage or at the end of a step, from the stages before."""
-    if m is None or k1 is None or k2 is None or k3 is None or k4 is None or k5 is None:
-        return None
-    return Memories(
-        _moved(m.first, w1, k1.first, w2, k2.first, w3, k3.first, w4, k4.first, w5, k5.first),
-        _moved(m.second, w1, k1.second, w2, k2.second, w3, k3.second, w4, k4.second, w5, k5.second),
-    )
-
-
-@kernel
-def longest(edges: Edges | None) -> float:
-    """Time up to which contacts are followed [T_H]; a sphere that then presses stays."""
-    return math.inf if edges is None else LONGEST
-
-
-@kernel
-def settles(edges: Edges | None, n: int, stays: bool, possible: bool) -> bool:
-    """Whether the plate takes what is left: of a sphere that stays, or of an impossible rebound.
-
-    A sphere that stays is flagged as struck again.
-    """
-    if edges is None:
-        return False
-    if stays:
-        edges.again[n] = 1.0
-    return stays or not possible
 
 
 @kernel
@@ -226,25 +99,19 @@ def _path(r: Array, at: int, memory: Memory, t: float) -> float:
 
 
 @kernel
-def look_back(
-    edges: Edges | None,
-    n: int,
-    response: Array | None,
-    memory: Memories | None,
-    u: float,
-    mobility: float,
-    duration: float,
-) -> None:
-    """Note whether the plate comes back to a sphere that has left it with the speed -u.
+def comes_back(
+    response: Array, memory: Memories, coupling: float, pace: float, u: float, mobility: float, duration: float
+) -> bool:
+    """Whether the plate comes back to a sphere that has left it with the speed -u.
 
-    It is looked for within 300 durations of the contact.
+    It is looked for within 300 durations of the contact; `pace` is 1/tau in the units of u.
     """
-    if edges is None or response is None or memory is None:
-        return
-    edges.again[n] = 0.0
+    if pace == 0.0:
+        return False
     t = 0.01 * duration
     while t < 300.0 * duration:
-        path = _path(response, 0, memory.first, t) + _path(response, SIZE, memory.second, t)
-        if mobility * path < u * t:
-            edges.again[n] = 1.0
+        path = _path(response, 0, memory.first, pace * t) + _path(response, SIZE, memory.second, pace * t)
+        if mobility * coupling * path < u * t * pace:
+            return True
         t *= 1.2
+    return False

@@ -24,19 +24,19 @@ Coefficients are padded with zeros to a multiple of four. The last of the starts
 starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
 integration has to stop at kinks only.
 
-Laws of one pair that grow stronger with the rate of an impact stand in one array, too: a negative
-number of pieces of ln k, the strength over that of a slow test, the numbers of the longest law, and
-for each piece
+The laws of a pair that grows stronger with the rate of an impact stand in one array, too, a ladder:
+minus the number of its rungs, then a row for each rung, with rising strengths, then their laws:
 
-    TOP     ln k at its end         PER, CENTRE  of t = PER (ln k - CENTRE), from -1 to 1
-    BEGINS  index of its block      POWERS       of t, less one
-    WIDTH   numbers of a law, LOG_SCALE the logarithm of its d_Y over that of the slow pair, and
-            LOG_ONSET, likewise of the compression at which flow begins
+    STRENGTH  ln k, k the strength over that of a slow test      BEGINS, SIZE  place of its law
+    LOG_SCALE the logarithm of its d_Y over that of the slow pair
+    LOG_ONSET likewise of the compression at which flow begins   END  up to where it holds [d_Y]
 
-A block has these numbers, then those that t multiplies, those that its square multiplies, and so
-on; but SCALE and OFFSET are half the length of a piece and its middle, which are smooth where a
-length vanishes. Within a piece of ln k all laws have one layout. `at_strength` writes the law of an
-impact into an array of its own, of `room_for` numbers.
+The law of an impact is a blend of the two rungs around its strength. At the same compression, in
+the d_Y of each, these are linear in ln k: ln d_Y, the end, the force, the residual compression, the
+losses, and the work that unloading gives back, from which its exponent follows. So the energies of a
+blend add up as those of its laws. A stronger law ends at fewer d_Y; each rung follows its formulas up
+to the end of its weaker neighbour. Beyond its own end a blend goes on as any law does: its force along
+a tangent, with the same exponent and shares.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
@@ -55,9 +55,8 @@ FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
 FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
-TOP, CENTRE, PER, BEGINS, POWERS, WIDTH, STRENGTHS = range(7)
-LOG_SCALE, LOG_ONSET, HEADS = range(3)  # numbers after those of a law
-LONGEST, FIRST_ROW = 1, 2
+STRENGTH, BEGINS, SIZE, LOG_SCALE, LOG_ONSET, END, RUNG = range(7)
+_STEP = 1e-6  # relative step in d of the slope at the end of a blend
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -82,129 +81,67 @@ class UnloadingCurve(NamedTuple):
     exponent: float  # b
 
 
-@kernel
-def _piece(laws: Array, strength: float) -> int:
-    """Where the row of the piece of a strength begins."""
-    at = FIRST_ROW
-    last = at + (int(-laws[PIECES]) - 1) * STRENGTHS
-    while at < last and strength > laws[at + TOP]:
-        at += STRENGTHS
-    return at
+class BlendedLaw(NamedTuple):
+    """The law of an impact, a share of the way from one law to another."""
+
+    low: Array
+    high: Array
+    share: float  # 0: `low` alone
+    end: float  # compression up to which it holds; infinite for a law with tangents of its own
 
 
 @kernel(inline=True)
-def _place(laws: Array, at: int, strength: float) -> float:
-    """Return t of a strength in the piece whose row begins at `at`; no negative one, and no NaN."""
-    known = min(strength, laws[at + TOP]) if strength > 0.0 else 0.0
-    t: float = laws[at + PER] * (known - laws[at + CENTRE])
-    return t
+def alone(law: Array) -> BlendedLaw:
+    """Take a law by itself."""
+    return BlendedLaw(law, law, 0.0, math.inf)
 
 
 @kernel
-def _at_place(laws: Array, at: int, strength: float, number: int) -> float:
-    """Value of one number at a strength, in the piece whose row begins at `at`."""
-    t = _place(laws, at, strength)
-    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
-    k = int(laws[at + BEGINS]) + number + powers * width
-    value: float = laws[k]
-    for _ in range(powers):
-        k -= width
-        value = value * t + laws[k]
-    return value
+def _rungs_around(ladder: Array, strength: float) -> tuple[int, int, float]:
+    """Find the rows of the rungs below and above a strength, and the share of the way between."""
+    row, last = 1, 1 - (int(ladder[PIECES]) + 1) * RUNG
+    while row < last and strength >= ladder[row + RUNG]:
+        row += RUNG
+    if row == last or not strength > ladder[row]:  # beyond the ends, and for NaN
+        return row, row, 0.0
+    return row, row + RUNG, (strength - ladder[row]) / (ladder[row + RUNG] - ladder[row])
 
 
 @kernel(inline=True)
-def room_for(laws: Array) -> int:
-    """Count the numbers that `at_strength` writes at most; 0 for an array that is one law."""
-    return int(laws[LONGEST]) if laws[PIECES] < 0.0 else 0
+def _law_of_rung(ladder: Array, row: int) -> Array:
+    begins = int(ladder[row + BEGINS])
+    return ladder[begins:]
+
+
+@kernel
+def at_strength(laws: Array, strength: float) -> BlendedLaw:
+    """Law of an impact; beyond a ladder's ends that of its last rung."""
+    if laws[PIECES] > 0.0:
+        return BlendedLaw(laws[0:], laws[0:], 0.0, math.inf)
+    low, high, share = _rungs_around(laws, strength)
+    end = laws[low + END] + share * (laws[high + END] - laws[low + END])
+    return BlendedLaw(_law_of_rung(laws, low), _law_of_rung(laws, high), share, end)
 
 
 @kernel(inline=True)
-def _head_at(laws: Array, strength: float, head: int) -> float:
-    """Value whose logarithm is one of the numbers after those of a law; 1 for an array of one."""
-    if room_for(laws) == 0:
+def _scale_at(laws: Array, strength: float, column: int) -> float:
+    """Value whose logarithm is in a column of the rungs; 1 for an array of one law."""
+    if laws[PIECES] > 0.0:
         return 1.0
-    at = _piece(laws, strength)
-    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + head))
+    low, high, share = _rungs_around(laws, strength)
+    return math.exp(laws[low + column] + share * (laws[high + column] - laws[low + column]))
 
 
 @kernel
 def growth_at(laws: Array, strength: float) -> float:
     """Yield compression of an impact over that of the slow pair."""
-    return _head_at(laws, strength, LOG_SCALE)
+    return _scale_at(laws, strength, LOG_SCALE)
 
 
 @kernel
 def onset_at(laws: Array, strength: float) -> float:
     """Compression of an impact at which flow begins, over the slow pair's yield compression."""
-    return _head_at(laws, strength, LOG_ONSET)
-
-
-@kernel
-def at_strength(laws: Array, strength: float, room: Array) -> Array:
-    """Law of an impact among several, written into `room`; beyond them it is that of their end."""
-    at = _piece(laws, strength)
-    t = _place(laws, at, strength)
-    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
-    last = int(laws[at + BEGINS]) + powers * width
-    for n in range(width):
-        room[n] = laws[last + n]
-    for k in range(powers):
-        begins = last - (k + 1) * width
-        for n in range(width):
-            room[n] = room[n] * t + laws[begins + n]
-    if powers > 0:
-        _by_scale(room, int(room[CURVE]), int(room[PIECES]), PIECE)
-        _by_scale(room, int(room[FAMILY]), int(room[UNLOADINGS]), UNLOADING_ROW)
-    return room
-
-
-@kernel
-def _put(laws: Array, at: int, t: float, begins: int, count: int, room: Array) -> None:
-    """Write some of the numbers of a law at t of the piece whose row begins at `at`."""
-    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
-    last = int(laws[at + BEGINS]) + powers * width
-    for n in range(begins, begins + count):
-        room[n] = laws[last + n]
-    for k in range(powers):
-        row = last - (k + 1) * width
-        for n in range(begins, begins + count):
-            room[n] = room[n] * t + laws[row + n]
-
-
-@kernel
-def at_compression(laws: Array, strength: float, dm: float, room: Array) -> Array:
-    """`at_strength`, but only of what belongs to a contact that is loaded to dm.
-
-    A law has thousands of numbers and a contact asks for a hundred of them.
-    """
-    at = _piece(laws, strength)
-    t = _place(laws, at, strength)
-    _put(laws, at, t, 0, HEADER, room)
-    _put(laws, at, t, int(room[STARTS]), int(room[PIECES]) + 1, room)
-    row = row_of(room, piece_at(room, math.sqrt(dm)))
-    _put(laws, at, t, row, PIECE, room)
-    _put(laws, at, t, int(room[row + AT]), int(room[row + DEGREE]) // 4 * 4 + 4, room)
-    _put(laws, at, t, int(room[FAMILY_STARTS]), int(room[UNLOADINGS]) + 1, room)
-    one = _unloading_row(room, dm)
-    if one > 0:
-        _put(laws, at, t, one, UNLOADING_ROW, room)
-        for which in range(FUNCTIONS):
-            k = one + OFFSET + 1 + which * FUNCTION
-            count = int(room[k + FUNCTION_DEGREE]) // 4 * 4 + 4
-            _put(laws, at, t, int(room[k + FUNCTION_AT]), count, room)
-    if int(laws[at + POWERS]) > 0:
-        _by_scale(room, row, 1, PIECE)
-        _by_scale(room, one, min(one, 1), UNLOADING_ROW)
-    return room
-
-
-@kernel
-def _by_scale(room: Array, at: int, count: int, length: int) -> None:
-    """Put SCALE and OFFSET in place of half the length and the middle of each piece."""
-    for k in range(at, at + count * length, length):
-        room[k + SCALE] = 1.0 / room[k + SCALE]
-        room[k + OFFSET] *= room[k + SCALE]
+    return _scale_at(laws, strength, LOG_ONSET)
 
 
 @kernel(inline=True)
@@ -260,17 +197,32 @@ def piece_force(law: Array, k: int, q: float) -> float:
     return polynomial(law, int(law[row + AT]), int(law[row + DEGREE]), t)
 
 
-@kernel(cache=True)
-def loading(law: Array, q: float) -> float:
-    """Force while the compression q^2 grows."""
+@kernel(inline=True)
+def loading_of(law: Array, q: float) -> float:
+    """Compute `loading` of a law that is not blended."""
     return piece_force(law, piece_at(law, q), q)
 
 
 @kernel(inline=True)
-def lossless(law: Array) -> float:
+def _blended_loading(law: BlendedLaw, q: float) -> float:
+    f = loading_of(law.low, q)
+    return f + law.share * (loading_of(law.high, q) - f) if law.share > 0.0 else f
+
+
+@kernel
+def loading(law: BlendedLaw, q: float) -> float:
+    """Force while the compression q^2 grows."""
+    if not q * q > law.end:
+        return _blended_loading(law, q)
+    last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
+    slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
+    return last + slope * (q * q - law.end)
+
+
+@kernel(inline=True)
+def lossless(law: BlendedLaw) -> float:
     """Largest compression from which a contact unloads without a loss."""
-    least: float = law[int(law[FAMILY_STARTS])]
-    return least
+    return max(law.low[int(law.low[FAMILY_STARTS])], law.high[int(law.high[FAMILY_STARTS])])
 
 
 @kernel(inline=True)
@@ -294,48 +246,45 @@ def _function(law: Array, row: int, which: int, dm: float) -> float:
     return value if power == 0.0 else value * math.pow(dm - 1.0, power)
 
 
-@kernel(cache=True)
-def residual(law: Array, dm: float) -> float:
-    """Compression left after unloading from dm."""
-    row = _unloading_row(law, dm)
-    return _function(law, row, RESIDUAL, dm) if row > 0 else 0.0
-
-
-@kernel(cache=True)
-def loss(law: Array, dm: float) -> float:
-    """Loss of a contact that was loaded to dm: loading work minus unloading work."""
-    row = _unloading_row(law, dm)
-    return _function(law, row, LOSS, dm) if row > 0 else 0.0
-
-
-@kernel(cache=True)
-def other_loss(law: Array, dm: float) -> float:
-    """Part of the loss that is not plastic work."""
-    row = _unloading_row(law, dm)
-    return _function(law, row, OTHER, dm) if row > 0 else 0.0
-
-
 @kernel(inline=True)
-def residual_and_losses(law: Array, dm: float) -> tuple[float, float, float]:
-    """`residual`, `loss` and `other_loss` at once."""
+def _losses_of(law: Array, dm: float) -> tuple[float, float, float]:
     row = _unloading_row(law, dm)
     if row == 0:
         return 0.0, 0.0, 0.0
-    return (_function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm))
+    return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm)
+
+
+@kernel
+def residual_and_losses(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
+    """Compression left after unloading from dm, the loss, and the part of it that is not plastic."""
+    inside = min(dm, law.end)
+    left, lost, other = _losses_of(law.low, inside)
+    if law.share > 0.0:
+        high = _losses_of(law.high, inside)
+        left += law.share * (high[0] - left)
+        lost += law.share * (high[1] - lost)
+        other += law.share * (high[2] - other)
+    if dm > inside:  # plastic work stays the same share of the loading work
+        curve, last, f = unloading(law, inside), loading(law, math.sqrt(inside)), loading(law, math.sqrt(dm))
+        work = lost + 2.0 * last * (inside - left) / (curve.exponent + 2.0)
+        plastic, more = (lost - other) / work, 0.5 * (last + f) * (dm - inside)
+        left *= dm / inside
+        lost = work + more - 2.0 * f * (dm - left) / (curve.exponent + 2.0)
+        other = lost - plastic * (work + more)
+    return left, lost, other
 
 
 @kernel(inline=True)
-def is_hertz(law: Array) -> bool:
+def is_hertz(law: BlendedLaw) -> bool:
     """Whether the loading curve begins as Hertz's, q^3."""
-    row = row_of(law, 0)
-    at = int(law[row + AT])
-    same = law[row + DEGREE] == 3.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
-    return bool(same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0)
+    row = row_of(law.low, 0)
+    at = int(law.low[row + AT])
+    same = law.low[row + DEGREE] == 3.0 and law.low[row + SCALE] == 1.0 and law.low[row + OFFSET] == 0.0
+    return bool(same and law.low[at] == law.low[at + 1] == law.low[at + 2] == 0.0 and law.low[at + 3] == 1.0)
 
 
 @kernel(inline=True)
-def stiffening(law: Array) -> float:
-    """Return s of a loading curve that begins as q^3 (1 + s q); 0 for Hertz's and for others."""
+def _stiffening_of(law: Array) -> float:
     row = row_of(law, 0)
     at = int(law[row + AT])
     same = law[row + DEGREE] == 4.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
@@ -344,8 +293,14 @@ def stiffening(law: Array) -> float:
 
 
 @kernel(inline=True)
-def work_at_yield(law: Array) -> float:
-    """Compute the loading work up to yield, from the first piece, a polynomial in q [F_Y d_Y]."""
+def stiffening(law: BlendedLaw) -> float:
+    """Return s of a loading curve that begins as q^3 (1 + s q); 0 for Hertz's and for others."""
+    s = _stiffening_of(law.low)
+    return s + law.share * (_stiffening_of(law.high) - s)
+
+
+@kernel(inline=True)
+def _work_at_yield_of(law: Array) -> float:
     row, work = row_of(law, 0), 0.0
     at = int(law[row + AT])
     for n in range(int(law[row + DEGREE]) + 1):
@@ -354,44 +309,66 @@ def work_at_yield(law: Array) -> float:
 
 
 @kernel
-def returned(law: Array) -> tuple[float, float, float]:
+def work_at_yield(law: BlendedLaw) -> float:
+    """Compute the loading work up to yield, from the first piece, a polynomial in q [F_Y d_Y]."""
+    work = _work_at_yield_of(law.low)
+    return work + law.share * (_work_at_yield_of(law.high) - work)
+
+
+@kernel
+def returned(law: BlendedLaw) -> tuple[float, float, float]:
     """Shares of compression and work that bodies with losses give back, 1 and 1 without losses.
 
     They are those of the shallowest contacts, whose loss-free unloading would be Hertz's. The third
     number is the part of the energy left at the largest compression that is lost before it.
     """
     dm = 2.0 * lossless(law)
-    row = _unloading_row(law, dm) if dm < 1.0 else 0
-    left = _function(law, row, RESIDUAL, dm) / dm if row > 0 else 0.0
-    if left == 0.0:
+    curve = unloading(law, dm)
+    if not dm < 1.0 or curve.residual == 0.0:
         return 1.0, 1.0, 0.0
-    work = 2.5 * (1.0 - left) / (0.5 * _function(law, row, EXPONENT, dm) + 1.0)
-    return 1.0 - left, work, -math.log(work) * (EARLY + LESS_EARLY * math.log(work))
+    share = 1.0 - curve.residual / dm
+    work = 2.5 * share / (0.5 * curve.exponent + 1.0)
+    return share, work, -math.log(work) * (EARLY + LESS_EARLY * math.log(work))
 
 
 @kernel(inline=True)
-def leaves_hertz(law: Array) -> float:
+def leaves_hertz(law: BlendedLaw) -> float:
     """Compression up to which contacts follow Hertz's law and unload without a loss."""
     if not is_hertz(law):
         return 0.0
-    leaves = start_of(law, 1)
+    leaves = start_of(law.low, 1)
     return min(leaves * leaves, lossless(law))
 
 
-@kernel
-def unloading(law: Array, dm: float) -> UnloadingCurve:
-    """Find the unloading curve from dm."""
+@kernel(inline=True)
+def _unloading_of(law: Array, dm: float) -> tuple[float, float, float]:
+    """Force at dm, residual compression, and exponent of unloading."""
     row = _unloading_row(law, dm)
-    if row == 0:
+    return loading_of(law, math.sqrt(dm)), _function(law, row, RESIDUAL, dm), _function(law, row, EXPONENT, dm)
+
+
+@kernel
+def unloading(law: BlendedLaw, dm: float) -> UnloadingCurve:
+    """Find the unloading curve from dm."""
+    if not dm > lossless(law):
         return UnloadingCurve(0.0, 0.0, 3.0)
-    left = _function(law, row, RESIDUAL, dm)
-    exponent = _function(law, row, EXPONENT, dm)
+    inside = min(dm, law.end)
+    f, left, exponent = _unloading_of(law.low, inside)
+    if law.share > 0.0:
+        high = _unloading_of(law.high, inside)
+        back = f * (inside - left) / (exponent + 2.0)  # half the work that is given back
+        back += law.share * (high[0] * (inside - high[1]) / (high[2] + 2.0) - back)
+        f += law.share * (high[0] - f)
+        left += law.share * (high[1] - left)
+        exponent = f * (inside - left) / back - 2.0
+    if dm > inside:
+        f, left = loading(law, math.sqrt(dm)), left * (dm / inside)
     span = dm - left
     if exponent == 3.0:
         reach = span * math.sqrt(span)
     else:
         reach = math.pow(span, 0.5 * exponent)
-    return UnloadingCurve(left, loading(law, math.sqrt(dm)) / reach, exponent)
+    return UnloadingCurve(left, f / reach, exponent)
 
 
 @kernel(inline=True)
@@ -402,37 +379,22 @@ def power_force(stiffness: float, exponent: float, q: float) -> float:
     return math.copysign(stiffness * math.pow(abs(q), exponent), q)
 
 
-@kernel(cache=True)
-def unloading_force(law: Array, curve: UnloadingCurve, q: float) -> float:
+@kernel
+def unloading_force(law: BlendedLaw, curve: UnloadingCurve, q: float) -> float:
     """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:
         return loading(law, q)
     return power_force(curve.stiffness, curve.exponent, q)
 
 
+def rungs(ladder: Array) -> Array:
+    """Rows of a ladder."""
+    return ladder[1 : 1 - int(ladder[PIECES]) * RUNG].reshape(-1, RUNG)
+
+
 def strongest(laws: Array) -> float:
     """Return ln k up to which laws reach; infinite for an array that is one law."""
-    last = FIRST_ROW + (pieces_of(laws) - 1) * STRENGTHS
-    return float(laws[last + TOP]) * (1.0 + 1e-12) if pieces_of(laws) else math.inf
-
-
-def tops(laws: Array) -> Array:
-    """Return 0 and ln k at the ends of the pieces."""
-    rows = FIRST_ROW + STRENGTHS * np.arange(pieces_of(laws))
-    return np.append(0.0, laws[rows + TOP])
-
-
-def pieces_of(laws: Array) -> int:
-    """Count the pieces of ln k; 0 for an array that is one law."""
-    return max(int(-laws[PIECES]), 0)
-
-
-def by_length(law: Array) -> None:
-    """Put half the length and the middle of each piece in place of SCALE and OFFSET."""
-    for block, count, length in ((CURVE, PIECES, PIECE), (FAMILY, UNLOADINGS, UNLOADING_ROW)):
-        rows = int(law[block]) + length * np.arange(int(law[count]))
-        law[rows + OFFSET] /= law[rows + SCALE]
-        law[rows + SCALE] = 1.0 / law[rows + SCALE]
+    return float(rungs(laws)[-1, STRENGTH]) * (1.0 + 1e-12) if laws[PIECES] < 0.0 else math.inf
 
 
 def check(law: Array) -> None:
@@ -474,15 +436,14 @@ def check(law: Array) -> None:
 
 
 def check_strengths(laws: Array) -> None:
-    """Refuse an array that is not several laws, as `check` does for one."""
-    for at in range(FIRST_ROW, FIRST_ROW + max(pieces_of(laws), 1) * STRENGTHS, STRENGTHS):
-        row = laws[at : at + STRENGTHS]
-        begins, terms, width = (_whole(row, n, laws.size) for n in (BEGINS, POWERS, WIDTH))
-        longest = _whole(laws, LONGEST, laws.size)
-        if not (HEADER + HEADS <= width <= longest and begins + (terms + 1) * width <= laws.size):
+    """Refuse an array that is not a ladder of laws, as `check` does for one."""
+    if not 0 < -laws[PIECES] * RUNG < laws.size:
+        raise ValueError("its laws of several strengths have no rungs")
+    for row in rungs(laws):
+        begins, size = (_whole(row, n, laws.size) for n in (BEGINS, SIZE))
+        if not begins + size <= laws.size:
             raise ValueError("its laws of several strengths end within one of them")
-        for strength in (row[CENTRE], row[TOP]):
-            check(at_strength(laws, strength, np.empty(longest))[: width - HEADS])
+        check(laws[begins : begins + size])
 
 
 def _whole(row: Array, column: int, most: int) -> int:

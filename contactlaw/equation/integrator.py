@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import edge, force, legs, losses, motion, plate
+from contactlaw.equation import force, legs, losses, motion
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
@@ -28,9 +28,8 @@ _LANDED = 1e-9
 LEAST_RESTITUTION = 1e-7
 # Steps get finer each time the largest possible restitution falls by this factor.
 FINER_EVERY = 1e-2
-# no event; end of loading; a root compression is reached; a time is reached; little energy is left;
-# the largest compression is reached again
-NONE, TURN, LEVEL, TIME, _ENERGY_LOW, _AGAIN = range(6)
+# no event; end of loading; a root compression is reached; a time is reached; little energy is left
+NONE, TURN, LEVEL, TIME, _ENERGY_LOW = range(5)
 
 
 class Scale(NamedTuple):
@@ -88,60 +87,42 @@ def _step(
 
     The rates at its end are the first ones of the next step. The error is in tolerances.
     """
-    q, u, m = state.q, state.u, state.memory
-    a1, b1, f1, k1 = state.dq, state.du, state.f, state.dmemory
+    q, u, a1, b1, f1 = state.q, state.u, state.dq, state.du, state.f
     q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
-    m2 = edge.moved(m, h / 5, k1, 0.0, k1, 0.0, k1, 0.0, k1, 0.0, k1)
-    a2, b2, _, k2 = motion.rates(contact, leg, kind, q2, u2, m2)
+    a2, b2, _ = motion.rates(contact, leg, kind, q2, u2)
     q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
     u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
-    m3 = edge.moved(m, 3 / 40 * h, k1, 9 / 40 * h, k2, 0.0, k1, 0.0, k1, 0.0, k1)
-    a3, b3, f3, k3 = motion.rates(contact, leg, kind, q3, u3, m3)
+    a3, b3, f3 = motion.rates(contact, leg, kind, q3, u3)
     q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
     u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
-    m4 = edge.moved(m, 44 / 45 * h, k1, -56 / 15 * h, k2, 32 / 9 * h, k3, 0.0, k1, 0.0, k1)
-    a4, b4, f4, k4 = motion.rates(contact, leg, kind, q4, u4, m4)
+    a4, b4, f4 = motion.rates(contact, leg, kind, q4, u4)
     q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-    m5 = edge.moved(m, 19372 / 6561 * h, k1, -25360 / 2187 * h, k2, 64448 / 6561 * h, k3, -212 / 729 * h, k4, 0.0, k1)
-    a5, b5, f5, k5 = motion.rates(contact, leg, kind, q5, u5, m5)
+    a5, b5, f5 = motion.rates(contact, leg, kind, q5, u5)
     q6 = q + h * (9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5)
     u6 = u + h * (9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5)
-    m6 = edge.moved(
-        m, 9017 / 3168 * h, k1, -355 / 33 * h, k2, 46732 / 5247 * h, k3, 49 / 176 * h, k4, -5103 / 18656 * h, k5
-    )
-    a6, b6, f6, k6 = motion.rates(contact, leg, kind, q6, u6, m6)
+    a6, b6, f6 = motion.rates(contact, leg, kind, q6, u6)
     w1, w3, w4, w5, w6 = (h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84)
     q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
-    m7 = edge.moved(m, w1, k1, w3, k3, w4, k4, w5, k5, w6, k6)
-    a7, b7, f7, k7 = motion.rates(contact, leg, kind, q7, u7, m7)
+    a7, b7, f7 = motion.rates(contact, leg, kind, q7, u7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
-    response = contact.plate.response
     work = state.work + (
-        w1 * losses.power(q, f1, edge.drive(response, f1, m))
-        + w3 * losses.power(q3, f3, edge.drive(response, f3, m3))
-        + w4 * losses.power(q4, f4, edge.drive(response, f4, m4))
-        + w5 * losses.power(q5, f5, edge.drive(response, f5, m5))
-        + w6 * losses.power(q6, f6, edge.drive(response, f6, m6))
+        w1 * losses.power(q, f1)
+        + w3 * losses.power(q3, f3)
+        + w4 * losses.power(q4, f4)
+        + w5 * losses.power(q5, f5)
+        + w6 * losses.power(q6, f6)
     )
     error_q = (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6) - 1 / 40 * a7
     error_u = (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6) - 1 / 40 * b7
     error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
-    return ScaledState(q7, u7, t, work, a7, b7, f7, m7, k7), error
+    return ScaledState(q7, u7, t, work, a7, b7, f7), error
 
 
 @kernel(inline=True)
 def _follow(
-    contact: ScaledContact,
-    leg: Leg,
-    kind: int,
-    state: ScaledState,
-    h: float,
-    scale: Scale,
-    level: float,
-    high: float,
-    until: float,
+    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale, level: float, until: float
 ) -> tuple[ScaledState, int, float, int]:
     """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
@@ -160,13 +141,11 @@ def _follow(
                 event = TURN
             elif (trial.q > level) if loading else (trial.q < level):
                 event = LEVEL
-            elif trial.q > high:
-                event, level = _AGAIN, high
             elif trial.t > until:
                 event = TIME
             elif (
                 legs.unloads(leg)
-                and plate.only_recedes(contact.plate)
+                and contact.mobility > 0.0
                 and trial.u * trial.u < scale.energy_low
                 and _rebound_speed_squared(leg, trial) < scale.energy_low
             ):
@@ -210,18 +189,9 @@ def _finer(scale: Scale, spent: float) -> Scale:
 
 @kernel
 def follow(
-    contact: ScaledContact,
-    leg: Leg,
-    state: ScaledState,
-    h: float,
-    scale: Scale,
-    level: float,
-    high: float,
-    until: float,
+    contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, level: float, until: float
 ) -> tuple[ScaledState, int, float, int]:
     """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
-
-    Unloading also ends at the level `high` above, from where the contact loads again.
 
     Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
@@ -229,20 +199,20 @@ def follow(
     spent = (LEAST_RESTITUTION * scale.u) ** 2
     steps = 0
     while True:
-        if legs.unloads(leg) and plate.endless(contact.plate):
+        if legs.unloads(leg):
             # a little less, because the last event _ENERGY_LOW was met only to 1e-9
             energy_low = (1.0 - 1e-6) * _rebound_speed_squared(leg, state)
             while energy_low < scale.energy_low and scale.energy_low > spent:
                 scale = _finer(scale, spent)
             if energy_low < spent:
-                contact = ScaledContact(contact.law, plate.held(contact.plate))
-                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work, state.memory)
+                contact = ScaledContact(contact.law, 0.0)
+                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
         if leg.kind == CUBIC:
-            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, high, until)
+            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
         elif leg.kind == POWER:
-            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, high, until)
+            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, until)
         else:
-            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, high, until)
+            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
         steps += more
         if event != _ENERGY_LOW or more == MAX_STEPS:
             return state, event, h, steps
@@ -254,7 +224,7 @@ def _to_leg(contact: ScaledContact, leg: Leg, residual: float, state: ScaledStat
     q = state.q
     if leg.residual != residual:
         q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
-    return motion.start(contact, leg, q, state.u, state.t, state.work, state.memory)
+    return motion.start(contact, leg, q, state.u, state.t, state.work)
 
 
 @kernel
@@ -263,9 +233,7 @@ def after(
 ) -> tuple[UnloadingCurve, Leg, ScaledState]:
     """Next leg, and the state on it, after a leg that ended at its level or with loading."""
     residual = leg.residual
-    if event == _AGAIN:
-        leg = legs.up_again(contact.law, math.sqrt(state.q * state.q + residual))
-    elif legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
+    if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
         dm = state.q * state.q
         curve = force.unloading(contact.law, dm)
         leg = legs.down(contact.law, curve, dm)

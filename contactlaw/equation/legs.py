@@ -10,10 +10,9 @@ sqrt(d - dr).
 import math
 from typing import NamedTuple
 
-from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
 _LOADING, _UNLOADING = range(2)
@@ -51,53 +50,54 @@ def unloads(leg: Leg) -> bool:
 
 
 @kernel(inline=True)
-def force_on(leg: Leg, kind: int, law: Array, q: float) -> float:
+def force_on(leg: Leg, kind: int, law: BlendedLaw, q: float) -> float:
     """Force on a leg; its kind is an argument so that the compiler knows it."""
     if kind == CUBIC:  # Hertz's law, the linear branch of MYC, most unloading
         return (leg.c0 + leg.c1 * q) + (q * q) * (leg.c2 + leg.c3 * q)
     if kind == POWER:
         return force.power_force(leg.c3, leg.exponent, q)
+    if q * q > law.end:
+        return force.loading(law, q)
     # a trial step may pass the end of a loading leg: the next piece of the law goes on there
-    k, last = leg.first, int(law[force.PIECES]) - 1 if leg.part == _LOADING else leg.last
-    while k < last and q >= force.start_of(law, k + 1):
+    k, last = leg.first, int(law.low[force.PIECES]) - 1 if leg.part == _LOADING else leg.last
+    while k < last and q >= force.start_of(law.low, k + 1):
         k += 1
-    return force.piece_force(law, k, q)
+    f = force.piece_force(law.low, k, q)
+    return f + law.share * (force.loading_of(law.high, q) - f) if law.share > 0.0 else f
 
 
 @kernel
-def _along_loading(law: Array, part: int, first: int, last: int, level: float) -> Leg:
+def _along_loading(law: BlendedLaw, part: int, first: int, last: int, level: float) -> Leg:
     """Leg on pieces of the loading curve."""
-    row = force.row_of(law, first)
-    degree, at = int(law[row + force.DEGREE]), int(law[row + force.AT])
-    if last == first and degree <= 3 and law[row + force.SCALE] == 1.0 and law[row + force.OFFSET] == 0.0:
-        c1 = law[at + 1] if degree > 0 else 0.0
-        c2 = law[at + 2] if degree > 1 else 0.0
-        c3 = law[at + 3] if degree > 2 else 0.0
-        return Leg(part, level, 0.0, CUBIC, first, last, law[at], c1, c2, c3, 0.0)
+    own = law.low
+    row = force.row_of(own, first)
+    degree, at = int(own[row + force.DEGREE]), int(own[row + force.AT])
+    plain = law.share == 0.0 and own[row + force.SCALE] == 1.0 and own[row + force.OFFSET] == 0.0
+    if plain and last == first and degree <= 3:
+        c1 = own[at + 1] if degree > 0 else 0.0
+        c2 = own[at + 2] if degree > 1 else 0.0
+        c3 = own[at + 3] if degree > 2 else 0.0
+        return Leg(part, level, 0.0, CUBIC, first, last, own[at], c1, c2, c3, 0.0)
     return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def up(law: Array, first: int) -> Leg:
+def up(law: BlendedLaw, first: int) -> Leg:
     """Leg of loading from a kink to the next; `first` is the piece that begins at the kink."""
-    following = int(law[force.row_of(law, first) + force.NEXT])
-    level = force.start_of(law, following)
+    following = int(law.low[force.row_of(law.low, first) + force.NEXT])
+    level = force.start_of(law.low, following)
+    if level < math.inf:
+        level = min(level, math.sqrt(law.end))
     return _along_loading(law, _LOADING, first, following - 1, level)
 
 
 @kernel
-def up_again(law: Array, q: float) -> Leg:
-    """Leg of loading that goes on from a root compression."""
-    return up(law, int(law[force.row_of(law, force.piece_at(law, q)) + force.FIRST]))
-
-
-@kernel
-def down(law: Array, curve: UnloadingCurve, dm: float) -> Leg:
+def down(law: BlendedLaw, curve: UnloadingCurve, dm: float) -> Leg:
     """Leg of unloading from dm, with which the contact ends."""
     if curve.stiffness > 0.0:
         kind = CUBIC if curve.exponent == 3.0 else POWER
         return Leg(_UNLOADING, 0.0, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
     k, q = FIRST, math.sqrt(dm)
-    while force.start_of(law, k + 1) < q:
+    while force.start_of(law.low, k + 1) < q:
         k += 1
     return _along_loading(law, _UNLOADING, FIRST, k, 0.0)

@@ -11,9 +11,9 @@ scale; ds = dt/(2 q).
 
 from typing import Any, NamedTuple
 
-from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
+from contactlaw.equation.force import BlendedLaw
 
 
 class Losses(NamedTuple):
@@ -33,13 +33,13 @@ DESCRIPTIONS = Losses(
 
 
 @kernel(inline=True)
-def power(q: float, f: float, drive: float) -> float:
-    """Work that the waves take per ds over the plate's mobility, from its speed over that."""
-    return 2.0 * q * f * drive
+def power(q: float, f: float) -> float:
+    """Work that the waves take per ds, over the plate's mobility."""
+    return 2.0 * q * f * f
 
 
 @kernel(inline=True)
-def at_the_contact(law: Array, dm: float) -> tuple[float, float, float]:
+def at_the_contact(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
     """Residual compression, and plastic and other work, of a contact that was loaded to dm."""
     residual, loss, other = force.residual_and_losses(law, dm)
     return residual, loss - other, other

@@ -18,21 +18,19 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
     q   root compression, sqrt(d - dr)       dr     residual compression, Eq. 17
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from contactlaw._arrays import Array
 from contactlaw._jit import kernel
-from contactlaw.equation import edge, legs, plate
-from contactlaw.equation.edge import Memories
+from contactlaw.equation import legs, plate
+from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import Leg
-from contactlaw.equation.plate import PlateMobility
 
 
 class ScaledContact(NamedTuple):
     """A contact in the law's scale: its force law and its plate."""
 
-    law: Array  # data of the force law
-    plate: PlateMobility
+    law: BlendedLaw
+    mobility: float  # beta, lambda y^(1/4)
 
 
 class ScaledState(NamedTuple):
@@ -45,32 +43,24 @@ class ScaledState(NamedTuple):
     dq: float  # dq/ds
     du: float  # du/ds
     f: float
-    memory: Any  # of the plate; None for one without edges
-    dmemory: Any
 
 
 @kernel(inline=True)
-def rates(
-    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float, memory: Memories | None
-) -> tuple[float, float, float, Memories | None]:
-    """dq/ds, du/ds, the force, and the change of the memory."""
+def rates(contact: ScaledContact, leg: Leg, kind: int, q: float, u: float) -> tuple[float, float, float]:
+    """dq/ds, du/ds and the force."""
     f = legs.force_on(leg, kind, contact.law, q)
-    change = edge.remember(contact.plate.response, f, memory, 2.0 * q)
-    return u - plate.speed(contact.plate, f, memory), -2.0 * q * f, f, change
+    return u - plate.speed(contact.mobility, f), -2.0 * q * f, f
 
 
 @kernel
-def start(
-    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: float, memory: Memories | None
-) -> ScaledState:
+def start(contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: float) -> ScaledState:
     """State on a leg, with the rates there."""
-    dq, du, f, dmemory = rates(contact, leg, leg.kind, q, u, memory)
-    return ScaledState(q, u, t, work, dq, du, f, memory, dmemory)
+    dq, du, f = rates(contact, leg, leg.kind, q, u)
+    return ScaledState(q, u, t, work, dq, du, f)
 
 
 @kernel
 def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
     """Leg that begins at first touch, and the state there."""
     leg = legs.up(contact.law, legs.FIRST)
-    memory = edge.at_touch(contact.plate.response)
-    return leg, start(contact, leg, 0.0, speed, 0.0, 0.0, memory)
+    return leg, start(contact, leg, 0.0, speed, 0.0, 0.0)

@@ -32,6 +32,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
+from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.outcome import History
 
 # What a tangential force changes at the contact point of a solid sphere, beside its centre: 1 for
@@ -64,7 +65,7 @@ def limited(wish: float, most: float) -> float:
 
 
 @kernel
-def stiffness_at(law: Array, y: float, unit: float, largest: float, d: float, f: float) -> Stiffness:
+def stiffness_at(law: BlendedLaw, y: float, unit: float, largest: float, d: float, f: float) -> Stiffness:
     """Elastic part of a contact that was loaded up to `largest`; y = inf follows Hertz's law.
 
     `unit` is K of Hertz's law. A finite sphere's centre approaches less than the half-spaces of
@@ -86,7 +87,7 @@ def stiffness_at(law: Array, y: float, unit: float, largest: float, d: float, f:
         dm = largest / y
         if dm > 1.0:
             back = force.loading(law, math.sqrt(dm)) * (dm - left / y) / (exponent + 1.0)
-            work += early * (work - back / (back + force.loss(law, dm)))
+            work += early * (work - back / (back + force.residual_and_losses(law, dm)[1]))
         exponent = (exponent + 1.0) * work / span - 1.0
     power = 2.0 if exponent == 1.5 else 1.0 / max(exponent - 1.0, FLATTEST)
     k = span * exponent * f / (d - left) if d > left else 0.0
@@ -149,7 +150,7 @@ def pull(
 
 
 @kernel
-def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stretch: Array) -> None:
+def slide(law: BlendedLaw, y: float, kappa: float, path: History, speed: Array, stretch: Array) -> None:
     """Turn speeds of the contact point before an impact into those after it [mu V0].
 
     All have the same normal history, `path`. In each step the impulse of the normal force, which
@@ -184,11 +185,9 @@ def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stret
 
 
 @kernel(cache=True)
-def slide_all(law: Array, y: Array, s: Array, kappa: float, paths: History, speed: Array, springs: int) -> None:
+def slide_all(laws: Array, y: Array, s: Array, kappa: float, paths: History, speed: Array, springs: int) -> None:
     """`slide` for speeds (histories, speeds); s is the strength of the impacts."""
-    room = np.empty(force.room_for(law))
     stretch = np.empty((springs, speed.shape[1]))
     for n in range(speed.shape[0]):
         path = History(paths.time[n], paths.force[n], paths.compression[n], paths.impulse[n])
-        own = law if room.size == 0 else force.at_strength(law, s[n], room)
-        slide(own, y[n], kappa, path, speed[n], stretch)
+        slide(force.at_strength(laws, s[n]), y[n], kappa, path, speed[n], stretch)

@@ -20,15 +20,15 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion
+from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion, near_edge
 from contactlaw.equation.edge import Edges
+from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
-from contactlaw.equation.losses import Losses
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
-from contactlaw.equation.plate import PlateMobility
 
+_CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
@@ -73,19 +73,20 @@ _NO_NOTES = Notes(*np.empty((5, 0, 0)))
 
 @kernel(cache=True)
 def _integrate(
-    goal: int, law: Array, lam: Array, y: Array, s: Array, rtol: float, notes: Notes, out: Array, edges: Edges | None
+    goal: int, laws: Array, lam: Array, y: Array, s: Array, rtol: float, notes: Notes, out: Array, edges: Edges | None
 ) -> None:
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
     The solution of each goes into a column of out, in the order of `Solution`.
     """
-    room, own, made = np.empty(force.room_for(law)), law, math.nan
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            if room.size > 0 and s[n] != made:  # it takes a quarter of an integration
-                own, made = force.at_strength(law, s[n], room), s[n]
-            one = follow_impact(goal, own, lam[n], y[n], rtol, notes, n, edges)
+            law = force.at_strength(laws, s[n])
+            if edges is None:
+                one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
+            else:
+                one = follow_near(law, lam[n], y[n], notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
                 if out[0, n] == OK and not abs(one[k]) < math.inf:
@@ -93,33 +94,35 @@ def _integrate(
 
 
 @kernel
-def follow_impact(
-    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int, edges: Edges | None
-) -> Solution:
-    """Integrate one impact, and note points of its path in row n."""
+def _shallow(law: BlendedLaw, y: float) -> float:
+    """Yield compression to solve with, of a slow impact under a law with losses.
+
+    Slower impacts lose the same share, but the law knows no loss of the shallowest contacts.
+    """
     if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
-        # slower impacts lose the same share, but the law knows no loss of the shallowest contacts
-        y = 0.05 / force.lossless(law)
+        return 0.05 / force.lossless(law)
+    return y
+
+
+@kernel
+def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float, notes: Notes, n: int) -> Solution:
+    """Integrate one impact, and note points of its path in row n."""
+    y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t, rtol)))
+    contact = ScaledContact(law, lam * scale.t)
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
-    stays = False
     while going:
-        level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
+        level, until, loading = leg.level, math.inf, legs.is_loading(leg)
         if goal == AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
-        # a plate that comes back may press the sphere beyond its largest compression
-        high = math.inf
-        if edges is not None and not loading:
-            high = math.sqrt(top.q * top.q - leg.residual)
         event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
-            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, high, until)
+            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
         # the leg ends unless the event was only a time or a compression to note
         ends = event != TIME and (event != LEVEL or level == leg.level)
@@ -135,29 +138,16 @@ def follow_impact(
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
         noted = here
-        if event == TIME and goal != AT_TIMES:  # the sphere stays on the plate
-            stays = True
-            break
         going = going and (goal < AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
-    if goal == TO_THE_END:
-        edge.look_back(edges, n, contact.plate.response, state.memory, state.u, contact.plate.mobility, state.t)
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
-    lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
-    most = 1.0 if edges is None else math.sqrt(max(1.0 - lost.plastic - lost.other, 0.0))
-    rebound = min(max(-state.u / scale.u, 0.0), most)  # a step's error may put it outside
-    wave_rate = 2.0 * scale.t * state.work / scale.u**2
-    # the plate has what the sphere still has, or what the fit of its response is off by
-    if edge.settles(edges, n, stays, 0.0 < rebound < most and wave_rate >= 0.0):
-        wave = max(1.0 - rebound * rebound - lost.plastic - lost.other, 0.0)
-        lost = Losses(lost.plastic, wave, lost.other)
-        wave_rate = wave / lam if lam > 0.0 else 0.0
+    lost = losses.shares(plastic, state.work, other, contact.mobility, scale.u)
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
-        rebound,
+        min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
         top.f * y * math.sqrt(y),
@@ -166,7 +156,43 @@ def follow_impact(
         lost.plastic,
         lost.wave,
         lost.other,
-        wave_rate,
+        2.0 * scale.t * state.work / scale.u**2,
+    )
+
+
+@kernel
+def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edges: Edges) -> Solution:
+    """Follow one impact near an edge in implicit steps, and note points of its path in row n.
+
+    The plate has all of the energy that is neither lost at the contact nor left to the sphere.
+    """
+    y = _shallow(law, y)
+    response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
+    one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
+    unit = math.sqrt(math.sqrt(y))
+    speed = 1.0 / (y * unit)
+    residual, plastic, other = losses.at_the_contact(law, one.largest)
+    lost = losses.shares(plastic, 0.0, other, 0.0, speed)
+    left = max(1.0 - lost.plastic - lost.other, 0.0)
+    rebound = min(near_edge.restitution(one, y), math.sqrt(left))
+    wave = max(left - rebound * rebound, 0.0)
+    again = one.stays or edge.comes_back(
+        response, one.memory, coupling, rate / unit, one.speed, lam * unit, one.duration
+    )
+    edges.again[n] = 1.0 if again else 0.0
+    return Solution(
+        float(OK if one.ended else TOO_MANY_STEPS),
+        float(one.steps),
+        rebound,
+        one.loading_time / unit,
+        one.duration / unit,
+        one.peak_force * y * math.sqrt(y),
+        one.largest * y,
+        residual * y,
+        lost.plastic,
+        wave,
+        lost.other,
+        wave / lam if lam > 0.0 else 0.0,
     )
 
 
@@ -295,10 +321,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
     lam, s = out.inelasticity, out.strength
     w_m = elastic_compression(law, lam, s)
     out.yield_ratio[:] = y = w_m / overload
-    order = np.argsort(s, kind="stable")  # the law of a strength is made once
-    found = np.empty((len(Solution._fields), s.size))
-    found[:, order] = _run(TO_THE_END, law, lam[order], y[order], rtol, strength=s[order])
-    one = Solution(*found)
+    one = _run(TO_THE_END, law, lam, y, rtol, strength=s)
     _put(one, w_m, out)
     return failure(one.status)
 
@@ -320,30 +343,26 @@ def overload_at(
     before = np.log(np.broadcast_to(dm, np.shape(lam)))
     gap_before = gap(before)
     at = before - gap_before
-    close = 1e-11 if force.room_for(law) == 0 else 1e-9  # the laws of strengths are rounded more
     for _ in range(100):
         gap_at = gap(at)
-        if not (abs(gap_at) > close).any():
+        if not (abs(gap_at) > _CLOSE).any():
             break
         rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
-        step = np.where(abs(gap_at) > close, gap_at * (at - before) / rise, 0.0)
+        step = np.where(abs(gap_at) > _CLOSE, gap_at * (at - before) / rise, 0.0)
         before, gap_before, at = at, gap_at, at - step
-    found = np.where(abs(gap_at) <= close, np.exp(at), math.nan)
+    found = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
     return found if found.shape else found.item()
 
 
 @kernel(cache=True)
-def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
+def extremes(laws: Array, outcome: Outcome, out: Extremes) -> None:
     """Peak force, residual compression and shares of the energy of impacts.
 
     Most laws are Hertz's below yield; y may be inf there. Impacts beyond that are gathered first,
     because a branch in the loop would be mispredicted for half of them.
     """
-    own = np.empty(force.room_for(law))
-    leaves = 0.0 if own.size > 0 else force.leaves_hertz(law)
-    beyond = np.empty(_CHUNK, dtype=np.int64)
-    room = np.empty((4, _CHUNK))
-    dm, left, plastic, other = room[0], room[1], room[2], room[3]
+    leaves = force.leaves_hertz(force.at_strength(laws, 0.0))
+    beyond, dm = np.empty(_CHUNK, dtype=np.int64), np.empty(_CHUNK)
     for start in range(0, out.peak_force.size, _CHUNK):
         count = 0
         for n in range(start, min(start + _CHUNK, out.peak_force.size)):
@@ -356,17 +375,10 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
             n = beyond[k]
-            one = law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
-            left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
-            if own.size > 0:
-                out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))
-        for k in range(count):
-            n = beyond[k]
-            y = outcome.yield_ratio[n]
+            law, y = force.at_strength(laws, outcome.strength[n]), outcome.yield_ratio[n]
+            left, plastic, other = losses.at_the_contact(law, dm[k])
             unit = y * math.sqrt(y)  # F_Y
-            if own.size == 0:
-                out.peak_force[n] = force.loading(law, math.sqrt(dm[k]))
-            out.peak_force[n] *= unit
-            out.residual_compression[n] = left[k] * y
-            out.plastic_fraction[n] = 2.0 * plastic[k] * y * unit
-            out.other_fraction[n] = 2.0 * other[k] * y * unit
+            out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
+            out.residual_compression[n] = left * y
+            out.plastic_fraction[n] = 2.0 * plastic * y * unit
+            out.other_fraction[n] = 2.0 * other * y * unit

@@ -29,7 +29,7 @@ from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, tangential_push
-from contactlaw.stepping.spring import Spring, State, impact, resized, stepped, unit_spring
+from contactlaw.stepping.spring import Spring, State, advance, impact, resized, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
 
@@ -43,7 +43,6 @@ class Bodies(NamedTuple):
     """What a pair of materials fixes."""
 
     law: Any  # data of the force law, at any strength
-    room: int  # numbers of one law of several, else 0
     strongest: float  # ln of the strength up to which laws reach
     constants: PairConstants
     unit: Spring  # of a bead of radius 1 m on a plate of 1 m, with the moduli of the pair
@@ -132,7 +131,7 @@ INSTEAD: dict[Any, Any] = {
     lookup.whole: plain_whole,
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
-FIXED = "goal", "samples", "springs", "room"
+FIXED = "goal", "samples", "springs"
 NOTHING = Answer(*[math.nan] * len(Answer._fields))
 BLOWN_UP = State(0.0, 0.0, math.nan)
 SOFT_BLOWN_UP = SoftState(math.nan, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -140,16 +139,9 @@ SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
 
 def rounded(law: Array) -> Array:
-    """Round the numbers of a law to 14 digits; those of several to 9 of the largest power of t."""
-    digits = np.full(law.size, 14)
-    for at in range(force.FIRST_ROW, force.FIRST_ROW + force.pieces_of(law) * force.STRENGTHS, force.STRENGTHS):
-        begins, terms, width = (int(law[at + n]) for n in (force.BEGINS, force.POWERS, force.WIDTH))
-        block = slice(begins, begins + (terms + 1) * width)
-        sizes = np.abs(law[block]).reshape(-1, width)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            less = np.floor(np.log10(sizes / sizes.max(axis=0)))
-        digits[block] = np.nan_to_num(np.clip(9 + less, 1, 9), nan=9).ravel()
-    return np.array([float(f"{one:.{n}g}") for one, n in zip(law, digits, strict=True)])
+    """Round the numbers of a law to 14 digits, and those of a ladder, which errs by more, to 9."""
+    digits = 14 if law[force.PIECES] > 0.0 else 9
+    return np.array([float(f"{one:.{digits}g}") for one in law])
 
 
 def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
@@ -167,7 +159,6 @@ def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
         packed[begins:] = packed[begins:].round(9 if axes.rungs == 1.0 else 5)
     return Bodies(
         rounded(laws),
-        force.room_for(laws),
         force.strongest(laws),
         # any yield compression for a law that never yields
         known._replace(yield_compression=min(known.yield_compression, 1.0)),
@@ -273,7 +264,7 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
     ):
         return BLOWN_UP
     near = EdgeEcho(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
-    new = stepped(pair.law, contact_spring(pair, bead), state, overlap, dt, near, pair.room)
+    new = advance(pair.law, contact_spring(pair, bead), state, overlap, dt, near)
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
 
 
@@ -326,9 +317,9 @@ def numbers_of(pair: Bodies, impact: Impact) -> Numbers:
 def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Solution:
     """Integrate an impact to a goal."""
     none = np.empty((0, 0))
-    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
+    own = at_strength(pair.law, units.strength)
     notes = zener.Notes(none, none, none, none, none)
-    return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0, None)
+    return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0)
 
 
 @kernel
@@ -478,7 +469,7 @@ def rub(
         return 0.0, 0.0, 0.0
     spring = contact_spring(pair, bead)
     return tangential_force(
-        row, friction, pair.tangential_ratio, pair.law, spring, state, before, overlap, -up, n, slip, dt, 0.0, pair.room
+        row, friction, pair.tangential_ratio, pair.law, spring, state, before, overlap, -up, n, slip, dt, 0.0
     )
 
 
@@ -526,10 +517,10 @@ def rub_softened(
 def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> History:
     """Contact at even times from touch to an end, on Hertz's scale, in the arrays of the notes."""
     samples = notes.at.shape[1]
-    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
+    own = at_strength(pair.law, units.strength)
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
-    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0, None)
+    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
     return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])
@@ -549,7 +540,7 @@ def rubbed(pair: Bodies, impact: Impact, size: float, friction: float, samples: 
     path = history(pair, units, end, zener.Notes(at, time, velocity, force, compression))
     path.force[samples - 1] = 0.0
     after[0] = psi
-    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
+    own = at_strength(pair.law, units.strength)
     slide(own, units.yield_ratio, pair.tangential_ratio, path, after, stretch)
     return float(friction * speed * (psi - after[0]))
 

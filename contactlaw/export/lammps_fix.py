@@ -18,7 +18,6 @@ from contactlaw._jit import kernel
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, INT, NONE, Array, C, Program, Struct, Type, add
 from contactlaw.equation.edge import KINDS
-from contactlaw.equation.force import room_for
 from contactlaw.export import c_header, functions
 from contactlaw.model import ImpactModel
 from contactlaw.physical.strengths import COARSE, by_strength
@@ -162,8 +161,7 @@ def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequ
     numbers |= {"FARTHEST": FARTHEST, "MOST_CONTACTS": MOST_CONTACTS, "DEEPEST_OVERLAP": DEEPEST_OVERLAP}
     constants = "\n".join(f"#define CONTACTLAW_{name} {value}" for name, value in numbers.items())
     head = "typedef const double contactlaw_data;"
-    written = _program(max(1, *map(room_for, laws)))
-    return "\n\n".join([head, c_header.preamble(), constants, _npy(), written, *units, *data, *lists]) + "\n"
+    return "\n\n".join([head, c_header.preamble(), constants, _npy(), _program(), *units, *data, *lists]) + "\n"
 
 
 def _npy() -> str:
@@ -179,11 +177,11 @@ def _npy() -> str:
     )
 
 
-def _program(room: int) -> str:
-    """All kernels in C that the fix calls, for laws that take so many numbers of one strength."""
+def _program() -> str:
+    """All kernels in C that the fix calls."""
     instead = functions.INSTEAD | {on_facet: touch_or_region, bending: bending_or_region}
     names = {dtype: name for name, dtype in _ROWS.items()}
-    program = Program(C(), functions.FIXED, names | {3 * (DOUBLE,): "vector"}, instead, room)
+    program = Program(C(), functions.FIXED, names | {3 * (DOUBLE,): "vector"}, instead)
 
     def rows(name: str, matrix: bool = False) -> Struct:
         return program.rows(program.row(_ROWS[name]), matrix)

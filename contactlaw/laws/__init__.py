@@ -26,21 +26,9 @@ from types import ModuleType
 
 from contactlaw._errors import ArgumentError
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
-from contactlaw.laws._law import Law, Strengths, laid_out_alike
+from contactlaw.laws._law import Law, Strengths
 
-__all__ = [
-    "DEFAULT",
-    "HERTZ",
-    "Law",
-    "Loading",
-    "Strengths",
-    "Unloading",
-    "exact",
-    "laid_out_alike",
-    "law",
-    "names",
-    "parameters",
-]
+__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Strengths", "Unloading", "exact", "law", "names", "parameters"]
 
 DEFAULT = "fem"
 """The law if none is named; it meets the targets of ``validation.accuracy.acceptance``."""

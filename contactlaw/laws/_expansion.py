@@ -19,7 +19,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw.equation import force as _force
 from contactlaw.laws._branches import HERTZ, Formula, Loading, Unloading
 
-_FUNCTIONS = _force.FUNCTIONS
 _TERMS = 18  # Chebyshev terms per piece
 _WIDEST = 1.7  # largest ratio of the ends of a piece, before any is halved
 _VANISHED = 2e-14  # a term counts as zero below this share of the least value on its piece
@@ -436,24 +435,12 @@ def expanded(name: str, loading: Sequence[Loading], unloading: Sequence[Unloadin
     return Expanded(curve, rows)
 
 
-def packed(laws: Sequence[Expanded]) -> list[Array]:
-    """Lay out laws in pieces as one array each, see `contactlaw.equation.force`.
-
-    Laws that were cut alike have one layout.
-    """
-    # A function has one length on all pieces: the processor predicts loops of constant length.
-    rows = [one.rows for one in laws]
-    terms = [max((row.piece.parts[n].size for law in rows for row in law), default=0) for n in range(_FUNCTIONS)]
-    loading = [
-        max(piece.parts[0].size for piece in same) for same in zip(*(one.curve.pieces for one in laws), strict=True)
-    ]
-    return [_packed(one, loading, terms) for one in laws]
-
-
-def _packed(law: Expanded, loading: Sequence[int], terms: Sequence[int]) -> Array:
-    """Lay out a law, with these lengths of the loading curve's pieces and of other functions."""
+def packed(law: Expanded) -> Array:
+    """Lay out a law in pieces as one array, see `contactlaw.equation.force`."""
     curve, rows = law.curve, law.rows
     pieces = curve.pieces
+    # A function has one length on all pieces: the processor predicts loops of constant length.
+    lengths = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_force.FUNCTIONS)]
     starts = [*(piece.start for piece in pieces), math.inf]
     family_starts = [*(row.piece.start for row in rows), math.inf]
     starts_at = _force.HEADER
@@ -473,14 +460,14 @@ def _packed(law: Expanded, loading: Sequence[int], terms: Sequence[int]) -> Arra
         return [length - 1, at - room.size]
 
     curve_rows: list[float] = []
-    for piece, first, length in zip(pieces, curve.first_of_branch, loading, strict=True):
+    for piece, first in zip(pieces, curve.first_of_branch, strict=True):
         following = next((k for k in curve.first_of_branch if k > first), len(pieces))
-        entries = put(piece.parts[0], length)
+        entries = put(piece.parts[0], piece.parts[0].size)
         curve_rows += [piece.scale, piece.offset, *entries, first, following]
     family_rows: list[float] = []
     for row in rows:
         family_rows += [row.piece.scale, row.piece.offset]
-        for power, part, length in zip(row.powers, row.piece.parts, terms, strict=True):
+        for power, part, length in zip(row.powers, row.piece.parts, lengths, strict=True):
             family_rows += [power, *put(part, length)]
     numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
     return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])

@@ -7,7 +7,7 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -159,7 +159,7 @@ class Law:
             yield_coefficient=yield_coefficient,
             loading_kinks=curve.kinks,
             outcome_kinks=tuple(sorted(starts)),
-            data=packed([made])[0],
+            data=packed(made),
             yield_strains=yield_strains,
             scale=scale,
             range=range,
@@ -180,12 +180,17 @@ class Law:
     @property
     def is_hertz(self) -> bool:
         """Whether loading follows Hertz's curve up to yield."""
-        return bool(_force.is_hertz(self.data))
+        return bool(_force.is_hertz(self._law))
 
     @property
     def thin_plate(self) -> bool:
         """Whether the law takes the plate as thin, a dashpot, as the paper does."""
         return self.waves is None
+
+    @property
+    def _law(self) -> _force.BlendedLaw:
+        """Law as kernels take it."""
+        return _force.alone(self.data)
 
     @property
     def at_any_strength(self) -> Array:
@@ -219,48 +224,29 @@ class Law:
         """Kinks, and values along the curves, by which laws are compared."""
         values = [*self.loading_kinks, *self.outcome_kinks]
         for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
-            lost = self.dissipation(d), _force.other_loss(self.data, d)
+            lost = _force.residual_and_losses(self._law, d)[1:]
             values += [self.loading(math.sqrt(d)), *self.unloading_curve(d), *lost]
         return values
 
     def loading(self, q: float) -> float:
         """Force [F_Y] at the compression q^2 [d_Y] while it grows."""
-        return _force.loading(self.data, q)
+        return _force.loading(self._law, q)
 
     def residual(self, dm: float) -> float:
         """Compression [d_Y] left after unloading from the largest one, dm."""
-        return _force.residual(self.data, dm)
+        return _force.residual_and_losses(self._law, dm)[0]
 
     def unloading_curve(self, dm: float) -> UnloadingCurve:
         """Find the unloading curve from dm."""
-        return _force.unloading(self.data, dm)
+        return _force.unloading(self._law, dm)
 
     def unloading(self, q: float, curve: UnloadingCurve) -> float:
         """Force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows the same curve."""
-        return _force.unloading_force(self.data, curve, q)
+        return _force.unloading_force(self._law, curve, q)
 
     def dissipation(self, dm: float) -> float:
         """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
-        return _force.loss(self.data, dm)
-
-
-def laid_out_alike(laws: Sequence[Mapping[str, Any]], vanished: float, widest: float) -> list[Array]:
-    """Arrays of laws, from arguments of `Law.of`, which have one layout.
-
-    Their branches are the same; `vanished` and `widest` are as in `Cuts`.
-    """
-    cuts = Cuts(vanished, widest, checked=False)
-    made: list[Any] = [None] * len(laws)
-    counts: list[Any] = [None] * len(laws)  # of pieces
-    n = 0
-    while counts.count(counts[n]) < len(laws) or made[n] is None:
-        one = laws[n]
-        end = one["range"][1]
-        made[n] = expanded(one["name"], one["loading"], one["unloading"], end, cuts)
-        counts[n] = [shares.size for shares in cuts.shares]
-        stale = [m for m in range(len(laws)) if counts[m] != counts[n]]
-        n = stale[0] if stale else n
-    return packed(made)
+        return _force.residual_and_losses(self._law, dm)[1]
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

@@ -1,23 +1,22 @@
 """The laws of a pair that grows stronger with the rate of an impact, as one array for kernels.
 
-Within pieces of ln k, with k the strength over that of a slow test, every number of the law is a
-polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made at a few strengths.
+They stand on a ladder: a law at each corner of the pair's law, and at strengths in between. Kernels
+blend the two around the strength of an impact, see `contactlaw.equation.force`.
 """
 
 import dataclasses
 import functools
 import itertools
 import math
-from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw.equation import force
-from contactlaw.equation.force import STRENGTHS
-from contactlaw.laws import Law, Strengths, fem, laid_out_alike
+from contactlaw.laws import Law, Strengths, fem
 from contactlaw.laws._branches import bisect
+from contactlaw.laws._expansion import Cuts, expanded, packed
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -32,20 +31,18 @@ _CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yie
 class Fineness(NamedTuple):
     """How finely laws are resolved."""
 
-    terms: int  # of the polynomials in ln k
     vanished: float  # terms of a law that count as zero, relatively
     widest: float  # pieces of a law: ratio of their ends
-    piece: float  # of ln k, at most
+    apart: float  # largest distance of two rungs in ln k
     fastest: float  # (V0/R)(V_Y/V0)^0.3 [1/s] up to which they reach
     near: float  # in ln k: nearer to each other, corners count as one
     slowest: float = 0.0  # the same from which on they are asked for
 
 
-# The COR is within 1e-7 of that of a law made for its strength.
-USUAL = Fineness(7, 1e-10, 3.0, 0.4, rate.REACH, 1e-4)
-# For steps, which make the law anew in each, and for exports: within 1e-6.
-COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST, 5e-3)
-_NEAR = 1e-3  # in ln k: as near to an end of a piece of the law, a knot is that end
+# The COR is within 7e-5 of that of a law made for its strength, up to the law's end.
+USUAL = Fineness(1e-10, 3.0, 0.03, rate.REACH, 1e-4)
+# For steps and for exports, whose laws have fewer numbers.
+COARSE = Fineness(1e-7, 4.0, 0.03, rate.FASTEST, 5e-3)
 
 
 def with_strengths(pair: Pair, law: Law) -> Law:
@@ -53,54 +50,37 @@ def with_strengths(pair: Pair, law: Law) -> Law:
     if rate.flow_with_rate(pair, law) is None or not law.yields:
         return law
     laws = by_strength(pair, law)
-    ends = np.array(knots(pair, USUAL.piece, rate.FASTEST, USUAL.near)[0])
-    tops = force.tops(laws)  # corners that were found from other samples are not quite the same
-    nearest = tops[np.abs(ends[:, None] - tops).argmin(axis=1)]
-    ends = np.where(np.abs(nearest - ends) < _NEAR, nearest, ends)
-    return dataclasses.replace(law, strengths=Strengths(laws, tuple(np.unique(ends).tolist())))
+    known, last = force.rungs(laws)[:, force.STRENGTH], knots(pair, USUAL.apart, rate.FASTEST, USUAL.near)[0][-1]
+    return dataclasses.replace(law, strengths=Strengths(laws, (*known[known < last - _CLOSE].tolist(), float(last))))
 
 
 @functools.lru_cache(maxsize=64)
 def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
-    """Law of a pair at any strength; that of a pair without a rate as it is."""
+    """Ladder of the laws of a pair at any strength; that of a pair without a rate as it is."""
     if rate.flow_with_rate(pair, law) is None or not law.yields:
         return law.data
-    assert law.scale is not None
-    count = fineness.terms
-    places = np.cos(math.pi * (np.arange(count) + 0.5) / count)
-    ends, most = knots(pair, *fineness[3:])
-    pieces = []
-    for low, high in itertools.pairwise(ends):
-        at = 0.5 * (low + high) + 0.5 * (high - low) * places
-        known = [formulas_at(pair, one) for one in at.tolist()]
-        pieces.append((low, high, _powers(known, places, law.scale, fineness)))
-    if ends[-1] < most:  # nothing yields at higher strengths
-        last = formulas_at(pair, most)
-        pieces.append((ends[-1], most, _powers([last], places[:1], law.scale, fineness)))
-    begin = force.FIRST_ROW + len(pieces) * STRENGTHS
+    strengths, most = knots(pair, fineness.apart, *fineness[3:])
+    known = [formulas_at(pair, one) for one in strengths]
+    ends = np.array([one["range"][1] for one in known])
+    # of two neighbours the stronger one ends at fewer d_Y: their blend reaches as far as the other
+    reach = np.maximum(ends, np.append(0.0, ends[:-1]))
+    laws = [law_array(one, end, fineness) for one, end in zip(known, reach.tolist(), strict=True)]
+    if strengths[-1] < most:  # nothing yields at higher strengths
+        elastic = formulas_at(pair, most)
+        strengths, known = [*strengths, strengths[-1], most], [*known, elastic, elastic]
+        laws += 2 * [law_array(elastic, elastic["range"][1], fineness)]
+    begins = np.cumsum([1 + len(strengths) * force.RUNG, *(one.size for one in laws)])
     rows: list[float] = []
-    for low, high, powers in pieces:
-        terms, width = powers.shape
-        rows += [high, 0.5 * (low + high), 2.0 / (high - low), begin, terms - 1, width]
-        begin += powers.size
-    head = -len(pieces), max(powers.shape[1] for *_, powers in pieces)
-    return np.concatenate([head, rows, *(powers.ravel() for *_, powers in pieces)])
+    for strength, begin, data, one in zip(strengths, begins, laws, known, strict=False):
+        scales = one["scale"] / law.scale, (one["onset"] or one["scale"]) / law.scale
+        rows += [strength, begin, data.size, *map(math.log, scales), one["range"][1]]
+    return np.concatenate([[-len(strengths)], rows, *laws])
 
 
-def _powers(laws: Sequence[Mapping[str, Any]], places: Array, scale: float, fineness: Fineness) -> Array:
-    """Coefficients of powers of t, a row each, for the numbers of laws at places of t."""
-    heads = [[one["scale"], one["onset"] or one["scale"]] for one in laws]
-    data = laid_out_alike(laws, fineness.vanished, fineness.widest)
-    if places.size > 1:
-        for one in data:
-            force.by_length(one)
-    values = np.hstack([data, np.log(np.array(heads) / scale)])
-    first = values[0].copy()
-    with np.errstate(invalid="ignore"):  # the last of the starts is infinite in all
-        moved = np.nan_to_num(values - first)  # 0 for what is the same in all
-    found: Array = np.linalg.solve(np.vander(places, increasing=True), moved)
-    found[0] += first
-    return found
+def law_array(formulas: dict[str, Any], end: float, fineness: Fineness = USUAL) -> Array:
+    """Law of `formulas_at`, as kernels take it, which follows them up to a compression [d_Y]."""
+    cuts = Cuts(fineness.vanished, fineness.widest, checked=False)
+    return packed(expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, cuts))
 
 
 def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:

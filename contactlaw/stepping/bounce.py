@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.equation.force import room_for
 from contactlaw.stepping import energy
 from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import dot
@@ -65,7 +64,7 @@ def bounce(
     solid sphere.
     """
     speed = -dot(came, n)
-    m, expected, room = spring.mass, impact(law, spring, speed), room_for(law)
+    m, expected = spring.mass, impact(law, spring, speed)
     h = CONTACT_TIME * expected.time / STEPS
     state, x, v, wave, steps = PARTED, 0.0, came, 0.0, 0
     pushed, dragged = 0.0, (0.0, 0.0, 0.0)
@@ -82,20 +81,7 @@ def bounce(
         if len(rows) > 0:
             slip = v[0] + u * n[0], v[1] + u * n[1], v[2] + u * n[2]
             drag = tangential_force(
-                rows[0],
-                friction,
-                kappa,
-                law,
-                spring,
-                state,
-                last.largest_compression,
-                x,
-                speed,
-                n,
-                slip,
-                h,
-                extra,
-                room,
+                rows[0], friction, kappa, law, spring, state, last.largest_compression, x, speed, n, slip, h, extra
             )
         force = state.force + extra
         dragged = dragged[0] + h * drag[0], dragged[1] + h * drag[1], dragged[2] + h * drag[2]

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import NO_MEMORY
-from contactlaw.equation.force import room_for
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
@@ -851,7 +850,6 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
                     slip,
                     h,
                     row.extra_force,
-                    room_for(law),
                 )
             torque = (
                 -bead.r * (n[1] * drag[2] - n[2] * drag[1]),

@@ -68,7 +68,7 @@ def step(
         )
         return new, spring.mass * shift * (f1 - f0) / (h * h)
     first = f1 > 0.0 and state.largest_compression == 0.0
-    if first and x - u2 <= _FIRST_OVERLAP * u * h and force.room_for(law) == 0 and force.is_hertz(law):
+    if first and x - u2 <= _FIRST_OVERLAP * u * h and force.is_hertz(force.at_strength(law, 0.0)):
         return new, _first_step_correction(spring, x - u2, u * h)
     return new, 0.0
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
-from contactlaw.equation.force import at_strength, growth_at
+from contactlaw.equation.force import BlendedLaw, at_strength, growth_at
 from contactlaw.equation.tangential import Stiffness, kept, part_of, share_within, stiffness_at
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.spring import Spring, State, impact
@@ -67,7 +67,7 @@ def clear_friction(row: Any) -> None:
 
 
 @kernel
-def _width(law: Array, own: Array, spring: Spring, scale: float, speed: float, k: float) -> float:
+def _width(law: Array, own: BlendedLaw, spring: Spring, scale: float, speed: float, k: float) -> float:
     """Width of springs for an impact with this speed; for a bead that was put down, of those at k.
 
     Beyond yield the compression follows from the energy, since F d is 2.0 to 2.5 times the work.
@@ -167,14 +167,12 @@ def tangential_force(
     slip: Point,
     dt: float,
     extra: float,
-    room: int,
 ) -> Point:
     """Tangential force on a bead [N], from the velocity of its surface relative to the wall.
 
     `before` is the largest compression before this step, `speed` the approach speed and `extra` the
     correction of the normal force in this step; a contact with `extra` alone has just ended. A step
-    dt of 0 gives the last step's force again. `room` is what
-    `contactlaw.equation.force.room_for` says of the law.
+    dt of 0 gives the last step's force again.
     """
     f, last = state.force, (row.force[0], row.force[1], row.force[2])
     if dt == 0.0:
@@ -186,7 +184,7 @@ def tangential_force(
         a, b = _directions(row, n, slip)
         d = overlap - state.plate_displacement
         hertz = spring.stiffness * (state.stiffening if state.stiffening > 0.0 else 1.0)
-        own = law if room == 0 else at_strength(law, state.strength, np.empty(room))
+        own = at_strength(law, state.strength)
         scale = spring.scale * growth_at(law, state.strength)
         now = stiffness_at(own, scale, hertz, state.largest_compression, d, f)
         if not now.normal > 0.0:  # at the end of a contact its force may outlive its compression

@@ -44,7 +44,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
 from contactlaw.equation.edge import Memories, Memory
-from contactlaw.equation.force import UnloadingCurve, at_strength, growth_at, room_for
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve, at_strength, growth_at
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import (
     Impact,
@@ -305,14 +305,14 @@ def _first_known(law: Array, spring: Spring, state: State, overlap: float, step:
 
 
 @kernel
-def _force(law: Array, loading: bool, q: float, curve: UnloadingCurve) -> float:
+def _force(law: BlendedLaw, loading: bool, q: float, curve: UnloadingCurve) -> float:
     if loading or curve.stiffness == 0.0:
         return forces.loading(law, q)
     return forces.unloading_force(law, curve, q)
 
 
 @kernel
-def _balance(law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
+def _balance(law: BlendedLaw, loading: bool, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -349,20 +349,12 @@ def advance(
     value, follows the unloading curve. An overlap of zero or less clears the state. The law is that
     of `contactlaw.softsphere.law_of`.
     """
-    return stepped(law, spring, state, overlap, step, near, room_for(law))
-
-
-@kernel
-def stepped(
-    law: Array, spring: Spring, state: State, overlap: float, step: float, near: EdgeEcho | None, room: int
-) -> State:
-    """`advance` where it is known what `contactlaw.equation.force.room_for` says of the law."""
     if not overlap > 0.0:
         return PARTED
     own_mobility, stiffening, mobility, strength = 0.0, 0.0, spring.mobility, 0.0
     if not is_thin(spring.plate.corrections):
         own_mobility, stiffening, strength = _first_known(law, spring, state, overlap, step)
-    own = law if room == 0 else at_strength(law, strength, np.empty(room))
+    own = at_strength(law, strength)
     scale = spring.scale * growth_at(law, strength)
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     leak = 0.5 * step / spring.relaxation
@@ -409,8 +401,7 @@ def stepped(
 @kernel
 def at_largest(law: Array, spring: Spring, state: State) -> Largest:
     """Say what the largest compression of a contact means for its unloading."""
-    room = room_for(law)
-    own = law if room == 0 else at_strength(law, state.strength, np.empty(room))
+    own = at_strength(law, state.strength)
     scale = spring.scale * growth_at(law, state.strength)
     unit = spring.stiffness * scale * math.sqrt(scale)
     if state.stiffening > 0.0:

@@ -28,7 +28,7 @@ _RETURNING = 1e-6  # least COR at which contact times are compared
 _SMALL_DENT = 0.01  # of the largest residual compression, above which errors of it are relative
 _SAMPLES = 33  # samples of a force history that are compared
 _HISTORIES = 1000  # at most so many histories are compared
-_HALF_SPACE = 0.05  # share of the points with lambda = 0
+_AT_ENDS = 0.05  # share of the points with lambda = 0, and of those with the largest
 _NEAR_KINK = 0.02  # in ln p; some of the points lie this near to yield, on either side
 _CORNER = 1e-3  # jump of a loading curve's slope, relatively, that makes outcomes less smooth
 
@@ -130,8 +130,9 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
     """Draw inelasticities, yield ratios and ln k: some on the half-space, near yield, and below it."""
     axes, u = grid.axes, generator.random((6, count))
     # uniform in the root: COR changes most where lambda is small
-    lam = u[0] ** 2 * (STRETCH * axes.x_max / (1.0 - axes.x_max))
-    lam[u[1] < _HALF_SPACE] = 0.0
+    largest = STRETCH * axes.x_max / (1.0 - axes.x_max)
+    lam = u[0] ** 2 * largest
+    lam[u[1] < _AT_ENDS], lam[u[1] > 1.0 - _AT_ENDS] = 0.0, largest
     log_k = np.sort(u[2]) * grid.ladder[-1]
     x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
     square, *factors = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)

@@ -195,8 +195,6 @@ def grid(law: Law, settings: Settings) -> Grid:
     lam = STRETCH * x / (1.0 - x)
     w, end = np.asarray(zener.elastic_compression(law.data, lam)), np.full(_NODES, most)
     after = False
-    if law.yields:  # to the last digit of what the solver does, for yield speeds
-        w *= (1.0 - _EARLY) / _overloads(law, x, w, 0.0, 1.0)
     if law.range[1] < math.inf:
         found = _overloads(law, x, w, 0.0, law.range[1])
         after = found.min() < most
@@ -222,9 +220,9 @@ def ladder_of(law: Law, widest: float) -> Array:
 
 
 def _end(law: Law, log_k: float) -> float:
-    """Compression up to which the law of a strength holds: its last piece is a tangent."""
-    own = force.at_strength(law.at_any_strength, log_k, np.empty(force.room_for(law.at_any_strength)))
-    return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
+    """Compression up to which the law of a strength holds."""
+    rungs = force.rungs(law.at_any_strength)
+    return float(np.interp(log_k, rungs[:, force.STRENGTH], rungs[:, force.END]))
 
 
 def _overloads(law: Law, x: Array, w: Array, log_k: float, deepest: float) -> Array:

@@ -404,7 +404,7 @@ def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: fl
 @kernel(inline=True)
 def field(table: Array, axes: Axes, which: int, rung: int, between: float, row: float, column: float) -> float:
     """Interpolate a field at a place and between two rungs."""
-    size, stride = np.uint64(axes.size), np.uint64(axes.stride)
+    size, stride = np.uint64(int(axes.size)), np.uint64(int(axes.stride))
     rungs = int(axes.rungs)
     at = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + rung) * size
     low = value(table, at, stride, row, column)
@@ -625,11 +625,12 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
     """Nearest place in a table to x, p and a strength k."""
     axes = axes_of(table)
     most = strongest(table, axes)
-    within_x, within_k = x if 0.0 <= x <= axes.x_max else axes.x_max, min(strength, most)
+    within_x = x if 0.0 <= x <= axes.x_max else axes.x_max
+    within_k = strength if 1.0 <= strength <= most else min(most, 1e300)
     on = rung_of(table, axes, within_k)
     end = of_rung(series_at(table, END), on.later, within_x)
     top = top_of(axes, end, on.later[0], on.g)
-    within_p = min(p, top)
+    within_p = p if p <= top else top
     column = column_of(axes, within_p, end, top, on.g)
     inside = within_x == x and within_p == p and within_k == strength
     w = _fourth(of_rung(series_at(table, ELASTIC), on.slower, within_x))

@@ -21,7 +21,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force, zener
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
@@ -72,7 +72,7 @@ def _states(shapes: Array, at: lookup.Spot, out: Array) -> None:
 
 
 @kernel
-def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
+def _force(law: BlendedLaw, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
     """Force at a compression; y = inf for a contact that follows Hertz's law."""
     if y == math.inf:
         return d * math.sqrt(d)
@@ -85,13 +85,13 @@ def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float)
 @kernel(cache=True)
 def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
-    samples, room = out.time.shape[1], np.empty(force.room_for(law))
+    samples = out.time.shape[1]
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
-        own = law if room.size == 0 else force.at_strength(law, found.strength[n], room)
+        own = force.at_strength(law, found.strength[n])
         _states(shapes, lookup.spot_at(shapes, lam, y, found.strength[n]), inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # to assign to a slice takes the compiler a second

@@ -160,7 +160,7 @@ def test_a_damaged_table_is_refused(tmp_path):
     """Of laws of several strengths, too, kernels follow addresses."""
     laws = MODEL.table.law.at_any_strength
     force.check_strengths(laws)
-    for entry, value in ((force.FIRST_ROW + force.BEGINS, 1e9), (force.FIRST_ROW + force.WIDTH, 5)):
+    for entry, value in ((1 + force.BEGINS, 1e9), (1 + force.SIZE, 1e9), (0, -1e9)):
         damaged = laws.copy()
         damaged[entry] = value
         with pytest.raises(ValueError, match="its law"):

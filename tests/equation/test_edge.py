@@ -9,10 +9,9 @@ import pytest
 from scipy.special import kv, sici
 
 from contactlaw import laws
-from contactlaw.equation import zener
+from contactlaw.equation import force, near_edge, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS, SIZE, Edges
-from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.responses import response_of
 from validation.accuracy import edges as independent
@@ -166,14 +165,48 @@ def test_impacts_near_a_supported_edge_are_as_by_a_convolution_in_time(lam, boun
     assert np.abs(found - expected).max() < bound
 
 
+def followed(error, lam, y, edges):
+    """Restitution, contact time and peak force of impacts, with this error of a step."""
+    none = zener.Notes(*np.empty((5, 0, 0)))
+    found = []
+    for n, one in enumerate(lam):
+        law, response = force.alone(MYC), edges.response[n]
+        contact = near_edge.follow(law, response, one, y, 1.0, edges.rate[n], error, none, 0)
+        found.append((near_edge.restitution(contact, y), contact.duration, contact.peak_force))
+    return np.array(found).T
+
+
 @pytest.mark.parametrize("y", [0.1, 1.0])
-def test_few_steps_answer_as_the_integrator(y):
+def test_the_errors_of_steps_fall_with_their_tolerance(y):
+    """Beside a tolerance of 1e-9, of solutions and of the jitted function for loops."""
     lam, s = (each.ravel() for each in np.meshgrid([0.1, 0.3, 1.0], [0.4, 1.0, 3.0]))
     for kind in KINDS:
         edges = near(kind, 0.3, s**-2)
-        found = [restitution_near(MYC, edges.response[n], lam[n], y, 1.0, edges.rate[n]) for n in range(lam.size)]
-        wanted = solved(MYC, lam, np.full(lam.size, y), edges)
-        assert np.abs(found - wanted.restitution).max() < 1e-3
+        exact, fine, quick = (followed(error, lam, y, edges) for error in (1e-9, near_edge.FINE, near_edge.QUICK))
+        assert np.abs(fine[0] - exact[0]).max() < 3e-5
+        assert np.abs(fine[2] / exact[2] - 1.0).max() < 1e-4
+        left = exact[0] > 0.02  # a sphere that hardly rebounds takes long to leave
+        assert np.abs(fine[1] / exact[1] - 1.0)[left].max() < 5e-4
+        assert np.abs(quick[0] - exact[0]).max() < 5e-4
+
+
+def test_an_edge_that_is_far_away_is_none():
+    """The implicit steps beside the integrator of endless plates, with all fields."""
+    lam, y = np.array([0.02, 0.1, 0.5, 1.5]), 0.2
+    far = solved(MYC, lam, np.full(4, y), near("free", 0.3, np.full(4, 1e-12)))
+    endless = zener._run(zener.TO_THE_END, MYC, lam, y, 1e-10)
+    for name in set(zener.Solution._fields) - {"status", "steps"}:
+        np.testing.assert_allclose(getattr(far, name), getattr(endless, name), rtol=1e-4, atol=3e-5, err_msg=name)
+
+
+def test_points_of_a_path_are_those_of_finer_steps():
+    edges, lam, y = near("supported", 0.3, 1.0), np.array([0.6]), np.array([0.2])
+    time = np.linspace(0.0, solved(MYC, lam, y, edges).contact_time[0], 301)
+    f, w, u = zener.history(MYC, lam, y, 1e-9, time[None], edges)
+    notes = zener.Notes(time[None], *np.empty((4, 1, 301)))
+    near_edge.follow(force.alone(MYC), edges.response[0], 0.6, 0.2, 1.0, 1.0, 1e-10, notes, 0)
+    for ours, fine in ((f, notes.force), (w, notes.compression), (u, notes.speed)):
+        assert np.abs(ours - fine).max() < 1e-4 * np.abs(fine).max()
 
 
 def test_a_plate_gives_no_more_energy_than_it_was_given():

@@ -122,11 +122,11 @@ def stiffer(powers):
     return data
 
 
-@pytest.mark.parametrize("powers", [[], [0.02], [0.3], [5.0]])
-def test_an_impact_whose_yield_compression_is_w_m_just_yields(powers):
+@pytest.mark.parametrize(("powers", "error"), [([], 1e-11), ([0.02], 6e-9), ([0.08], 6e-9), ([5.0], 4e-7)])
+def test_an_impact_whose_yield_compression_is_w_m_just_yields(powers, error):
     """At lambda = 0 by the loading work alone, beyond by a sum that was fitted to integrated impacts."""
     law = stiffer(powers)
-    for lam, bound in (0.0, 1e-11), (0.01, 1.5e-6), (0.3, 1.5e-6), (1.1, 1.5e-6), (5.0, 1.5e-6), (50.0, 5e-5):
+    for lam, bound in (0.0, 1e-11), (0.01, error), (0.3, error), (1.1, error), (5.0, error), (50.0, 0.05):
         w_m = zener.elastic_compression(law, lam)
         assert zener.solve(law, lam, w_m, 1e-12).peak_compression == pytest.approx(w_m, rel=bound)
 
@@ -164,8 +164,8 @@ def test_too_thin_is_a_status():
 
 def test_a_level_next_to_a_turn_is_sought_within_the_step():
     """The motion turns 1e-12 above a kink, where once one impact of 3e6 never ended."""
-    before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0, None, None)
-    beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0, None, None)
+    before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0)
+    beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0)
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
@@ -198,13 +198,13 @@ def solved(lam, data=law):
 solved(0.6)
 solved(0.3 * 2.0**0.4, force.HERTZ)
 speed, force_on, power = plate.speed, legs.force_on, losses.power
-plate.speed = lambda plate, f, memory: 2.0 * speed(plate, f, memory)
+plate.speed = lambda mobility, f: 2.0 * speed(mobility, f)
 solved(0.3)
 plate.speed = speed
 legs.force_on = lambda leg, kind, data, q: 2.0 * force_on(leg, kind, data, q)
 solved(0.3, force.HERTZ)
 legs.force_on = force_on
-losses.power = lambda q, f, drive: 0.5 * power(q, f, drive)
+losses.power = lambda q, f: 0.5 * power(q, f)
 solved(0.6)
 """
 

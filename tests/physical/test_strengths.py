@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.equation import force
+from contactlaw.equation import force, zener
 from contactlaw.laws.fem import RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import law_for_pair
@@ -23,29 +23,43 @@ PAIRS = [
 ]
 
 
-@pytest.mark.parametrize(("fineness", "error"), [(USUAL, 4e-7), (COARSE, 2e-5)])
+@pytest.mark.parametrize("fineness", [USUAL, COARSE], ids=["usual", "coarse"])
 @pytest.mark.parametrize("pair", PAIRS, ids=str)
-def test_a_law_is_that_made_for_its_strength(pair, fineness, error):
+def test_a_blend_of_two_laws_is_the_law_made_for_a_strength(pair, fineness):
+    """Restitution at strengths between rungs, also beyond where the law of the strength ends."""
     law = cl.ImpactModel(pair).force_law
-    laws = by_strength(pair, law, fineness)
-    room = np.empty(force.room_for(laws))
-    ends, most = knots(pair, fineness.piece, fineness.fastest, fineness.near)
-    for strength in [*np.random.default_rng(0).uniform(0.0, ends[-1], 4), most]:
+    laws, rng = by_strength(pair, law, fineness), np.random.default_rng(0)
+    ends, most = knots(pair, fineness.apart, fineness.fastest, fineness.near)
+    for strength in [*rng.uniform(0.0, ends[-1], 6), most]:
         stronger = rate.strengthened(pair, math.exp(strength))
-        one, own = law_for_pair(stronger, law), force.at_strength(laws, strength, room)
-        assert force.growth_at(laws, strength) == pytest.approx(one.scale / law.scale, rel=error)
-        onset = force.onset_at(laws, strength) * law.scale
-        assert onset == pytest.approx(one.onset or one.scale, rel=error)
-        for d in np.geomspace(0.05, 0.99 * one.range[1], 20):
-            peak = one.loading(math.sqrt(d))
-            assert force.loading(own, math.sqrt(d)) == pytest.approx(peak, rel=error)
-            for found, exact in (
-                (force.residual(own, d), one.residual(d)),
-                (force.unloading(own, d).exponent, one.unloading_curve(d).exponent),
-            ):
-                assert found == pytest.approx(exact, abs=error * d, rel=error)
-            lost = one.dissipation(d)
-            assert force.loss(own, d) == pytest.approx(lost, abs=10 * error * peak * d)
+        one = law_for_pair(stronger, law)
+        scale = force.growth_at(laws, strength) * law.scale
+        assert scale == pytest.approx(one.scale, rel=1e-4)
+        assert force.onset_at(laws, strength) * law.scale == pytest.approx(one.onset or one.scale, rel=1e-4)
+        lam, chi = rng.uniform(0.0, 1.0, 30), np.geomspace(0.3, 1.5 * one.range[1], 30)
+        exact, blended = (
+            zener._run(zener.TO_THE_END, data, lam, unit / chi, 1e-10, strength=strength)
+            for data, unit in ((one.data, 1.0), (laws, scale / one.scale))
+        )
+        inside = exact.peak_compression * chi < one.range[1]
+        np.testing.assert_allclose(blended.restitution[inside], exact.restitution[inside], atol=7e-5)
+        np.testing.assert_allclose(blended.restitution, exact.restitution, atol=2e-4)
+        energies = blended.restitution**2 + blended.plastic_fraction + blended.wave_fraction + blended.other_fraction
+        np.testing.assert_allclose(energies, 1.0, atol=1e-7 if fineness is USUAL else 1e-6)
+
+
+def test_the_error_of_a_blend_falls_with_the_square_of_the_distance_of_its_laws():
+    pair = cl.Pair(dataclasses.replace(HARD, yield_strength=400e6, rate=(0.06, 10.0)), "glass")
+    law, flow, strength, errors = cl.ImpactModel(pair).force_law, rate.leading(pair), 0.2, []
+    one = law_for_pair(rate.strengthened(pair, math.exp(strength)), law)
+    exact = zener.solve(one.data, 0.1, 0.1, 1e-11).restitution
+    for apart in (0.2, 0.1, 0.05):
+        ends = [rate.rate_at(flow, math.exp(strength + step)) / rate.SHARE for step in (-0.5 * apart, 0.5 * apart)]
+        laws = by_strength(pair, law, USUAL._replace(apart=1.01 * apart, slowest=ends[0], fastest=ends[1]))
+        assert len(force.rungs(laws)) == 2
+        y = 0.1 * force.growth_at(laws, strength) * law.scale / one.scale
+        errors.append(abs(zener.solve(laws, 0.1, y, 1e-11, strength).restitution - exact))
+    assert np.diff(np.log2(errors)) == pytest.approx(-2.0, abs=0.3)
 
 
 def metal(*known, **others):
@@ -72,7 +86,7 @@ ODD = [
 
 @pytest.mark.parametrize("bodies", ODD, ids=["long", "losses", "late", "brittle", "weak", "steep"])
 def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
-    """Arrays of 4450 numbers, corners moved by losses or near an end, flags that change between."""
+    """Long arrays, corners moved by losses or near an end, flags that change between."""
     pair = cl.Pair(*bodies)
     model, rng = cl.ImpactModel(pair), np.random.default_rng(2)
     v, r = (np.exp(rng.uniform(*np.log(ends), 8)) for ends in ((0.05, 60.0), (5e-6, 5e-3)))
@@ -81,7 +95,7 @@ def test_answers_and_flags_are_those_of_the_stronger_pair(bodies):
     factors = rate.factors(pair, v, r)
     for n, factor in enumerate(factors.tolist()):
         exact = cl.ImpactModel(rate.strengthened(pair, factor)).solve(v[n], r[n], 2.0 * r[n])
-        assert found.restitution[n] == pytest.approx(exact.restitution, abs=2e-6)
+        assert found.restitution[n] == pytest.approx(exact.restitution, abs=7e-5)
         assert found.flags[n] == exact.flags
 
 
@@ -105,9 +119,9 @@ def test_no_corner_is_missed(sphere, plate):
     pair = cl.Pair(sphere, plate)
     model = cl.ImpactModel(pair, outside="solve")
     law, laws = model.force_law, by_strength(pair, model.force_law)
-    for strength in np.linspace(0.0, force.tops(laws)[-1], 300):
+    for strength in np.linspace(0.0, force.rungs(laws)[-1, force.STRENGTH], 300):
         scale = formulas_at(pair, strength)["scale"]
-        assert force.growth_at(laws, strength) * law.scale == pytest.approx(scale, rel=2e-5)
+        assert force.growth_at(laws, strength) * law.scale == pytest.approx(scale, rel=5e-4)
     speed = np.geomspace(0.03, 20.0, 60)
     hit = model.solve(speed, 1e-3, 5e-3)
     energies = hit.restitution**2 + hit.plastic_fraction + hit.wave_fraction + hit.other_fraction
@@ -118,11 +132,11 @@ def test_a_table_may_end_next_to_a_corner():
     """The corner and the end were taken for one, and no table was made."""
     strength = cl.Pair(WEAK, "glass").effective_modulus / RATIOS[1] * math.exp(-4e-3)
     pair = cl.Pair(dataclasses.replace(WEAK, yield_strength=strength, rate=(3.4e-4, 1.0)), "glass")
-    corner, end = knots(pair, USUAL.piece, rate.FASTEST, USUAL.near)[0][-2:]
+    corner, end = knots(pair, USUAL.apart, rate.FASTEST, USUAL.near)[0][-2:]
     assert USUAL.near < end - corner < 1e-3
     model = cl.ImpactModel(pair)
     found, exact = (how([0.1, 3.0], 1e-3, 1e-2).restitution for how in (model.lookup, model.solve))
-    assert found == pytest.approx(exact, abs=1e-6)
+    assert found == pytest.approx(exact, abs=1e-4)
 
 
 def test_a_rate_beyond_the_laws_is_refused():
@@ -133,5 +147,4 @@ def test_a_rate_beyond_the_laws_is_refused():
 def test_a_pair_without_a_rate_has_its_own_law():
     law = cl.ImpactModel(cl.Pair("glass", "glass")).force_law
     assert by_strength(cl.Pair("glass", "glass"), law) is law.data
-    assert force.room_for(law.data) == 0
     assert force.growth_at(law.data, 1.0) == force.onset_at(law.data, 1.0) == 1.0

@@ -1,0 +1,150 @@
+"""Impacts on a plate that remembers, as near an edge, in implicit steps.
+
+The quickest rates of the plate's memory are a thousand times those of a contact, and explicit steps
+would have to follow all of them. These steps are implicit: the trapezoidal rule in s, whose error is
+taken from its difference to a rule of two steps, with the memory as in `contactlaw.equation.recall`.
+A contact that loads again beyond its largest compression goes on along the loading curve.
+
+Legend, as in `contactlaw.equation.motion`: d compression, q root compression, u speed, f force,
+t time, h step in s, beta mobility, y yield compression; z memory.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlaw._arrays import Array
+from contactlaw._jit import kernel
+from contactlaw.equation import force
+from contactlaw.equation.edge import LONGEST, NO_MEMORY, Memories
+from contactlaw.equation.force import BlendedLaw, UnloadingCurve
+from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.recall import recalled, remembered
+
+# Errors of q in a step over its scale, with which the restitution is within 5e-4 and 3e-5.
+QUICK, FINE = 5e-5, 5e-7
+_FIRST = 0.05  # step, over that in which a free sphere would cover the scale of q
+_SOLVED = 1e-2  # rest of a step's equation, over the error
+_TURNED = 1e-3  # speed of q at the end of loading, over that of the impact: dm errs by its square
+_PARTED = 1e-2  # q at separation, over its scale: the speed errs by its fifth power
+_MOST = 50_000  # steps
+
+
+class Contact(NamedTuple):
+    """A contact that has ended, in the law's scale."""
+
+    ended: bool  # whether steps have got to its end
+    steps: int
+    stays: bool  # whether the sphere still presses when it is not followed any more
+    speed: float  # of the sphere
+    duration: float
+    loading_time: float  # until the largest compression
+    largest: float  # compression
+    peak_force: float
+    memory: Memories
+
+
+@kernel(inline=True)
+def _force(law: BlendedLaw, loading: bool, curve: UnloadingCurve, q: float) -> float:
+    if loading or curve.stiffness == 0.0:
+        return float(force.loading(law, q))
+    return float(force.unloading_force(law, curve, q))
+
+
+@kernel
+def follow(
+    law: BlendedLaw,
+    response: Array,
+    lam: float,
+    y: float,
+    coupling: float,
+    rate: float,
+    error: float,
+    notes: Any,
+    n: int,
+) -> Contact:
+    """Follow one impact to its end, see `Edges`, and note points of its path in row n."""
+    unit = math.sqrt(math.sqrt(y))  # T_H in the law's scale
+    q_scale, speed = 1.0 / (unit * unit), 1.0 / (y * unit)
+    beta, pace, until, least = lam * unit, 0.5 * rate / unit, LONGEST * unit, error * q_scale
+    q, u, f, t, dq, du = 0.0, speed, 0.0, 0.0, speed, 0.0
+    ddq = ddu = last = 0.0  # second derivatives, and the step over which they are differences
+    memory, noted, marks = NO_MEMORY, 0, notes.at.shape[1]
+    loading, curve, dm, top, peak = True, NO_CURVE, 0.0, 0.0, 0.0
+    h, ended, stays, steps = _FIRST * q_scale / speed, False, False, 0
+    while steps < _MOST and not (ended or stays):
+        steps += 1
+        guess, guess_u = q + h * (dq + 0.5 * h * ddq), u + h * (du + 0.5 * h * ddu)
+        time = h * (q + max(guess, 0.0))
+        later = recalled(response, memory, f, pace * time)
+        back, gain = beta * coupling * later.known, beta * (1.0 + coupling * later.per_force)
+        x, before, gap_before = guess, q, 0.0
+        for k in range(20):
+            f_new = _force(law, loading, curve, x)
+            u_new = u + 0.5 * h * (du - 2.0 * x * f_new)
+            gap = q + 0.5 * h * (dq + u_new - gain * f_new - back) - x
+            if abs(gap) < _SOLVED * least:
+                break
+            slope = (gap - gap_before) / (x - before) if k > 0 and x != before else -1.0
+            before, gap_before = x, gap
+            x -= gap / slope
+        off = abs(x - guess) / least
+        if off > 1.0:
+            h *= max(0.2, 0.8 / np.cbrt(off))
+            continue
+        # both rules err by the third derivative, so that their difference gives it
+        share = h / (3.0 * (h + last))
+        x += share * (guess - x)
+        u_new += share * (guess_u - u_new)
+        f_new = _force(law, loading, curve, x)
+        dq_new = u_new - gain * f_new - back
+        turns, ended = loading and dq_new < 0.0, not loading and x < 0.0
+        if turns and dq_new < -_TURNED * speed:
+            h *= dq / (dq - dq_new)
+            ended = False
+            continue
+        if ended and x < -_PARTED * q_scale:
+            h *= q / (q - x)
+            ended = False
+            continue
+        if ended:  # q is 0 before the end of the step
+            time = h * q * q / (q - x)
+        while noted < marks and (ended or notes.at[n, noted] * unit <= t + time):
+            # d and u between the ends of the step: cubics in t, with their slopes dq/ds and -f
+            z = min((notes.at[n, noted] * unit - t) / time, 1.0)
+            rise, turn = z * z * (3.0 - 2.0 * z), z * (1.0 - z)
+            d = q * q + rise * (x * x - q * q) + turn * time * ((1.0 - z) * dq - z * dq_new)
+            d = 0.0 if ended and z == 1.0 else max(d, 0.0)
+            notes.speed[n, noted] = (u + rise * (u_new - u) + turn * time * (z * f_new - (1.0 - z) * f)) / speed
+            notes.force[n, noted] = _force(law, loading, curve, math.sqrt(d)) * y * math.sqrt(y)
+            notes.compression[n, noted] = (d + curve.residual) * y
+            notes.time[n, noted] = (t + z * time) / unit
+            noted += 1
+        turned = t + time * dq / (dq - dq_new) if turns else 0.0
+        memory = remembered(later, f_new)
+        du_new = -2.0 * x * f_new
+        ddq, ddu, last = (dq_new - dq) / h, (du_new - du) / h, h
+        q, u, f, dq, du = x, u_new, f_new, dq_new, du_new
+        t += time
+        stays = t > until
+        if turns:
+            dm, top, peak = q * q, turned, f
+            curve, loading = force.unloading(law, dm), False
+            q = math.sqrt(dm - curve.residual)
+            du = -2.0 * q * f
+            ddq, ddu, last = du, 0.0, 0.0
+        elif not loading and q * q + curve.residual > dm:
+            q = math.sqrt(q * q + curve.residual)
+            curve, loading = NO_CURVE, True
+            du = -2.0 * q * f
+        h *= min(2.0, 0.8 / np.cbrt(max(off, 1e-3)))
+    if loading and q * q > dm:  # a sphere that stays may press harder than ever
+        dm, top, peak = q * q, t, f
+    return Contact(ended or stays, steps, stays, u, t, top, dm, peak, memory)
+
+
+@kernel
+def restitution(contact: Contact, y: float) -> float:
+    """Restitution of a contact."""
+    return 0.0 if contact.stays else min(max(-contact.speed * math.pow(y, 1.25), 0.0), 1.0)
