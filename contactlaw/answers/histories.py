@@ -52,7 +52,7 @@ class Histories:
         Returns
         -------
         ForceHistory
-            Arrays with the samples along the last axis, and flags. By ``"table"`` within 1e-4 of
+            Arrays with the samples along the last axis, and flags. By ``"table"`` within 1e-3 of
             the peak force of those by ``"solve"``.
 
         Raises

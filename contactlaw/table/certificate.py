@@ -137,8 +137,8 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
     x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
     square, *factors = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
     g, own = np.sqrt(square), np.array(factors)
-    end = np.maximum(grid.end(x, own), g)
-    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * own[0])
+    end = g * np.maximum(grid.end(x, own), 1.0)
+    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * g * own[0])
     p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
     kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
     others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]

@@ -126,9 +126,9 @@ class Grid:
         lam = STRETCH * x / (1.0 - x)
         for n, log_k in enumerate(ladder.tolist() if law.strengths else ()):
             growth = force.growth_at(law.at_any_strength, log_k)
-            w, end = zener.elastic_compression(law.at_any_strength, lam, log_k), self.end(x) * growth**0.25
+            w, end = zener.elastic_compression(law.at_any_strength, lam, log_k), self.end(x)
             if axes.after:
-                end = (growth * _overloads(law, x, w, log_k, _end(law, log_k)) / axes.unit) ** 0.25
+                end = (_overloads(law, x, w, log_k, _end(law, log_k)) / axes.unit) ** 0.25
             rungs[n, 1] = math.sqrt(growth)
             rungs[n, 2:5] = np.polynomial.polynomial.polyfit(x, end / self.end(x), 2)
             rungs[n, 5:] = np.polynomial.polynomial.polyfit(x, (w / self.elastic(x)) ** 0.25, 2)
@@ -144,7 +144,7 @@ class Grid:
         return self._polynomial(x, lookup.ELASTIC, own if own is None else own[3:]) ** 4
 
     def end(self, x: Array, own: Array | None = None) -> Array:
-        """Return p at the end of the law."""
+        """Return p/g at the end of the law."""
         return self._polynomial(x, lookup.END, own)
 
     def yield_ratios(self, x: Array, p: Array, g: Array, own: Array) -> Array:
@@ -156,11 +156,11 @@ class Grid:
         axes, rungs = self.axes, self.rungs.T[:, :, None, None]
         g = np.sqrt(rungs[1])
         x = np.linspace(0.0, axes.x_max, int(axes.rows) + 1)[:, None] + 0.0 * g
-        end = np.maximum(self.end(x, rungs[2:]), g)
+        end = g * np.maximum(self.end(x, rungs[2:]), 1.0)
         q, s, t = (np.linspace(0.0, 1.0, int(count) + 1) for count in (axes.below, axes.beyond, axes.after))
         p = [g * q / (2.0 - q) + 0.0 * x, (2.0 * g + s * (end - 2.0 * g)) / (2.0 - s)]
         if axes.after:
-            p.append(end + t * (np.maximum(axes.top * rungs[2], lookup.NEXT * end) - end))
+            p.append(end + t * (np.maximum(axes.top * g * rungs[2], lookup.NEXT * end) - end))
         whole = np.concatenate(p, axis=2)
         y = self.yield_ratios(np.broadcast_to(x, whole.shape), whole, g, rungs[2:])
         return STRETCH * x / (1.0 - x) + 0.0 * whole, y, np.log(rungs[0]) + 0.0 * whole

@@ -99,4 +99,4 @@ def test_no_float_leads_out_of_an_array(monkeypatch):
         assert 0.0 < lookup.restitution_on_plate(TABLES[0], 1.0, 1e-3, math.inf, 1.0) <= 1.0
         settings(max_examples=15, deadline=None, derandomize=True)(given(st.data())(attempt))()
     assert not {one.__name__ for one in READING.keys() - CALLED}
-    assert np.isnan(slides.change.py_func(np.ones(64), 0.5, 0.0, 0.0, 0.5, np.nan))
+    assert np.isnan(slides.change.py_func(np.ones(64), None, 0.5, np.nan))

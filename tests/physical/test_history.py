@@ -86,10 +86,10 @@ def test_impulse(model, method):
     assert np.max(model.lookup(speed, R, thickness).inelasticity) > 3.5
     contact = model.force_history(speed, R, thickness, 4001, method)
     expected = mass(model) * speed * (1 + model.restitution(speed, R, thickness))
-    assert contact.impulse[..., -1] == pytest.approx(expected, rel=2e-6)
+    assert contact.impulse[..., -1] == pytest.approx(expected, rel=5e-5)
     parts = 0.5 * np.diff(contact.time) * (contact.force[..., 1:] + contact.force[..., :-1])
     passed = np.cumsum(parts, axis=-1) / expected[..., None]
-    assert contact.impulse[..., 1:] / expected[..., None] == pytest.approx(passed, abs=3e-5)
+    assert contact.impulse[..., 1:] / expected[..., None] == pytest.approx(passed, abs=1e-4)
 
 
 @pytest.mark.parametrize("law", ["myc", "fem"])

@@ -312,8 +312,10 @@ def test_tangential_rebounds_are_kept_and_made_anew_where_damaged(place, expecte
     (path,) = place.glob("slides-*.h5")
     whole = path.read_bytes()
     path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
-    check(0.8, 2)
+    with pytest.warns(UserWarning, match="was damaged"):
+        check(0.8, 2)
     assert path.read_bytes() == whole
     check(0.9, 3)
     monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(path / "file"))  # no folder can be made there
-    check(0.8, 4)
+    with pytest.warns(UserWarning, match="cannot be kept"):
+        check(0.8, 4)

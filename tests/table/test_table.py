@@ -129,13 +129,11 @@ def test_tables_of_random_pairs(seed, monkeypatch):
     found = table.certify(model.table, 2000, seed + 1)
     # a place that the other points missed may be a little worse
     assert found.exceeded({name: 1.2 * one for name, one in table.bounds(model.table.law).items()}) == {}
-    v, r = 10 ** rng.uniform(-1.0, 1.0, 300), 10 ** rng.uniform(-3.5, -2.5, 300)
-    h, heavier = r / rng.uniform(0.0, 1.0, 300), 10 ** rng.uniform(-0.1, 0.5, 300)
-    inside = np.array([model.kernel(*one) >= 0.0 for one in zip(v, r, h, strict=True)])
-    v, r, h, mass = v[inside], r[inside], h[inside], (heavier * model._bodies.solid_mass(r))[inside]
-    clamp = cl.ImpactModel(pair, outside="solve")
-    ours, exact = clamp.lookup(v, r, h, mass=mass), model.solve(v, r, h, mass=mass)
-    assert np.abs(ours.restitution - exact.restitution).max(initial=0.0) < 1.5e-4
+    v, r = 10 ** rng.uniform(-1.0, 0.5, 300), 10 ** rng.uniform(-3.5, -2.5, 300)
+    impacts = v, r, r / rng.uniform(0.0, 1.0, 300)
+    mass = 10 ** rng.uniform(-0.1, 0.5, 300) * model._bodies.solid_mass(r)
+    ours = cl.ImpactModel(pair, outside="solve").restitution(*impacts, mass=mass)
+    assert np.abs(ours - model.solve(*impacts, mass=mass).restitution).max() < 1.5e-4
 
 
 def test_one_impact_is_as_those_of_a_batch():
@@ -179,21 +177,12 @@ def test_columns_are_doubled_until_the_table_is_good():
 
 
 def test_the_certificate_is_honest():
-    """The certificate agrees with an independent comparison through the public model."""
+    """At other points the errors are alike; `test_tables_have_the_stated_accuracy` asks the public model."""
     packaged = file.packaged(MYC)
     fresh = table.certify(packaged, points=5000, seed=99)
     assert packaged.certificate.exceeded() == fresh.exceeded() == {} and fresh.points >= 5000
     for name in table.BOUNDS:
         assert 0 <= fresh.median[name] <= fresh.percentile_99[name] <= fresh.largest[name]
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    rng = np.random.default_rng(5)
-    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.5), np.log(90), 3000))
-    impacts = speed, np.full(3000, 1e-3), 1e-3 / rng.uniform(0.0, 5.0, 3000)
-    looked, exact = model.lookup(*impacts), model.solve(*impacts, rtol=1e-12)
-    for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
-        # 3000 points may find a place that others missed, by a little
-        off = np.max(np.abs(getattr(looked, name) - getattr(exact, name)))
-        assert off <= 1.2 * packaged.certificate.largest[name]
 
 
 def test_a_bad_table_is_found():
@@ -232,6 +221,12 @@ def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
         table.build(MYC, SMALL)
 
 
+def test_progress_sees_every_part():
+    seen = []
+    table.build(MYC, SMALL, progress=lambda parts, total: (seen.append(total) or n for n in parts))
+    assert len(seen) >= seen[0] > 1
+
+
 def test_impacts_that_turn_next_to_a_kink_are_found():
     """At each rtol a few in a hundred of other impacts did not solve, and no table was made."""
     flow = {"yield_strength": 60e6, "hardening": (60e6, 0.5), "rate": (0.05, 1e-3), "loss_factor": (0.05, 1e3)}
@@ -241,9 +236,3 @@ def test_impacts_that_turn_next_to_a_kink_are_found():
     lam = np.geomspace(0.5, 6.0, 100)
     x, w = lam / (lam + 2.0), zener.elastic_compression(law.at_any_strength, lam, 0.087)
     assert np.abs(np.diff(np.log(grid._overloads(law, x, w, 0.087, grid._end(law, 0.087))), 3)).max() < 1e-5
-
-
-def test_progress_sees_every_part():
-    seen = []
-    table.build(MYC, SMALL, progress=lambda parts, total: (seen.append(total) or n for n in parts))
-    assert seen and set(seen) == {seen[0], *seen} and len(seen) >= seen[0]
