@@ -473,65 +473,76 @@ class _Chunk(NamedTuple):
 
     row: Any
     column: Any
-    x: Any
     p: Any
     root: Any
-    w: Any
     strength: Any
     g: Any
     between: Any
-    own: Any  # (6, impacts)
+    own: Any  # `later` and `slower` of `Rung`, (6, impacts)
     rung: Any
 
 
 @kernel(inline=True)
 def _scratch() -> _Chunk:
     """Allocate the places of a chunk."""
-    s = np.zeros((15, _CHUNK))
-    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9:], np.zeros(_CHUNK, dtype=np.int64))
+    s = np.zeros((13, _CHUNK))
+    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7:], np.zeros(_CHUNK, dtype=np.int64))
 
 
 @kernel
-def _places(table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: _Chunk) -> None:
-    """`place_of` of the impacts of a chunk."""
+def _find_rungs(table: Array, speed: Array, radius: Array, out: _Chunk) -> None:
+    """`rung_of` of the impacts of a chunk."""
+    axes, own = axes_of(table), out.own
+    for i in range(speed.size):
+        out.strength[i] = strength_at(axes, speed[i], radius[i])
+    for i in range(speed.size):
+        on = rung_of(table, axes, out.strength[i])
+        out.rung[i], out.between[i], out.g[i] = on.index, on.between, on.g
+        own[0, i], own[1, i], own[2, i] = on.later
+        own[3, i], own[4, i], own[5, i] = on.slower
+
+
+@kernel(inline=True)
+def _pair_of(at: Place, scales: bool) -> tuple[float, float]:
+    """Two numbers of a place."""
+    return (at.p, at.root) if scales else (at.row, at.column)
+
+
+@kernel
+def _places(table: Array, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, scales: bool) -> None:
+    """Rows and columns of the impacts of a chunk, or else p and root.
+
+    Each loop writes two arrays: the compiler checks that what it reads is not what it writes, and
+    makes no vector instructions where there is too much to check.
+    """
     axes, plate, ws, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
-    size, rated, thin, solid = speed.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
-    usual = solid and not relaxes(plate)
-    row, column, x, p, root, w, strength, g = out.row, out.column, out.x, out.p, out.root, out.w, out.strength, out.g
-    own = out.own
-    if rated:
-        for i in range(size):
-            strength[i] = strength_at(axes, speed[i], radius[i])
-        for i in range(size):
-            on = rung_of(table, axes, strength[i])
-            out.rung[i], out.between[i], g[i] = on.index, on.between, on.g
-            own[0, i], own[1, i], own[2, i] = on.later
-            own[3, i], own[4, i], own[5, i] = on.slower
-    v, r, h = speed, radius, thickness
+    n, rated, thin, solid = v.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
+    usual, own, g = solid and not relaxes(plate), at.own, at.g
+    first, second = (at.p, at.root) if scales else (at.row, at.column)
     if usual and thin:
-        for i in range(size):
-            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, True, True)
-            row[i], column[i], x[i], p[i], root[i], w[i] = at
+        for i in range(n):
+            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, True, True)
+            first[i], second[i] = _pair_of(one, scales)
     elif usual and not rated:
-        for i in range(size):
-            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, False, True)
-            row[i], column[i], x[i], p[i], root[i], w[i] = at
+        for i in range(n):
+            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, False, True)
+            first[i], second[i] = _pair_of(one, scales)
     elif usual:
-        for i in range(size):
+        for i in range(n):
             later, slower = (own[0, i], own[1, i], own[2, i]), (own[3, i], own[4, i], own[5, i])
-            at = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, g[i], later, slower, False, True)
-            row[i], column[i], x[i], p[i], root[i], w[i] = at
+            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, g[i], later, slower, False, True)
+            first[i], second[i] = _pair_of(one, scales)
     else:
-        for i in range(size):
+        for i in range(n):
             share, grown = 1.0 if solid else mass[i], g[i] if rated else 1.0
             later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
             slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-            at = place(axes, ws, ends, plate, v[i], r[i], h[i], share, grown, later, slower, thin, False)
-            row[i], column[i], x[i], p[i], root[i], w[i] = at
-    if rated:
+            one = place(axes, ws, ends, plate, v[i], r[i], h[i], share, grown, later, slower, thin, False)
+            first[i], second[i] = _pair_of(one, scales)
+    if rated and not scales:
         most = strongest(table, axes)
-        for i in range(size):
-            column[i] = column[i] if strength[i] <= most else -1.0
+        for i in range(n):
+            second[i] = second[i] if at.strength[i] <= most else -1.0
 
 
 @kernel(cache=True)
@@ -545,7 +556,9 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
         n = min(_CHUNK, out.size - start)
         v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
         m, values = _slice(mass, start, n), _slice(out, start, n)
-        _places(table, v, r, h, m, at)
+        if axes.rungs > 1.0:
+            _find_rungs(table, v, r, at)
+        _places(table, v, r, h, m, at, False)
         for i in range(n):
             lost = field(table, axes, 0, at.rung[i], at.between[i], at.row[i], at.column[i])
             values[i] = cor_from(lost) if at.column[i] >= 0.0 else math.nan
@@ -575,17 +588,27 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    axes, at, bad = axes_of(table), _scratch(), 0
+    axes, w, at, bad = axes_of(table), series_at(table, ELASTIC), _scratch(), 0
     rated = axes.rungs > 1.0
     for start in range(0, speed.size, _CHUNK):
         n = min(_CHUNK, speed.size - start)
-        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
-        _places(table, v, r, h, _slice(mass, start, n), at)
+        v, r, h, m = (
+            _slice(speed, start, n),
+            _slice(radius, start, n),
+            _slice(thickness, start, n),
+            _slice(mass, start, n),
+        )
+        if rated:
+            _find_rungs(table, v, r, at)
+        _places(table, v, r, h, m, at, False)
+        _places(table, v, r, h, m, at, True)
         for i in range(n):
-            g, k = at.g[i] if rated else 1.0, start + i
-            elastic, chi = _fourth(at.w[i]), _overload(axes, at.p[i], g)
-            root[k], out.elastic_compression[k], out.yield_ratio[k] = at.root[i], elastic, elastic / chi
-            out.inelasticity[k] = STRETCH * at.x[i] / (1.0 - at.x[i])
+            k, x, own = start + i, at.row[i] * (axes.x_max / axes.rows), at.own
+            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
+            elastic = _fourth(of_rung(w, slower, x))
+            root[k], out.elastic_compression[k] = at.root[i], elastic
+            out.yield_ratio[k] = elastic / _overload(axes, at.p[i], at.g[i] if rated else 1.0)
+            out.inelasticity[k] = STRETCH * x / (1.0 - x)
             out.strength[k] = log(at.strength[i]) if rated else 0.0
         for i in range(n):
             k, rung, between, row, column = start + i, at.rung[i], at.between[i], at.row[i], at.column[i]
