@@ -16,7 +16,7 @@ from contactlaw._arrays import Array
 from contactlaw.equation import force
 from contactlaw.laws import Law, Strengths, fem
 from contactlaw.laws._branches import bisect
-from contactlaw.laws._expansion import Cuts, expanded, packed
+from contactlaw.laws._expansion import Resolution, expanded, packed
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -120,8 +120,8 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
 
 def law_array(formulas: dict[str, Any], end: float, fineness: Fineness = USUAL) -> Array:
     """Law of `formulas_at`, as kernels take it, which follows them up to a compression [d_Y]."""
-    cuts = Cuts(fineness.vanished, fineness.widest, checked=False)
-    return packed(expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, cuts))
+    resolution = Resolution(fineness.vanished, fineness.widest, checked=False)
+    return packed(expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, resolution))
 
 
 def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:
