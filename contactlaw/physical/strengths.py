@@ -43,10 +43,10 @@ class Fineness(NamedTuple):
 
 # The COR is within 7e-5 of that of a law made for its strength, up to the law's end.
 USUAL = Fineness(1e-10, 3.0, 0.03, rate.REACH, 1e-4)
-# For steps and for exports, whose laws have fewer numbers.
-COARSE = Fineness(1e-7, 4.0, 0.03, rate.FASTEST, 5e-3)
-# For tables, whose splines run through many rungs: within 1e-5.
-_FOR_TABLES = USUAL._replace(apart=0.0125)
+# For steps and for exports, whose laws have fewer numbers: within 1e-4.
+COARSE = Fineness(1e-7, 4.0, 0.04, rate.FASTEST, 5e-3)
+# For tables, whose splines run through many rungs: within 3e-6.
+_FOR_TABLES = USUAL._replace(apart=0.006)
 # Of a table's axis in ln k, our choices, for which the COR errs by less than 5e-6: segments, in
 # which ln d_Y is a polynomial to _SMOOTH; widest cells, how far splines over them may be from
 # ln d_Y, and most cells of a segment.
