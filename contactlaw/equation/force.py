@@ -56,7 +56,7 @@ FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
 STRENGTH, BEGINS, SIZE, LOG_SCALE, LOG_ONSET, END, RUNG = range(7)
-_STEP = 1e-6  # relative step in d of the slope at the end of a blend
+_STEP = 1e-4  # relative step in d of the slope at the end of a blend
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
