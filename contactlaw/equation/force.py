@@ -209,7 +209,7 @@ def _blended_loading(law: BlendedLaw, q: float) -> float:
     return f + law.share * (loading_of(law.high, q) - f) if law.share > 0.0 else f
 
 
-@kernel
+@kernel(cache=True)
 def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
@@ -254,7 +254,7 @@ def _losses_of(law: Array, dm: float) -> tuple[float, float, float]:
     return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm)
 
 
-@kernel
+@kernel(cache=True)
 def residual_and_losses(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
     """Compression left after unloading from dm, the loss, and the part of it that is not plastic."""
     inside = min(dm, law.end)
@@ -379,7 +379,7 @@ def power_force(stiffness: float, exponent: float, q: float) -> float:
     return math.copysign(stiffness * math.pow(abs(q), exponent), q)
 
 
-@kernel
+@kernel(cache=True)
 def unloading_force(law: BlendedLaw, curve: UnloadingCurve, q: float) -> float:
     """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:
