@@ -216,7 +216,7 @@ def loading(law: BlendedLaw, q: float) -> float:
         return _blended_loading(law, q)
     last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
     slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
-    return last + slope * (q * q - law.end)
+    return float(last + slope * (q * q - law.end))
 
 
 @kernel(inline=True)
