@@ -273,7 +273,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         speed, radius, thickness : array_like
             As in `restitution`, but no table limits the range.
         rtol : float, optional
-            Error allowed in each step of the integration, between 1e-13 and 1e-6.
+            Error allowed in each step of the integration, between 1e-13 and 1e-6. Near an edge,
+            and on walls that swing back, steps have an error of 5e-7 at any rtol: the COR is
+            within 3e-5 of that of finer steps.
         edge, edge_distance, hole_radius, mass
             As in `restitution`.
 
@@ -281,8 +283,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         -------
         Rebound
             Its energies add up to 1 within 500 rtol, which is 5e-8 at the default; most do within
-            rtol. Those of a pair with a rate of strain add up within 1e-5 at any rtol, because
-            each number of its law is interpolated in the strength.
+            rtol. Those of a pair with a rate of strain add up within 1e-6 at any rtol, because
+            its laws are expanded less finely.
 
         Raises
         ------

@@ -92,7 +92,7 @@ def compression(law: BlendedLaw, lam: float) -> float:
         total += power * value
         power *= 1.0 - softer
         at += _DEGREES[row] + 1
-    return math.exp(0.4 * math.log(1.25 * softer) + x * total) * (1.0 - x) ** (2.0 / 3.0)
+    return float(math.exp(0.4 * math.log(1.25 * softer) + x * total) * (1.0 - x) ** (2.0 / 3.0))
 
 
 @kernel(cache=True)

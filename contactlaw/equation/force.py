@@ -56,7 +56,7 @@ FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
 STRENGTH, BEGINS, SIZE, LOG_SCALE, LOG_ONSET, END, RUNG = range(7)
-_STEP = 1e-6  # relative step in d of the slope at the end of a blend
+_STEP = 1e-4  # relative step in d of the slope at the end of a blend
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -209,14 +209,14 @@ def _blended_loading(law: BlendedLaw, q: float) -> float:
     return f + law.share * (loading_of(law.high, q) - f) if law.share > 0.0 else f
 
 
-@kernel
+@kernel(cache=True)
 def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
         return _blended_loading(law, q)
     last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
     slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
-    return last + slope * (q * q - law.end)
+    return float(last + slope * (q * q - law.end))
 
 
 @kernel(inline=True)
@@ -254,7 +254,7 @@ def _losses_of(law: Array, dm: float) -> tuple[float, float, float]:
     return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm)
 
 
-@kernel
+@kernel(cache=True)
 def residual_and_losses(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
     """Compression left after unloading from dm, the loss, and the part of it that is not plastic."""
     inside = min(dm, law.end)
@@ -379,7 +379,7 @@ def power_force(stiffness: float, exponent: float, q: float) -> float:
     return math.copysign(stiffness * math.pow(abs(q), exponent), q)
 
 
-@kernel
+@kernel(cache=True)
 def unloading_force(law: BlendedLaw, curve: UnloadingCurve, q: float) -> float:
     """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:

@@ -50,56 +50,27 @@ class _Function:
     size: Formula | None = None  # None: its own values
 
 
-class Cuts:
-    """Where each expansion of a law is cut into pieces, in shares of ln(high/low).
+class Resolution(NamedTuple):
+    """How finely the formulas of a law are expanded."""
 
-    Laws of one pair at several strengths share them, so that their arrays have one layout.
-
-    Parameters
-    ----------
-    vanished : float, optional
-        A term counts as zero below this share of the least value on its piece.
-    widest : float, optional
-        Largest ratio of the ends of a piece, before any is halved.
-    checked : bool, optional
-        Whether formulas are checked, as those of users have to be: half the time of making a law.
-    """
-
-    def __init__(self, vanished: float = _VANISHED, widest: float = _WIDEST, checked: bool = True) -> None:
-        self.vanished, self.widest, self.checked = vanished, widest, checked
-        self.shares: list[Array] = []
-        self._next = 0
-
-    def again(self) -> None:
-        """Begin with the first expansion, those of another law."""
-        self._next = 0
-
-    def edges(self, low: float, high: float) -> Array:
-        """Return the ends of the pieces of the next expansion."""
-        if self._next == len(self.shares):
-            count = max(1, math.ceil(math.log(high / low) / math.log(self.widest)))
-            self.shares.append(np.linspace(0.0, 1.0, count + 1))
-        edges: Array = low * np.power(high / low, self.shares[self._next])
-        edges[[0, -1]] = low, high
-        return edges
-
-    def keep(self, starts: Sequence[float], low: float, high: float) -> None:
-        """Remember where the pieces of this expansion begin in the end."""
-        if len(starts) >= self.shares[self._next].size:  # some were halved
-            shares = np.log(np.array([*starts, high]) / low) / math.log(high / low)
-            shares[-1] = 1.0
-            self.shares[self._next] = shares
-        self._next += 1
+    vanished: float = _VANISHED  # a term counts as zero below this share of the least value on its piece
+    widest: float = _WIDEST  # largest ratio of the ends of a piece, before any is halved
+    checked: bool = True  # whether formulas are checked, as those of users have to be: half of the time
 
 
-def _expand(name: str, parts: Sequence[_Function | float], low: float, high: float, cuts: Cuts) -> list[_Piece]:
+def _expand(
+    name: str, parts: Sequence[_Function | float], low: float, high: float, resolution: Resolution
+) -> list[_Piece]:
     """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
-    todo, done = list(itertools.pairwise(cuts.edges(low, high).tolist())), []
+    count = max(1, math.ceil(math.log(high / low) / math.log(resolution.widest)))
+    edges = low * np.power(high / low, np.linspace(0.0, 1.0, count + 1))
+    edges[[0, -1]] = low, high
+    todo, done = list(itertools.pairwise(edges.tolist())), []
     while todo:
         left, right = np.array(todo).T
         middle, half = 0.5 * (left + right), 0.5 * (right - left)
         at = middle[:, None] + half[:, None] * _NODES
-        found = [_powers(name, part, at, cuts.vanished) for part in parts]
+        found = [_powers(name, part, at, resolution.vanished) for part in parts]
         smooth = np.all([converged for _, converged in found], axis=0)
         lengths = [_lengths(rows) for rows, _ in found]
         for n in np.flatnonzero(smooth):
@@ -111,7 +82,6 @@ def _expand(name: str, parts: Sequence[_Function | float], low: float, high: flo
             reason = f"it is not smooth near {near}; give each kink a branch that begins there"
             raise ArgumentError("law", name, reason)
     done.sort(key=lambda piece: piece.start)
-    cuts.keep([piece.start for piece in done], low, high)
     return done
 
 
@@ -160,7 +130,9 @@ def _values(name: str, what: str, function: Formula, at: Array) -> Array:
 class LoadingCurve:
     """The loading curve in pieces, with force and work at any compressions."""
 
-    def __init__(self, name: str, branches: Sequence[Loading], yields: bool, end: float, cuts: Cuts) -> None:
+    def __init__(
+        self, name: str, branches: Sequence[Loading], yields: bool, end: float, resolution: Resolution
+    ) -> None:
         if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
             forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
             raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
@@ -176,21 +148,21 @@ class LoadingCurve:
                 coefficients = np.asarray(force.coef, dtype=np.float64)
                 self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
             else:
-                if cuts.checked:
+                if resolution.checked:
                     _check_rise(name, force, branch.start, end, 200)
                 part = _Function("loading force", _over_root(force))
-                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end), cuts)
+                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end), resolution)
             self.first_of_branch += [first] * (len(self.pieces) - first)
         self._tabulate()
         if yields:
             self._extend_by_tangent()
-        if cuts.checked:
-            self._check(name, cuts)
+        if resolution.checked:
+            self._check(name, resolution)
 
-    def _check(self, name: str, cuts: Cuts) -> None:
+    def _check(self, name: str, resolution: Resolution) -> None:
         for kink in self.kinks:
             before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
-            if not abs(after - before) <= max(1e-9, 1e3 * cuts.vanished) * before:
+            if not abs(after - before) <= max(1e-9, 1e3 * resolution.vanished) * before:
                 said = f"{kink:.9g} d_Y: {before:.9g} and {after:.9g} F_Y"
                 raise ArgumentError("law", name, f"its loading branches do not meet at {said}")
         _check_rise(name, self.force, 1e-3, self.end, 2000)
@@ -358,10 +330,12 @@ def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula,
     return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
 
 
-def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: float, cuts: Cuts) -> list[_Row]:
+def _unloading_rows(
+    name: str, curve: LoadingCurve, branch: Unloading, end: float, resolution: Resolution
+) -> list[_Row]:
     exponent = branch.exponent
     residual, loss = _residual_and_loss(curve, branch)
-    some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200 if cuts.checked else 0)
+    some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200 if resolution.checked else 0)
     deep = _values(name, "residual compression", residual, some) >= some
     if deep.any():
         at = some[int(np.argmax(deep))]
@@ -393,7 +367,7 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
     return [
         _Row(piece, powers, branch.other is not None)
         for ends in itertools.pairwise([branch.start, *inner, end])
-        for piece in _expand(name, parts, *ends, cuts)
+        for piece in _expand(name, parts, *ends, resolution)
     ]
 
 
@@ -423,13 +397,14 @@ class Expanded(NamedTuple):
     rows: list[_Row]  # of the unloading curves
 
 
-def expanded(name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, cuts: Cuts) -> Expanded:
+def expanded(
+    name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, resolution: Resolution
+) -> Expanded:
     """Expand the formulas of a law."""
-    cuts.again()
-    curve = LoadingCurve(name, loading, bool(unloading), end, cuts)
-    rows = [row for branch in _ends(unloading, curve.end) for row in _unloading_rows(name, curve, *branch, cuts)]
-    if cuts.checked:
-        _check_joints(name, curve, unloading, 1e3 * cuts.vanished)
+    curve = LoadingCurve(name, loading, bool(unloading), end, resolution)
+    rows = [row for branch in _ends(unloading, curve.end) for row in _unloading_rows(name, curve, *branch, resolution)]
+    if resolution.checked:
+        _check_joints(name, curve, unloading, 1e3 * resolution.vanished)
     if rows:
         rows.append(_beyond(curve, rows[-1]))
     return Expanded(curve, rows)

@@ -15,7 +15,7 @@ from contactlaw._arrays import Array
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Loading, Unloading
-from contactlaw.laws._expansion import Cuts, check_yield, expanded, packed
+from contactlaw.laws._expansion import Resolution, check_yield, expanded, packed
 
 
 class Strengths(NamedTuple):
@@ -145,7 +145,7 @@ class Law:
         name = _written(family, parameters)
         check_yield(name, yield_coefficient, loading, unloading)
         end = range[1] if range[1] < math.inf else END
-        made = expanded(name, loading, unloading, end, Cuts())
+        made = expanded(name, loading, unloading, end, Resolution())
         curve = made.curve
         starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
         if curve.stiffer:  # friction takes energy below yield, too: its branch begins no kink

@@ -16,7 +16,7 @@ from contactlaw._arrays import Array
 from contactlaw.equation import force
 from contactlaw.laws import Law, Strengths, fem
 from contactlaw.laws._branches import bisect
-from contactlaw.laws._expansion import Cuts, expanded, packed
+from contactlaw.laws._expansion import Resolution, expanded, packed
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -41,8 +41,8 @@ class Fineness(NamedTuple):
 
 # The COR is within 7e-5 of that of a law made for its strength, up to the law's end.
 USUAL = Fineness(1e-10, 3.0, 0.03, rate.REACH, 1e-4)
-# For steps and for exports, whose laws have fewer numbers.
-COARSE = Fineness(1e-7, 4.0, 0.03, rate.FASTEST, 5e-3)
+# For steps and for exports, whose laws have fewer numbers: within 1e-4.
+COARSE = Fineness(1e-7, 4.0, 0.04, rate.FASTEST, 5e-3)
 
 
 def with_strengths(pair: Pair, law: Law) -> Law:
@@ -79,8 +79,8 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
 
 def law_array(formulas: dict[str, Any], end: float, fineness: Fineness = USUAL) -> Array:
     """Law of `formulas_at`, as kernels take it, which follows them up to a compression [d_Y]."""
-    cuts = Cuts(fineness.vanished, fineness.widest, checked=False)
-    return packed(expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, cuts))
+    resolution = Resolution(fineness.vanished, fineness.widest, checked=False)
+    return packed(expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, resolution))
 
 
 def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:

@@ -29,7 +29,7 @@ def test_a_grid_as_hdf5(tmp_path, grid, model, capsys):
     out = tmp_path / "cor.h5"
     assert main([*GRID, "--out", str(out)]) == 0
     text = " ".join(capsys.readouterr().out.split())
-    assert text.startswith(f"{out}: 24 rows, gamma-alumina on glass, law myc a: FAST_IMPACT, 6 of 24: ")
+    assert text.startswith(f"{out}: 24 rows gamma-alumina on glass, law myc a: FAST_IMPACT, 6 of 24: ")
     with h5py.File(out) as file:
         assert dict(file.attrs) == {
             "format": "contactlaw-sweep",

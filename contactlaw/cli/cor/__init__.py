@@ -70,7 +70,7 @@ def _run(arguments: argparse.Namespace) -> None:
             table, _ = tables.table(arguments, model)
             axes = {"time": table.values["time"]} if arguments.history else tables.axes(arguments)
             files.save(table, axes, model.outside, arguments.out)
-        print(*wrapped(f"{arguments.out}: {len(table)} rows, {in_words(table.asked)}"), *table.remarks(), sep="\n")
+        print(f"{arguments.out}: {len(table)} rows", *wrapped(in_words(table.asked)), *table.remarks(), sep="\n")
     else:
         _print(arguments, model)
 
