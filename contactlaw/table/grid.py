@@ -53,7 +53,7 @@ class Settings:
     largest_inelasticity: float = 5.0
     largest_overload: float = 40.0
     rows: int = 40
-    columns: int = 48
+    columns: int = 64
     rtol: float = 1e-9
 
     def __post_init__(self) -> None:
