@@ -12,14 +12,15 @@ from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, sweep
-from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes
+from contactlaw.table.certificate import CORNERED, Certificate, bounds, compare_histories, compare_outcomes
 from contactlaw.table.grid import AFTER, BELOW, Grid, Settings
 from contactlaw.table.lookup import STRETCH
 from contactlaw.table.sweep import Progress, no_progress
 
 POINTS = 2000  # points of the certificate of a table that is built on demand
 _DOUBLINGS = 4  # numbers of columns, and distances of rungs, that are tried
-_MARGIN = 0.6  # of the promised errors, which the certificate of a new table may use
+# Shares of the promised errors which the certificate of a new table may use; errors next to corners are rarely met.
+_MARGIN, _CORNERS_MARGIN = 0.6, 0.4
 _APART = 0.03  # largest distance of rungs in ln k at first
 
 
@@ -106,7 +107,9 @@ def build(
 def _exceeds(table: Table) -> bool:
     """Whether errors are so large that ten times as many points may find one above its bound."""
     assert table.certificate is not None
-    return bool(table.certificate.exceeded({name: _MARGIN * one for name, one in bounds(table.law).items()}))
+    promised = bounds(table.law)
+    margin = _CORNERS_MARGIN if promised["restitution"] == CORNERED else _MARGIN
+    return bool(table.certificate.exceeded({name: margin * one for name, one in promised.items()}))
 
 
 def _certified(
