@@ -16,8 +16,8 @@ class Program:
     Functions are made anew for each value of parameters whose names are in `fixed`. `names` are for
     kernels, NamedTuples and dtypes, and for tuples by the types of their members; others get their
     own. A name may be kept for what is not written here, under any key. `instead` of some kernels
-    others are written. Kernels that are
-    written by hand have the types of their results in `elsewhere`, and are declared.
+    others are written. Kernels that are written by hand have the types of their results in
+    `elsewhere`, and are declared.
     """
 
     def __init__(

@@ -38,7 +38,8 @@ MODELS = {
 QUICK = "fem", "corners of loading", "losses and flow", "two rates"
 NAMES = [one if one in QUICK else pytest.param(one, marks=pytest.mark.long) for one in MODELS]
 # Errors of COR, and of the sliding speed over friction times speed, by laws as the page has them.
-BETWEEN = dict.fromkeys(("rate", "two rates", "corners"), (1e-6, 1e-5))
+# Its laws are blends of fewer ones.
+BETWEEN = dict.fromkeys(("rate", "two rates", "corners"), (2e-4, 1e-3))
 COR = "document.getElementById('cor').textContent"
 
 
