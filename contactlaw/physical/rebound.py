@@ -153,10 +153,9 @@ def rebound(
         flags,
     )
     if interpolated:
-        shares = found.plastic_fraction, out.wave_fraction, found.other_fraction
-        factor = outcomes.balance(outcome.restitution, sum(shares))
-        for share in shares:
-            share *= factor
+        lost = found.plastic_fraction + out.wave_fraction + found.other_fraction
+        for share in (found.plastic_fraction, out.wave_fraction, found.other_fraction):
+            share *= outcomes.balance(outcome.restitution, lost)
     if impacts.mass is not None:
         flags |= bodies.mass_flags(impacts)
     if impacts.wall is not None:

@@ -85,7 +85,7 @@ def _kept(
 ) -> Table:
     """Read a table from the cache; if it is missing or not whole, make it and keep it."""
 
-    def read(path: Path) -> Table | None:
+    def read(path: Path) -> Table:
         found = file.read(path)
         if found.law.key != law.key or found.settings != settings:
             raise file.DamagedTableError("") from ValueError("it is the table of another law or of other settings")

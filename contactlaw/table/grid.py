@@ -137,7 +137,7 @@ class Grid:
     def _polynomial(self, x: Array, begins: int, factors: Array | None) -> Array:
         """Polynomial of slow impacts, or times the square of a rung (3, ...)."""
         slow = np.polynomial.polynomial.polyval(x, self.head[begins : begins + DEGREE + 1])
-        return slow if factors is None else slow * (factors[0] + x * (factors[1] + x * factors[2]))
+        return np.asarray(slow if factors is None else slow * (factors[0] + x * (factors[1] + x * factors[2])))
 
     def elastic(self, x: Array, own: Array | None = None) -> Array:
         """Return w, the largest elastic compression; `own` are the numbers of a rung (6, ...)."""

@@ -212,7 +212,7 @@ def exp(x: float) -> float:
 
 
 @kernel(inline=True)
-def whole(v: float) -> int:
+def whole(v: float) -> Any:
     """Whole part of a number above 0; of 32 bits, which vectors convert."""
     return np.int32(v)
 
@@ -238,7 +238,7 @@ ALIKE = (1.0, 0.0, 0.0)
 class Rung(NamedTuple):
     """A strength on the ladder."""
 
-    index: int  # of the lower of two rungs
+    lower: int  # of two rungs
     between: float  # way to the next, from 0 to 1
     g: float
     later: Three  # factor of P, beside g
@@ -260,7 +260,8 @@ def rung_of(table: Array, axes: Axes, strength: float) -> Rung:
 @kernel(inline=True)
 def _between(table: Array, at: int, way: float) -> float:
     """Interpolate a number of two rungs."""
-    return table[at] + way * (table[at + RUNG] - table[at])
+    number: float = table[at] + way * (table[at + RUNG] - table[at])
+    return number
 
 
 @kernel(inline=True)
@@ -399,7 +400,8 @@ def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: fl
     c1 = a0 * table[p + i1] + a1 * table[q + i1] + a2 * table[r + i1] + a3 * table[o + i1]
     c2 = a0 * table[p + i2] + a1 * table[q + i2] + a2 * table[r + i2] + a3 * table[o + i2]
     c3 = a0 * table[p + i3] + a1 * table[q + i3] + a2 * table[r + i3] + a3 * table[o + i3]
-    return ((b0 * c0 + b1 * c1) + (b2 * c2 + b3 * c3)) * (1.0 / 36.0)
+    found: float = ((b0 * c0 + b1 * c1) + (b2 * c2 + b3 * c3)) * (1.0 / 36.0)
+    return found
 
 
 @kernel(inline=True)
@@ -441,7 +443,7 @@ def cor_at(table: Array, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
     if not at.column >= 0.0:
         return math.nan
-    return cor_from(field(table, axes_of(table), 0, on.index, on.between, at.row, at.column))
+    return cor_from(field(table, axes_of(table), 0, on.lower, on.between, at.row, at.column))
 
 
 @kernel(cache=True)
@@ -497,7 +499,7 @@ def _find_rungs(table: Array, speed: Array, radius: Array, out: _Chunk) -> None:
         out.strength[i] = strength_at(axes, speed[i], radius[i])
     for i in range(speed.size):
         on = rung_of(table, axes, out.strength[i])
-        out.rung[i], out.between[i], out.g[i] = on.index, on.between, on.g
+        out.rung[i], out.between[i], out.g[i] = on.lower, on.between, on.g
         own[0, i], own[1, i], own[2, i] = on.later
         own[3, i], own[4, i], own[5, i] = on.slower
 
@@ -659,7 +661,7 @@ def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
     inside = within_x == x and within_p == p and within_k == strength
     w = _fourth(of_rung(series_at(table, ELASTIC), on.slower, within_x))
     row = within_x * (axes.rows / axes.x_max)
-    return Spot(row, column, on.index, on.between, within_x, within_p, on.g, w, inside)
+    return Spot(row, column, on.lower, on.between, within_x, within_p, on.g, w, inside)
 
 
 @kernel(inline=True)

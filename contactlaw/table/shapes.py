@@ -44,10 +44,10 @@ def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
     states = np.empty((lam.size, 2, SIZE))
 
     def solve(part: slice) -> None:
-        some = [each[part] for each in flat]
-        status, time, speed = zener.shape(law.at_any_strength, *some[:2], rtol, SHARES, some[2])
+        lams, ys, strengths = (each[part] for each in flat)
+        status, time, speed = zener.shape(law.at_any_strength, lams, ys, rtol, SHARES, strengths)
         if status.any():
-            raise sweep.failure("shape", law, *some[:2], *zener.failure(status))
+            raise sweep.failure("shape", law, lams, ys, *zener.failure(status))
         states[part] = np.stack((time, speed), axis=1)[:, :, :-1]
 
     sweep.in_parts(solve, lam.size, progress)
