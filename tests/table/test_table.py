@@ -67,8 +67,7 @@ def test_tables_have_the_stated_accuracy(law):
     shares = looked.plastic_fraction + looked.wave_fraction + looked.other_fraction
     assert np.abs(looked.restitution**2 + shares - 1.0).max() < 1e-12
     still = model.lookup(np.geomspace(1e-6, 0.9, 50) * model.pair.yield_speed, 1e-3, math.inf)
-    slow = still.overload <= 1.0
-    assert (still.restitution[slow] == 1.0).all()
+    assert (still.restitution[still.overload <= 1.0] == 1.0).all()
 
 
 def near_the_kinks(law):
@@ -81,23 +80,14 @@ def near_the_kinks(law):
 
 
 @EVERY_LAW
-@pytest.mark.parametrize("place", ["anywhere", "half-space", "below yield", "kinks"])
+@pytest.mark.parametrize("place", ["below yield", "kinks"])
 def test_no_place_of_a_table_breaks_its_promise(law, place):
-    ends, promise = (-0.2, math.log(40)), table.bounds(law)["restitution"]
-    if place == "anywhere":
-        rng = np.random.default_rng(61)
-        lam, chi = 5 * rng.uniform(0, 1, 10_000) ** 2, np.exp(rng.uniform(*ends, 10_000))
-    elif place == "half-space":
-        lam, chi = np.zeros(3000), np.exp(np.linspace(*ends, 3000))
-    elif place == "below yield":
-        lam, chi, promise = np.linspace(0.0, 5.0, 3000), np.random.default_rng(1).uniform(0.0, 1.0, 3000), 1e-6
-    else:
-        lam, chi = np.array([*near_the_kinks(law)]).T
+    lam, chi, promise = np.linspace(0.0, 5.0, 3000), np.random.default_rng(1).uniform(0.0, 1.0, 3000), 1e-6
+    if place == "kinks":
+        lam, chi, promise = *np.array([*near_the_kinks(law)]).T, table.bounds(law)["restitution"]
         assert len(chi) > 9 * 59  # at least one kink of the law is in the table
-    found = errors(built_for(law), lam, chi)
-    for off, most in zip(found, (promise, 2e-3), strict=True):
-        worst = int(np.argmax(off))
-        assert off[worst] < most, (off[worst], lam[worst], chi[worst])
+    off = errors(built_for(law), lam, chi)
+    assert (off.max(axis=1) < [promise, 2e-3]).all()
 
 
 def pair_of(seed):
@@ -153,36 +143,11 @@ def test_one_impact_is_as_those_of_a_batch():
             assert np.abs(model.lookup(v, r, h, **masses).restitution - together)[inside].max() <= 2e-15
 
 
-def test_spline_error_falls_with_the_fourth_power():
-    # below the kink at d_P, where the surface is smooth; not all errors are in the region of the limit
-    rng = np.random.default_rng(2)
-    lam, chi = 5 * rng.uniform(0, 1, 400) ** 2, np.exp(rng.uniform(0, math.log(2.0 / 0.68), 400))
-    whole = grid.grid(MYC, table.Settings())
-    off = []
-    for rows, cells in ((12, 24), (24, 48)):
-        axes = whole.with_cells(rows, 8, cells, 8)
-        built = table.table._certified(MYC, table.Settings(), axes, 100, sweep.no_progress, {})
-        off.append(errors(built, lam, chi)[0].max())
-    coarse, fine = off
-    assert math.log2(coarse / fine) == pytest.approx(4.5, abs=0.6)
-
-
 def test_columns_are_doubled_until_the_table_is_good():
     built = table.build(MYC, SMALL)
     assert built.grid.axes.beyond in (32, 64) and not built.exceeded
-    rated = with_strengths(metal.PAIR, metal.MODEL.force_law)
-    whole = metal.MODEL.table
-    assert whole.grid.axes.rungs > 4 and whole.grid.ladder[-1] == pytest.approx(rated.strengths.knots[-1])
-    assert whole.certificate.largest["restitution"] < certificate.RATED
-
-
-def test_the_certificate_is_honest():
-    """At other points the errors are alike; `test_tables_have_the_stated_accuracy` asks the public model."""
-    packaged = file.packaged(MYC)
-    fresh = table.certify(packaged, points=5000, seed=99)
-    assert packaged.certificate.exceeded() == fresh.exceeded() == {} and fresh.points >= 5000
-    for name in table.BOUNDS:
-        assert 0 <= fresh.median[name] <= fresh.percentile_99[name] <= fresh.largest[name]
+    assert metal.MODEL.table.grid.axes.rungs > 4
+    assert metal.MODEL.table.certificate.largest["restitution"] < certificate.RATED
 
 
 def test_a_bad_table_is_found():
