@@ -26,7 +26,7 @@ RESTING = 2.0
 # Speeds below this many smallest radii per step are rounding errors. Without gravity this is the
 # only limit.
 ROUNDING = 1e-12
-IMPACT, STRUCK, IN_CLUMP, OF_BODY = map(int, (Kind.IMPACT, Kind.STRUCK, Kind.IN_CLUMP, Kind.OF_BODY))
+IMPACT, STRUCK = int(Kind.IMPACT), int(Kind.STRUCK)
 
 
 class Contacts:
@@ -93,7 +93,7 @@ class Contacts:
                 if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
-                (x, y), (vx, vy) = bead.at(circle)
+                (x, y), (vx, vy) = body.position, body.velocity
                 if plate.joints and belongs_to_neighbour(bead, plate, circle, shape, x, y):
                     self._cede(arbiter, bead, plate)
                     return
@@ -113,21 +113,16 @@ class Contacts:
                 if plate.edge is not None:
                     near = self.edges.near(bead, plate, (x, y), speed)
                     curve = near and plate.models.near(bead.kind, plate.thickness, near)
-                if bead.of_body:
-                    mass = self.record.mass[len(self.record)] = bead.answering(body, x, y, nx, ny)
-                    curve = plate.models.of_body(bead.kind, plate.wall, near, mass)
                 cor = self._answer(arbiter, bead, plate, circle, shape, speed, curve)
-                kind = (OF_BODY if bead.of_body else IMPACT) if arbiter.is_first_contact else STRUCK
+                kind = IMPACT if arbiter.is_first_contact else STRUCK
                 spin = body.angular_velocity
                 slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * spin
                 after, work = abs(slip), 0.0
-                if friction is not None and bead.of_body:
-                    arbiter.friction = friction
-                if friction is not None and not bead.of_body:
+                if friction is not None:
                     gain = (1.0 + cor) / (1.0 + plate.curve(bead, shape)(speed)) if near else 1.0
                     slip, after, spin, work = self._slide(arbiter, bead, plate, body, (nx, ny), speed, slip, gain)
                 elif arbiter.friction > 0.0:
-                    self._rub(arbiter, circle, shape, len(self.record), (speed, cor) if bead.of_body else None)
+                    self._rub(arbiter, circle, shape, len(self.record))
                     after = spin = work = math.nan
                 if near:
                     self.record.near[len(self.record)] = near
@@ -156,13 +151,13 @@ class Contacts:
                 body: Any = circle.body
                 other_body: Any = shape.body
                 nx, ny = arbiter.normal  # through both centres, so that spin has no part
-                ((x, y), (vx, vy)), (_, (ux, uy)) = bead.at(circle), other.at(shape)
+                (x, y), (vx, vy), (ux, uy) = body.position, body.velocity, other_body.velocity
                 speed = (vx - ux) * nx + (vy - uy) * ny
                 if speed <= self._resting_speed:
                     self._rest(arbiter, speed)
                     return
                 cor = self._answer(arbiter, bead, other, circle, shape, speed)
-                kind = (IN_CLUMP if bead.of_body or other.of_body else IMPACT) if arbiter.is_first_contact else STRUCK
+                kind = IMPACT if arbiter.is_first_contact else STRUCK
                 x, y = x + bead.radius * nx, y + bead.radius * ny
                 spin = body.angular_velocity
                 turning = bead.radius * spin + other.radius * other_body.angular_velocity
@@ -246,14 +241,11 @@ class Contacts:
         spin = body.angular_velocity + (1.0 - 1.0 / POINT) * change / bead.radius
         return slip, after, spin, -change * (slip + 0.5 * change) / POINT
 
-    def _rub(
-        self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int, normal: tuple[float, float] | None = None
-    ) -> None:
+    def _rub(self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int) -> None:
         """Note an impact with the engine's friction, in a row of the record; see `Rubbing`."""
         carried = belt(arbiter, *arbiter.normal)
         before = sliding(arbiter) - carried
-        mass = self.record.mass.get(row, circle.body.mass)
-        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried, mass, normal)
+        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried, circle.body.mass)
 
     def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""

@@ -85,8 +85,7 @@ class Rubbing(NamedTuple):
     shapes: tuple[Any, Any]  # the bead, and what it hits
     before: float  # sliding speed before [m/s]
     belt: float  # [m/s]
-    mass: float  # of the bead in the record [kg]
-    normal: tuple[float, float] | None = None  # of a rigid body: speed of approach [m/s] and COR
+    mass: float  # of the bead [kg]
 
     def outcome(self) -> tuple[float, float, float]:
         """Sliding speed [m/s], spin [rad/s], and work of friction over the bead's mass [m2/s2].
@@ -94,17 +93,14 @@ class Rubbing(NamedTuple):
         The first is below 0 if it has turned round. Where the bead or what it hit has left the
         space within the step, the speed and the work are NaN.
         """
-        body, found = self.body, [(math.nan, math.nan, math.nan)]
+        body, found = self.body, [(math.nan, math.nan)]
 
         def look(arbiter: pymunk.Arbiter) -> None:
             if arbiter.shapes == self.shapes:  # those of this body come first
                 (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse
-                found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx, abs(nx * jx + ny * jy)))
+                found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx))
 
         body.each_arbiter(look)
-        after, impulse, push = found[-1]
+        after, impulse = found[-1]
         work = -impulse * (self.before + after) / 2.0 / self.mass
-        if self.normal:  # friction changes the normal impulse, of which the record takes m (1 + e) u
-            u, e = self.normal
-            work += 0.5 * (1.0 - e) * u * (push / self.mass - (1.0 + e) * u)
         return math.copysign(1.0, self.before) * after, body.angular_velocity, work

@@ -33,6 +33,7 @@ from contactlaw.engines.pymunk.registry import (
     Mount,
     PlateShape,
     body_of,
+    check_alone,
     check_mass,
     check_solid,
     ends,
@@ -76,7 +77,7 @@ class PymunkImpacts:
         self._space = space
         self._models = models
         self._contacts = Contacts()
-        self._bodies: dict[int, list[BeadShape]] = {}  # by id of the body
+        self._bodies: dict[int, BeadShape] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
         self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
@@ -111,10 +112,7 @@ class PymunkImpacts:
         circle : pymunk.Circle
             A circle of collision type 0, centred on a dynamic body of its own. The body's mass
             should be the sphere's, ``4/3 pi radius**3 density`` [kg]; a warning says if it is not.
-            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction. A
-            circle of a body that has others, or with an offset, is a part of a rigid body: the mass
-            that answers on plates is the body's, from its mass and moment, friction on plates the
-            engine's, and beads are met as by a sphere alone.
+            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction.
         material : Material or str, optional
             Material of spheres in one of the attached models; by default that of the first model.
 
@@ -126,8 +124,8 @@ class PymunkImpacts:
         Raises
         ------
         TypeError, ValueError, RuntimeError
-            If the circle is no such circle, is registered already, or has a radius above 1 m, as
-            in pixels; if no attached model is for the material; if a plate with friction is there
+            If the circle is no such circle, is a part of a rigid body, is registered already, or
+            has a radius above 1 m, as in pixels; if no attached model is for the material; if a plate with friction is there
             and the moment is not a sphere's; after `detach`.
 
         Examples
@@ -166,31 +164,18 @@ class PymunkImpacts:
         radius, number = radius_of(circle), self._models.bead(material)
         if body.body_type != pymunk.Body.DYNAMIC:
             raise ArgumentError("circle.body", body, "a bead needs a dynamic body")
-        of_body = len([shape for shape in body.shapes if not shape.sensor]) > 1 or circle.offset != (0, 0)
-        if not of_body and body.center_of_gravity != (0, 0):
-            reason = "a bead needs it at (0, 0)"
-            raise ArgumentError("circle.body.center_of_gravity", body.center_of_gravity, reason)
-        alone = [str(bead) for bead in self._bodies.get(body.id, []) if not bead.of_body]
-        if alone:
-            reason = f"carries {alone[0]} already, a sphere; of a rigid body make all circles before the first add_bead"
-            raise ArgumentError("circle.body", None, reason)
-        for known in self._models.all if of_body else ():
-            if not knows(known, "solve"):
-                raise TypeError(f"circle: a part of a rigid body, and {known!r} knows no mass; give an ImpactModel")
+        check_alone(circle, body)
         warn_of_metres("radius", radius, stacklevel=2)
-        if not of_body:
-            check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
-            plates = self._contacts.plates.values()
-            check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
+        check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        plates = self._contacts.plates.values()
+        check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
         index = self._register.bead(number, radius)
-        bead = BeadShape(index, shape, owner, body.id, radius, kind, of_body, self._sphere_curve)
+        bead = BeadShape(index, shape, owner, body.id, radius, kind, self._sphere_curve)
         self._contacts.beads[key] = bead
-        self._bodies.setdefault(body.id, []).append(bead)
-        if of_body:
-            self._lookahead.of_bodies.append(bead)
+        self._bodies[body.id] = bead
         self._kinds[kind] += 1
         circle.collision_type = self.bead_type
         self._lookahead.reach = min(self._lookahead.reach, radius)
@@ -442,11 +427,8 @@ class PymunkImpacts:
 
     def _forget_bead(self, key: int) -> None:
         bead = self._contacts.beads.pop(key)
-        self._bodies[bead.body_id].remove(bead)
-        if not self._bodies[bead.body_id]:
+        if self._bodies[bead.body_id] is bead:
             del self._bodies[bead.body_id]
-        if bead.of_body:
-            self._lookahead.of_bodies.remove(bead)
         self._kinds[bead.kind] -= 1
         if not self._kinds[bead.kind]:
             del self._kinds[bead.kind]

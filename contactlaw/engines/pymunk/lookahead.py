@@ -69,14 +69,13 @@ class LookAhead:
     def __init__(
         self,
         space: pymunk.Space,
-        beads: dict[int, list[BeadShape]],
+        beads: dict[int, BeadShape],
         plates: dict[int, PlateShape],
         mounts: dict[int, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 
         self.reach = math.inf
-        self.of_bodies: list[BeadShape] = []  # parts of bodies that are no spheres
         self._space = space
         self._beads = beads  # by id of the body
         self._plates = plates
@@ -88,7 +87,6 @@ class LookAhead:
     def check(self, dt: float, time: float) -> None:
         """Raise if the step from `time` on would lose an impact, or starts from a NaN."""
         plate_speed = max((mount.watch(dt) for mount in self._mounts.values()), default=0.0)
-        plate_speed += max((bead.turning() for bead in self.of_bodies), default=0.0)
         reach = self.reach - plate_speed * dt
         self._read(self._motion)
         motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
@@ -107,13 +105,8 @@ class LookAhead:
         for n in np.flatnonzero(~finite.all(axis=1)):
             self._refuse(ids[n], motion[n])
         fast = [n for n in np.flatnonzero(travel >= self.reach) if ids[n] in self._beads]
-        some = [(n, bead) for n in fast for bead in self._beads[ids[n]]]
-        found = motion[[n for n, _ in some]]
-        for row, (_, bead) in zip(found, some, strict=True):
-            if bead.of_body and (circle := bead.shape()) is not None:
-                row[:] = np.ravel(bead.at(circle))
-        if some:
-            self._cross([bead for _, bead in some], found, dt, time)
+        if fast:
+            self._cross([self._beads[ids[n]] for n in fast], motion[fast], dt, time)
 
     def _read(self, fields: pymunk.batch.BodyFields) -> None:
         from pymunk.batch import get_space_bodies
@@ -128,7 +121,7 @@ class LookAhead:
             shape = plate.shape()
             if shape is not None and shape.body is not None and shape.body.id == key:
                 names.append(f"plate {plate.index}")
-        names += [f"bead {bead.index}" for bead in self._beads.get(key, [])]
+        names += [str(self._beads[key])] if key in self._beads else []
         if names:
             x, y, vx, vy = motion.tolist()
             raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")

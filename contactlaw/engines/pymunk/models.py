@@ -85,12 +85,6 @@ class ModelsByBead(dict[int, RestitutionModel]):
 
         return curve
 
-    def of_body(self, bead: tuple[float, int], thickness: Any, near: KnownEdge | None, mass: float) -> CorBySpeed:
-        """COR by speed of a point of a rigid body that answers as this mass [kg], perhaps near an edge."""
-        (radius, number), edge = bead, near or ()
-        model: Any = self[number]
-        return lambda speed: float(model.restitution(speed, radius, thickness, *edge, mass=mass))
-
 
 class Models:
     """The models of one space, one per pair of materials; the first has the default materials."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from array import array
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -104,7 +103,6 @@ class Record:
         self._seen = array("d")  # 112 bytes per impact; a list of tuples takes five times that
         self.add = self._seen.extend  # takes one tuple in the order of SEEN
         self.near: dict[int, KnownEdge] = {}  # of impacts near edges, by row
-        self.mass: dict[int, float] = {}  # that answered in impacts of rigid bodies, by row [kg]
         self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 
     def __len__(self) -> int:
@@ -118,7 +116,6 @@ class Record:
         """Remove the last impact."""
         del self._seen[-WIDTH:]
         self.near.pop(len(self), None)
-        self.mass.pop(len(self), None)
         self._rows = self._rows[: len(self)]
 
     def settle(self, row: int, before: float, outcome: tuple[float, float, float]) -> None:
@@ -141,22 +138,20 @@ class Record:
             if whole:
                 first = len(self._rows)
                 near = {n - first: one for n, one in self.near.items() if n >= first}
-                _complete(rows, register, near, {n - first: m for n, m in self.mass.items() if n >= first})
+                _complete(rows, register, near)
             self._rows = np.concatenate((self._rows, rows))
         # Once a model gives a COR alone, the rest of the run has the columns of OBSERVED only.
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownEdge], heavy: dict[int, float]) -> None:
+def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownEdge]) -> None:
     """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
     beads, plates, material = register.beads(), register.plates(), register.materials
     density = np.array([register.models.density(n) for n in range(len(register.models.spheres))])
     mass = sphere_mass(density[material], beads["radius"])
     on_bead = rows["other"] >= 0
     bead, other = rows["bead"], rows["other"]
-    radius, rows["mass"], of_body = beads["radius"], mass[bead], np.zeros(len(rows), bool)
-    for n, answering in heavy.items():
-        rows["mass"][n], of_body[n] = answering, True
+    radius, rows["mass"] = beads["radius"], mass[bead]
     rows["friction_energy"] *= rows["mass"]
     rows["radius"], rows["material"] = radius[bead], material[bead]
     thickness = np.append(plates["thickness"], math.nan)[rows["plate"]]
@@ -172,12 +167,10 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, KnownE
     wall = np.where(bare[rows["plate"]], -1, rows["plate"])  # sheets are looked up together
     questions: list[tuple[Any, NDArray[np.bool_], Any, tuple[Any, ...]]] = []
     for model, own in register.by_model(rows):
-        kinds = product(np.unique(edge[own]).tolist(), (of_body, ~of_body), np.unique(wall[own]).tolist())
-        for kind, part, plate in kinds:
-            some = own & (edge == kind) & part & (wall == plate)
+        for kind, plate in product(np.unique(edge[own]).tolist(), np.unique(wall[own]).tolist()):
+            some = own & (edge == kind) & (wall == plate)
             on = target[some] if plate < 0 else register.walls[plate]
-            ask = partial(model.lookup, mass=rows["mass"][some]) if part is of_body else model.lookup
-            questions += [(ask, some, on, (kind, distance[some]) if kind else ())] if some.any() else []
+            questions += [(model.lookup, some, on, (kind, distance[some]) if kind else ())] if some.any() else []
     met = np.stack((material[bead], material[other]), axis=1)
     for pair in np.unique(met[on_bead], axis=0).tolist():
         own = on_bead & (met == pair).all(axis=1)

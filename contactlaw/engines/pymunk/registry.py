@@ -48,7 +48,6 @@ class BeadShape:
     body_id: int  # pymunk may give it to another body after this one
     radius: float
     kind: BeadKind
-    of_body: bool  # whether it is a part of a body that is no sphere, see `at` and `answering`
     # COR by speed of two beads, the smaller first
     pair_curve: Callable[[BeadKind, BeadKind], CorBySpeed]
     # by plate: the last step in which it touched, and the normal then
@@ -59,28 +58,6 @@ class BeadShape:
 
     def __str__(self) -> str:
         return f"bead {self.index}"
-
-    def at(self, circle: Any) -> tuple[Vector, Vector]:
-        """Place [m] and velocity [m/s] of the bead's centre."""
-        body = circle.body
-        if not self.of_body:
-            return body.position, body.velocity
-        place = body.local_to_world(circle.offset)
-        return place, body.velocity_at_world_point(place)
-
-    def answering(self, body: Any, x: float, y: float, nx: float, ny: float) -> float:
-        """Mass [kg] of its body that answers at a point to a force along n."""
-        u, v = body.local_to_world(body.center_of_gravity)
-        across = (x - u) * ny - (y - v) * nx
-        mass: float = 1.0 / (1.0 / body.mass + across * across / body.moment)
-        return mass
-
-    def turning(self) -> float:
-        """Speed of its centre in a body that turns [m/s]."""
-        circle, body = self.shape(), self.body()
-        if circle is None or body is None:
-            return 0.0
-        return float(abs(body.angular_velocity) * (circle.offset - body.center_of_gravity).length)
 
     def curve(self, bead: BeadShape, shape: pymunk.Circle) -> CorBySpeed:
         """COR by speed of a bead on this one."""
@@ -266,6 +243,18 @@ def changed(bead: BeadShape, circle: pymunk.Circle) -> ValueError:
         "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
         "mass that belongs to the radius",
     )
+
+
+def check_alone(circle: pymunk.Circle, body: pymunk.Body) -> None:
+    """Refuse a circle that is a part of a rigid body."""
+    solid = [shape for shape in body.shapes if not shape.sensor]
+    if len(solid) > 1 or any(circle.offset) or any(body.center_of_gravity):
+        raise ArgumentError(
+            "circle.body",
+            None,
+            "has other shapes, or its centre of gravity is not that of the circle; a bead is a single sphere: give "
+            "each circle a body of its own, or simulate clumps with LAMMPS's fix rigid/small",
+        )
 
 
 def check_mass(mass: float, radius: float, density: float | None, name: str) -> None:
