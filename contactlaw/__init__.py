@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from contactlaw.physical.history import ForceHistory
     from contactlaw.physical.materials import Material, material, materials, read_materials
     from contactlaw.physical.measured import measured_law
-    from contactlaw.physical.mobility import Mobility
     from contactlaw.physical.pair import Pair
     from contactlaw.physical.plates import Foundation, Layers, Orthotropic, Shell
     from contactlaw.physical.rebound import Rebound
@@ -55,7 +54,6 @@ __all__ = [
     "LoadSignal",
     "Material",
     "Measurements",
-    "Mobility",
     "Orthotropic",
     "Pair",
     "Rebound",
@@ -95,7 +93,6 @@ _MODULES = {
     "physical.history": "ForceHistory",
     "physical.materials": "Material material materials read_materials",
     "physical.measured": "measured_law",
-    "physical.mobility": "Mobility",
     "physical.pair": "Pair",
     "physical.plates": "Foundation Layers Orthotropic Shell",
     "physical.rebound": "Rebound",

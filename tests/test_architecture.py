@@ -63,7 +63,7 @@ FILES = {
     "cli/constant": "records walls lines",
     "cli/fit": "printed figure",
     "physical": (
-        "arguments flight kind hardness flow materials mobility plates pair impacts rate responses law strengths "
+        "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "
         "scaling measured validity history bodies rebound oblique"
     ),
 }

@@ -18,7 +18,6 @@ from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.mobility import SHORTEST
 from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.responses import REACH
 from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
@@ -92,10 +91,7 @@ class Solver:
         hit = rebound(bodies, impacts, units.time, known, found, flags, edges)
         if impacts.frequency is not None:
             time = np.ravel(hit.contact_time) * impacts.frequency
-            if impacts.wall is not None and impacts.wall.kind == "measured":
-                within("longest", time, SHORTEST, 1.0, "contact times over the longest of the Mobility")
-            else:
-                within("thickness", time, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
+            within("thickness", time, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
         return hit, found, units, edges
 
     def yield_speeds(self, impacts: Impacts) -> Array:

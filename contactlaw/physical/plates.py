@@ -3,9 +3,8 @@
 A thin plate answers a force F with the speed alpha F, alpha = 1/(8 sqrt(D m)), with D its bending
 stiffness and m its mass per area. So `Layers` and `Orthotropic` are numbers: the thickness of a
 plate of the contact's material that answers with the same speed. They go wherever a thickness
-goes. From a `Foundation`, from the curvature of a `Shell` and from a wall of a known `Mobility`
-something comes back later, as from an edge; such impacts are integrated, see
-`contactlaw.physical.responses`.
+goes. From a `Foundation` and from the curvature of a `Shell` something comes back later, as from an
+edge; such impacts are integrated, see `contactlaw.physical.responses`.
 """
 
 from __future__ import annotations
@@ -18,11 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array, ByValue, Places
+from contactlaw._arrays import ByValue, Places
 from contactlaw._errors import ArgumentError
 from contactlaw.physical.arguments import BARE, number, positive
 from contactlaw.physical.materials import Material, resolve
-from contactlaw.physical.mobility import Mobility
 
 SHELLS = "cylinder", "sphere"
 SHEETS = BARE | {np.ndarray}  # types of thicknesses that describe no other plate
@@ -292,7 +290,7 @@ class Shell(ByValue):
     kind: str = "cylinder"
 
 
-Thickness = ArrayLike | Foundation | Shell | Mobility
+Thickness = ArrayLike | Foundation | Shell
 """What goes for a thickness [m]; `Layers` and `Orthotropic` are numbers."""
 
 
@@ -302,7 +300,6 @@ class Wall:
 
     numbers: dict[str, Any]
     kind: str = ""  # of the response that comes back; none of a flat plate that lies on nothing
-    response: Array | None = None  # of a wall that was measured
 
     def part(self, some: Places) -> Wall:
         """Plates of some of the impacts."""
@@ -314,9 +311,6 @@ def wall_of(thickness: Any) -> Wall:
     if isinstance(thickness, Wall):
         return thickness
     kind, more = "", {}
-    if isinstance(thickness, Mobility):
-        numbers = {"thickness": thickness.thickness, "longest": thickness.longest}
-        return Wall(numbers, "measured", thickness.response)
     if isinstance(thickness, Foundation):
         kind, more, thickness = "sphere", {"stiffness": thickness.stiffness}, thickness.thickness
     elif isinstance(thickness, Shell):
@@ -330,7 +324,7 @@ def wall_of(thickness: Any) -> Wall:
 
 def sheet_of(thickness: Any) -> Any:
     """Thickness of the sheet alone, of one that swings back."""
-    return thickness.thickness if isinstance(thickness, Foundation | Shell | Mobility) else thickness
+    return thickness.thickness if isinstance(thickness, Foundation | Shell) else thickness
 
 
 def described(thickness: Any) -> Iterator[EquivalentThickness]:
@@ -362,9 +356,8 @@ def check_contact(thickness: Any, plate: Material) -> None:
     """Refuse another material of the contact than that of the model's plate."""
     if type(thickness) in SHEETS:
         return
-    sheet = sheet_of(thickness)
-    touched = [thickness.contact] if isinstance(thickness, Mobility) else [one.material for one in described(sheet)]
-    for body in touched:
+    for touched in described(sheet_of(thickness)):
+        body = touched.material
         if body != plate:
             reason = f"beads touch {body.name!r}, and the plate of the model's pair is {plate.name!r}"
             raise ArgumentError("thickness", thickness, f"{reason}: make the pair with {body.name!r}")

@@ -262,12 +262,9 @@ def _coupling(plate: Material, constants: PairConstants, units: Numbers, impact:
 def swings_of(
     plate: Material, constants: PairConstants, units: Numbers, impact: Impact, wall: Wall, frequency: Array
 ) -> Edges:
-    """Memory of walls that swing at this frequency [1/s], or, if measured, one over their longest contact."""
+    """Memory of walls that swing at this frequency [1/s]."""
     none = np.zeros(frequency.size)
-    if wall.response is not None:
-        response = np.tile(wall.response, (frequency.size, 1))
-    else:
-        response = response_of(wall.kind, plate.poissons_ratio, none)
+    response = response_of(wall.kind, plate.poissons_ratio, none)
     return Edges(response, _coupling(plate, constants, units, impact), frequency * units.time, none)
 
 
@@ -297,9 +294,7 @@ def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
         reason = "walls that swing back have neither edges nor tables: take solve, lookup or oblique"
         raise ArgumentError("thickness", None, reason)
     bends = None
-    if "longest" in given:
-        square = given["longest"] ** -2.0
-    elif "wall_radius" in given:
+    if "wall_radius" in given:
         curvature = 1.0 / _checked_radius(given["wall_radius"], impacts.radius)
         bends = 1.0 / (1.0 - curvature * impacts.radius)
         bends = np.sqrt(bends) if kind == "cylinder" else bends

@@ -11,7 +11,6 @@ import numpy as np
 from contactlaw._errors import ArgumentError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import number, scalars, warn_of_metres
-from contactlaw.physical.mobility import Mobility
 from contactlaw.physical.plates import Foundation, Shell, sheet_of, wall_of
 from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import Motion, check_motion, keep, vector
@@ -91,9 +90,6 @@ def rim(plate: Plate) -> Rows:
 
 def checked_sheet(thickness: Any) -> Any:
     """Thickness of the sheet of a wall, if time steps can hold what it sends back."""
-    if isinstance(thickness, Mobility):
-        reason = "in time steps, slow beads touch longer than its longest, where no Mobility is known: take Foundation"
-        raise ArgumentError("thickness", None, f"{reason}, Shell or edges, or ask `solve`")
     wall = wall_of(thickness).numbers
     for name in wall.keys() & {"stiffness", "wall_radius"}:
         number(name.removeprefix("wall_"), wall[name])

@@ -13,6 +13,7 @@ from contactlaw.equation.edge import KINDS
 from contactlaw.softsphere import Contacts
 from tests.shared import metal
 from tests.shared.polymer import PAIRS
+from validation.derivations.walls import convolved
 
 R, H, SPEED = 1e-3, 1e-3, 3.0
 STEEL = cl.ImpactModel(cl.Pair("bearing-steel-52100", "glass"))
@@ -119,3 +120,24 @@ def test_a_pair_with_a_rate_is_as_strong_near_an_edge():
     for n, speed in enumerate((2.0, 20.0)):
         alike = metal.at_strength(speed, R).solve(speed, R, H, edge_distance=2e-3)
         assert near.restitution[n] == pytest.approx(alike.restitution, abs=1e-6)
+
+
+@pytest.mark.parametrize("distance", [4e-3, 5e-3, 1e-2])
+def test_an_edge_answers_as_the_modes_of_a_large_plate(distance):
+    """The response near an edge is derived from waves along it, that of the plate from all its modes."""
+    model = cl.ImpactModel(cl.Pair("glass", "steel-s235"), law="hertz")
+    steel, speed, radius, size, place = model.pair.plate, 1.0, 3e-3, (0.15, 0.1), (distance, 0.05)
+    bending, areal = steel.plane_modulus * H**3 / 12.0, steel.density * H
+    unit = (math.pi * model.pair.sphere.density / model.pair.effective_modulus) ** 0.4 * radius / speed**0.2  # T_H
+    path, highest, step = math.sqrt(bending / areal), 1000.0 / unit, 3.2181 / 500
+    counts = (np.arange(1, int(math.sqrt(highest / path) * side / math.pi) + 2) for side in size)
+    m, n = (number.ravel() for number in np.meshgrid(*counts))
+    omega = path * math.pi**2 * ((m / size[0]) ** 2 + (n / size[1]) ** 2)
+    shape = np.sin(m * math.pi * place[0] / size[0]) * np.sin(n * math.pi * place[1] / size[1])
+    strength = 4.0 / (areal * size[0] * size[1]) * shape**2 * np.exp(-((omega / (0.45 * highest)) ** 2)) / omega
+    back = np.array([(strength * np.sin(omega * t)).sum() for t in np.arange(1500) * step * unit])
+    endless = 1.0 / (8.0 * math.sqrt(bending * areal))
+    back[0] = endless
+    expected = convolved(float(model.solve(speed, radius, H).inelasticity), back / endless, step)
+    near = model.solve(speed, radius, H, edge="supported", edge_distance=distance)
+    assert near.restitution == pytest.approx(expected, abs=0.002)

@@ -42,7 +42,6 @@ from contactlaw.engines.pymunk.registry import (
 )
 from contactlaw.engines.pymunk.seams import Seams
 from contactlaw.physical.arguments import scalars, warn_of_metres
-from contactlaw.physical.mobility import Mobility
 from contactlaw.physical.plates import Foundation, Shell, check_wall, sheet_of
 from contactlaw.physical.scaling import swing_of
 from contactlaw.record.file import Record
@@ -185,7 +184,7 @@ class PymunkImpacts:
     def add_plate(
         self,
         shape: pymunk.Segment | pymunk.Poly,
-        thickness: float | Foundation | Shell | Mobility,
+        thickness: float | Foundation | Shell,
         *,
         material: Material | str | None = None,
         model: RestitutionModel | Sequence[RestitutionModel] | None = None,
@@ -201,7 +200,7 @@ class PymunkImpacts:
             plate. Its size and radius are geometry only. Move it by its body's velocity: the engine
             sees no motion in a position that is set. Where plates on the same body, or on bodies
             that never move, share an end or a corner, a bead hits one of them.
-        thickness : float, Foundation, Shell or Mobility
+        thickness : float, Foundation or Shell
             Thickness in the model [m]; ``inf`` is the half-space.
         material : Material or str, optional
             Material of plates in one of the attached models; by default that of the first model.

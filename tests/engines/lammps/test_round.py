@@ -266,10 +266,8 @@ def test_layers_and_ribs_are_flagged_as_in_solve(softening):
     assert [bool(one) for one in found] == [False, True, True, False, True, True]
 
 
-MEASURED = cl.Mobility.of_plate("glass", 1e-3, (0.05, 0.05), (0.02, 0.03), longest=3e-5)
 BED = cl.Foundation(1e-3, 1e12)
 REFUSED = {
-    "Mobility is known": lambda: flat(MEASURED),
     "a round wall is a shell": lambda: Cylinder((-1, 0, 0), (1, 0, 0), A, BED),
     "only bare sheets have edges": lambda: flat(BED, edges="free"),
     "beads touch 'pmma'": lambda: flat(cl.Shell(cl.Layers([("pmma", 1e-3)]), A)),
