@@ -28,17 +28,20 @@ Materials
 Handlers of the user
     Handlers for `bead_type` and `plate_type`, for any type (``None``) and for other types are
     called as before. A ``pre_solve`` may change the engine's friction, or switch a contact off so
-    that it is no impact. The restitution is the model's, as is friction on a plate with
-    ``friction=``: a handler that sets it is an error.
+    that it is no impact. The restitution is the model's: a handler that sets it is an error. On a
+    plate with ``friction=`` the friction is the model's, too: leave ``arbiter.friction`` alone
+    there. Contacts of two plates are the user's.
 Strangers
     A bead that hits a shape nobody registered stops dead unless both have an elasticity or a
     handler sets a restitution. The first time, a warning names the shape. Only shapes of the
-    collision type 0, and of types for which there are handlers, are watched.
+    collision type 0 are watched.
 Time
     The time in the record is the sum of all steps since `attach`, including that of the impact.
 Errors
     ``space.step`` raises an error of a callback after the step: the engine has finished that step,
-    with restitution 0 in the contact that failed, and may be stepped on. Tunnelling and numbers
+    with restitution 0 in the contact that failed, and may be stepped on. That holds for handlers
+    that were set after `attach`; errors of earlier ones are printed by pymunk, and so is a Ctrl-C
+    that comes while pymunk prepares a callback: press it again. Tunnelling and numbers
     that are not finite are found before the step, and the space and the clock are unchanged.
     Copying or pickling the space is refused until ``detach``.
 Settings

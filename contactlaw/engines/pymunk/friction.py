@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.tangential import POINT
@@ -72,35 +71,15 @@ def sliding(arbiter: pymunk.Arbiter) -> float:
     return float(nx * (vy - uy) - ny * (vx - ux))
 
 
-def belt(arbiter: pymunk.Arbiter, nx: float, ny: float) -> float:
+def belt(arbiter: pymunk.Arbiter, normal: tuple[float, float]) -> float:
     """Sliding speed that the ``surface_velocity`` of the shapes takes away [m/s]."""
-    x, y = arbiter.surface_velocity
+    (nx, ny), (x, y) = normal, arbiter.surface_velocity
     return float(nx * y - ny * x)
 
 
-class Rubbing(NamedTuple):
-    """An impact whose sliding the engine decides, so that it is known after the step."""
-
-    body: Any  # of the bead
-    shapes: tuple[Any, Any]  # the bead, and what it hits
-    before: float  # sliding speed before [m/s]
-    belt: float  # [m/s]
-    mass: float  # of the bead [kg]
-
-    def outcome(self) -> tuple[float, float, float]:
-        """Sliding speed [m/s], spin [rad/s], and work of friction over the bead's mass [m2/s2].
-
-        The first is below 0 if it has turned round. Where the bead or what it hit has left the
-        space within the step, the speed and the work are NaN.
-        """
-        body, found = self.body, [(math.nan, math.nan)]
-
-        def look(arbiter: pymunk.Arbiter) -> None:
-            if arbiter.shapes == self.shapes:  # those of this body come first
-                (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse
-                found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx))
-
-        body.each_arbiter(look)
-        after, impulse = found[-1]
-        work = -impulse * (self.before + after) / 2.0 / self.mass
-        return math.copysign(1.0, self.before) * after, body.angular_velocity, work
+def pushed(body: Any, at: tuple[float, float], impulse: tuple[float, float]) -> tuple[float, float]:
+    """Change of the velocity [m/s] of a point [m] of a body that an impulse [N s] there makes."""
+    (hub_x, hub_y), (jx, jy) = body.local_to_world(body.center_of_gravity), impulse
+    x, y = at[0] - hub_x, at[1] - hub_y
+    spin = (x * jy - y * jx) / body.moment
+    return jx / body.mass - y * spin, jy / body.mass + x * spin

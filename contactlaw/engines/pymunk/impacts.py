@@ -5,8 +5,6 @@ from __future__ import annotations
 import importlib.metadata
 import math
 import os
-import sys
-import threading
 import warnings
 from collections import Counter
 from collections.abc import Sequence
@@ -124,8 +122,8 @@ class PymunkImpacts:
         ------
         TypeError, ValueError, RuntimeError
             If the circle is no such circle, is a part of a rigid body, is registered already, or
-            has a radius above 1 m, as in pixels; if no attached model is for the material; if a plate with friction is there
-            and the moment is not a sphere's; after `detach`.
+            has a radius above 1 m, as in pixels; if no attached model is for the material; if a
+            plate with friction is there and the moment is not a sphere's; after `detach`.
 
         Examples
         --------
@@ -441,22 +439,11 @@ class PymunkImpacts:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
             raise ArgumentError("dt", dt, "must be positive and finite [s]")
-        self._contacts.error = None
         self._clean()
-        self._handlers.check()
         self._lookahead.check(dt, self._contacts.time)
         self._contacts.begin(dt, self._space.gravity, self._lookahead.reach)
-        # cffi passes exceptions in callbacks to this hook: those of the user's own handlers, and a
-        # Ctrl-C, which usually arrives in pymunk's Python code around a callback and not in ours.
-        # It is set in the main thread only, because that gets the signals and the hook is global.
-        if threading.current_thread() is threading.main_thread():
-            self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
-            try:
-                self._advance(dt)
-            finally:
-                sys.unraisablehook = self._hook
-        else:
-            self._advance(dt)
+        self._engine_step(dt)
+        self._contacts.end()
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
@@ -464,14 +451,3 @@ class PymunkImpacts:
         if stranger is not None:
             self._handlers.ignore_strangers()
             warnings.warn(stranger, stacklevel=2)
-
-    def _advance(self, dt: float) -> None:
-        self._engine_step(dt)
-        self._contacts.end()
-
-    def _unraisable(self, report: sys.UnraisableHookArgs) -> None:
-        here = threading.current_thread() is threading.main_thread()
-        if here and report.exc_value and "cffi callback" in (report.err_msg or ""):
-            self._contacts.keep(report.exc_value)
-        else:
-            self._hook(report)

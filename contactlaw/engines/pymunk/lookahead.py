@@ -67,11 +67,7 @@ class LookAhead:
     """Checks of one space; the caller sets `reach`, the radius of the smallest bead [m]."""
 
     def __init__(
-        self,
-        space: pymunk.Space,
-        beads: dict[int, BeadShape],
-        plates: dict[int, PlateShape],
-        mounts: dict[int, Mount],
+        self, space: pymunk.Space, beads: dict[int, BeadShape], plates: dict[int, PlateShape], mounts: dict[int, Mount]
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 

@@ -108,22 +108,6 @@ class Record:
     def __len__(self) -> int:
         return len(self._seen) // WIDTH
 
-    def last(self) -> tuple[float, ...]:
-        """Time, bead, plate and other of the last impact."""
-        return tuple(self._seen[-WIDTH : -WIDTH + 4])
-
-    def undo(self) -> None:
-        """Remove the last impact."""
-        del self._seen[-WIDTH:]
-        self.near.pop(len(self), None)
-        self._rows = self._rows[: len(self)]
-
-    def settle(self, row: int, before: float, outcome: tuple[float, float, float]) -> None:
-        """Set the sliding speed before an impact, and the last columns of SEEN."""
-        self._seen[row * WIDTH + SEEN.index("sliding_speed")] = before
-        self._seen[row * WIDTH + len(OBSERVED) : (row + 1) * WIDTH] = array("d", outcome)
-        self._rows = self._rows[:row]
-
     def read(self, register: Register) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 

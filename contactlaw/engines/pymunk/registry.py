@@ -27,9 +27,6 @@ Edges = tuple[str | None, str | None]  # kinds of a plate's edges, at its start 
 BeadKind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
 # a shared end [m], in the body's coordinates, and the other plate
 Joint = tuple[float, float, "PlateShape"]
-# entry of `BeadShape.touched` for a plate that the bead has not touched
-NOT_TOUCHED = (-1, 0.0, 0.0)
-TOUCHED_KEPT = 8  # entries of `BeadShape.touched` beyond which old ones are deleted
 LARGEST = 1.0  # radius [m] of a boulder; a larger one was given in pixels
 # Allows for porosity and for a density that is not quite the material's. A disc, a mass of 1 or a
 # diameter taken for the radius are far outside.
@@ -50,14 +47,20 @@ class BeadShape:
     kind: BeadKind
     # COR by speed of two beads, the smaller first
     pair_curve: Callable[[BeadKind, BeadKind], CorBySpeed]
-    # by plate: the last step in which it touched, and the normal then
-    touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
-    # by plate: the last step in which a neighbour of the plate had the contact
-    ceded: dict[int, int] = field(default_factory=dict)
     shake: ClassVar[float] = 0.0  # nothing drives a bead; see `PlateShape`
 
     def __str__(self) -> str:
         return f"bead {self.index}"
+
+    def touched(self, circle: Any, at: Vector, normal: Vector) -> Vector:
+        """Where it is touched [m] by a bead with this normal."""
+        (x, y), (nx, ny) = circle.body.position, normal
+        return x - self.radius * nx, y - self.radius * ny
+
+    def velocity_at(self, circle: Any, at: Vector, normal: Vector) -> Vector:
+        """Velocity of its surface [m/s] where a bead with this normal touches it."""
+        (ux, uy), (nx, ny), speed = circle.body.velocity, normal, self.radius * circle.body.angular_velocity
+        return ux + speed * ny, uy - speed * nx
 
     def curve(self, bead: BeadShape, shape: pymunk.Circle) -> CorBySpeed:
         """COR by speed of a bead on this one."""
@@ -109,24 +112,19 @@ class PlateShape:
             self.slides[bead.kind] = slide
         return slide
 
-    def velocity_at(self, shape: pymunk.Shape, x: float, y: float) -> Vector:
-        """Return the plate's velocity [m/s] at the point [m] where a bead touches it."""
+    def touched(self, shape: Any, at: Vector, normal: Vector) -> Vector:
+        """Where it is touched [m]: where the bead touches it."""
+        return at
+
+    def velocity_at(self, shape: Any, at: Vector, normal: Vector) -> Vector:
+        """Velocity of the plate [m/s] where a bead touches it."""
         mount = self.mount
         if mount.still:
             return 0.0, 0.0
-        body: Any = shape.body
         if mount.still is None:
-            mount.still = not any(body.velocity) and not body.angular_velocity
-        velocity: Vector = body.velocity_at_world_point((x, y))
+            mount.still = not any(shape.body.velocity) and not shape.body.angular_velocity
+        velocity: Vector = shape.body.velocity_at_world_point(at)
         return velocity
-
-    def passed(self, bead: BeadShape, nx: float, ny: float, step: int) -> bool:
-        """Whether a touching bead has been pressed through: its normal is reversed."""
-        last, old_nx, old_ny = bead.touched.get(self.index, NOT_TOUCHED)
-        if len(bead.touched) > TOUCHED_KEPT:
-            bead.touched = {n: seen for n, seen in bead.touched.items() if seen[0] >= step - 1}
-        bead.touched[self.index] = (step, nx, ny)
-        return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
     def watch(self, body: pymunk.Body, dt: float) -> float:
         """Update `shake` of a kinematic plate; return the speed of its fastest point [m/s]."""

@@ -231,16 +231,6 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
     assert len(impacts.collisions()) == 0
 
 
-@pytest.mark.parametrize("late", [False, True])
-def test_a_friction_of_the_users_is_refused_where_the_model_answers(model, late):
-    space, _, _, impacts = scene(model)
-
-    kinds = (None, None) if late else (impacts.bead_type, impacts.plate_type)
-    space.on_collision(*kinds, pre_solve=room.setting(friction=0.25))
-    with pytest.raises(RuntimeError, match=r"arbiter.friction to 0.25 .*friction=\.\.\."):
-        space.step(DT)
-
-
 # --- the engine's friction, and the record --------------------------------------------------------
 
 
@@ -309,12 +299,9 @@ def test_a_second_impact_within_one_overlap_is_struck(model):
 # --- shapes that nobody registered ----------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", [0, 5])
-def test_a_shape_that_nobody_registered_is_told_once(kind):
+def test_a_shape_that_nobody_registered_is_told_once():
     space, bead, plate, impacts = scene(Stub(0.5), friction=None)
     impacts.remove_plate(plate)
-    plate.collision_type = kind
-    space.on_collision(5, 7)
     with pytest.warns(UserWarning, match=r"bead 0 hits a Segment .*nobody registered.*add_plate"):
         room.steps(space, 3)
     bead.position, bead.velocity = (0, 1.01 * R), (0, -2)
