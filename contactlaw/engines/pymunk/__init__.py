@@ -45,8 +45,9 @@ Errors
     that are not finite are found before the step, and the space and the clock are unchanged.
     Copying or pickling the space is refused until ``detach``.
 Settings
-    A step is safe while the largest speed times dt is below the smallest bead radius. Keep 10
-    iterations or more where several beads touch. ``collision_slop`` is a length, 0.1 by default: a
+    A step is safe while the largest speed times dt is below the smallest bead radius. In longer
+    ones the path of each fast bead is searched for plates. Keep 10 iterations or more where
+    several beads touch. ``collision_slop`` is a length, 0.1 by default: a
     value above a tenth of a bead's radius is lowered to that until ``detach``, because beads that
     come to rest stay in each other by that length. With a thousand falling beads pymunk's default
     tree takes 0.5 to 6 ms a step, ``space.use_spatial_hash`` (cells of some radii) 0.14 ms.
