@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from contactlaw.engines.pymunk.edges import PlateEdges
+from contactlaw.engines.pymunk.edges import near
 from contactlaw.engines.pymunk.friction import LOOSE, belt, check_moment, pushed, sliding
 from contactlaw.engines.pymunk.handlers import Hook
 from contactlaw.engines.pymunk.lookahead import TunnellingError
-from contactlaw.engines.pymunk.record import Record
-from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, Vector, changed, unregistered
+from contactlaw.engines.pymunk.record import FAR, KnownEdge, Record
+from contactlaw.engines.pymunk.registry import MARK, BeadShape, PlateShape, Vector, unregistered
 from contactlaw.engines.pymunk.seams import belongs_to_neighbour
 from contactlaw.engines.record import Kind
 from contactlaw.stepping.loads import NUMBERS
@@ -40,17 +40,13 @@ class Impact(NamedTuple):
     speed: float  # of approach [m/s]
     kind: Kind
     slip: float  # sliding speed before [m/s]
-    near: tuple[str, float] | None  # kind of the nearest edge and its distance [m]
 
 
 class Contacts:
     """The contacts of one space, answered by one callback."""
 
     def __init__(self) -> None:
-        self.beads: dict[int, BeadShape] = {}  # by the id of the shape, as the plates
-        self.plates: dict[int, PlateShape] = {}
         self.record = Record()
-        self.edges = PlateEdges()
         self.time = 0.0  # sum of the steps so far
         self.resting = 0  # number of contacts too slow for an impact
         self.error: BaseException | None = None  # the first one in this step, or an interrupt
@@ -62,8 +58,8 @@ class Contacts:
         # Normals of contacts with plates in the last step and in this one, by bead and plate.
         self._last: dict[tuple[int, int], Vector] = {}
         self._now: dict[tuple[int, int], Vector] = {}
-        # Of this step: the contact, its plate, point and restitution, and its impact if it does not rest.
-        self._met: list[tuple[Any, PlateShape | None, Vector, float, Impact | None]] = []
+        # Of this step: the contact, its plate, point and restitution, and its impact and edge if it does not rest.
+        self._met: list[tuple[Any, PlateShape | None, Vector, float, Impact | None, KnownEdge]] = []
 
     def begin(self, dt: float, gravity: tuple[float, float], reach: float) -> None:
         """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
@@ -80,12 +76,11 @@ class Contacts:
         """Answer the contact of a bead with a plate or a bead, after the user's own handler."""
         try:
             circle, shape = arbiter.shapes
-            bead = self.beads.get(id(circle))
-            plate = self.plates.get(id(shape))
-            other = plate or self.beads.get(id(shape))
+            bead, other = getattr(circle, MARK, None), getattr(shape, MARK, None)
             if bead is None or other is None:
                 raise unregistered(circle if bead is None else shape)
-            key = bead.index, other.index
+            radius, key = bead.kind.radius, (bead.index, other.index)
+            plate = other if isinstance(other, PlateShape) else None
             if plate and self._last.get(key) == CEDED:
                 arbiter.process_collision = True  # pymunk would go on to ignore it
             for callback, data in hooks:
@@ -96,11 +91,11 @@ class Contacts:
                 return
             body: Any = circle.body
             (x, y), (vx, vy) = body.position, body.velocity
-            if plate and plate.joints and belongs_to_neighbour(bead, plate, circle, shape, x, y):
+            if plate and plate.joints and belongs_to_neighbour(radius, plate, circle, shape, x, y):
                 arbiter.process_collision, self._now[key] = False, CEDED
                 return
             nx, ny = normal = arbiter.normal  # from the bead to the other
-            at = x, y = x + bead.radius * nx, y + bead.radius * ny
+            at = x, y = x + radius * nx, y + radius * ny
             ux, uy = other.velocity_at(shape, at, normal)
             speed = (vx - ux) * nx + (vy - uy) * ny
             if plate:
@@ -109,20 +104,20 @@ class Contacts:
                     raise TunnellingError(bead.index, plate.index, self.time, abs(speed), None)
                 self._now[key] = normal
             if speed <= self._resting_speed + RESTING * other.shake:
-                cor, impact = self._rest(arbiter, speed), None
+                cor, impact, edge = self._rest(arbiter, speed), None, FAR
                 if plate and plate.friction is not None:
                     arbiter.friction = plate.friction
             else:
-                if circle.radius != bead.radius:
-                    raise changed(bead, circle)
+                bead.check(circle)
+                if plate is None:
+                    other.check(shape)
                 kind = Kind.IMPACT if arbiter.is_first_contact else Kind.STRUCK
-                slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * body.angular_velocity
+                slip = nx * (vy - uy) - ny * (vx - ux) + radius * body.angular_velocity
                 slip -= belt(arbiter, normal)
-                near = plate and plate.edge and self.edges.near(bead, plate, at, speed)
-                impact = Impact(bead, other, (circle, shape), at, normal, speed, kind, slip, near or None)
+                impact = Impact(bead, other, (circle, shape), at, normal, speed, kind, slip)
                 with self._noting(impact):
-                    cor = self._answer(arbiter, impact)
-            self._met.append((arbiter, plate, at, cor, impact))
+                    cor, edge = self._answer(arbiter, impact)
+            self._met.append((arbiter, plate, at, cor, impact, edge))
         except BaseException as error:
             self.keep(error)
             arbiter.restitution = 0.0
@@ -140,19 +135,23 @@ class Contacts:
             begin_anew(arbiter)
         return cor
 
-    def _answer(self, arbiter: pymunk.Arbiter, impact: Impact) -> float:
-        """Ask the model for restitution and friction, check them, and give them to the engine."""
-        bead, other, (_, shape), *_, near = impact
-        far = other.curve(bead, shape)
-        curve = other.models.near(bead.kind, other.thickness, near) if near and isinstance(other, PlateShape) else far
-        cor = curve(impact.speed)
+    def _answer(self, arbiter: pymunk.Arbiter, impact: Impact) -> tuple[float, KnownEdge]:
+        """Give the model's restitution and friction to the engine; return the former and the edge that counts."""
+        bead, other, speed, edge, gain = impact.bead, impact.other, impact.speed, FAR, 1.0
+        cor = other.curve(bead)(speed)
+        if isinstance(other, PlateShape):
+            answers = other.answers(bead)
+            if other.edge is not None and (found := near(other, impact.at))[1] < answers.reach(speed):
+                edge, far = found, cor
+                cor = answers.near(speed, *edge)
+                gain = (1.0 + cor) / (1.0 + far)
         if not 0.0 <= cor <= 1.0:
             raise ValueError(f"restitution must lie in [0, 1], the model gave {cor!r}")
         if isinstance(other, PlateShape) and other.friction is not None:
-            self._slide(arbiter, impact, other, (1.0 + cor) / (1.0 + far(impact.speed)) if near else 1.0)
+            self._slide(arbiter, impact, other, gain)
         arbiter.restitution = cor
         begin_anew(arbiter)
-        return cor
+        return cor, edge
 
     def _slide(self, arbiter: pymunk.Arbiter, impact: Impact, plate: PlateShape, gain: float) -> None:
         """Let the model answer for friction.
@@ -166,11 +165,11 @@ class Contacts:
         friction, target = plate.friction or 0.0, slip + belt(arbiter, impact.normal)
         if not mount.still:  # between the surfaces, which overlap
             (gx, gy), (ux, uy) = body.velocity, plate.velocity_at(impact.shapes[1], impact.at, impact.normal)
-            along = nx * (gy - uy) - ny * (gx - ux) + impact.bead.radius * body.angular_velocity
+            along = nx * (gy - uy) - ny * (gx - ux) + impact.bead.kind.radius * body.angular_velocity
             target += sliding(arbiter) - along
         if friction:
-            check_moment(body, impact.bead.radius)
-            target += gain * (plate.slide(impact.bead)(impact.speed, slip / gain) - slip / gain)
+            check_moment(body, impact.bead.kind.radius)
+            target += gain * (plate.answers(impact.bead).slide(impact.speed, slip / gain) - slip / gain)
         arbiter.friction = friction
         if not mount.free:  # else the plate falls as the bead does, and a light one limits the impulses
             arbiter.friction *= LOOSE
@@ -179,7 +178,7 @@ class Contacts:
 
     def end(self) -> None:
         """Record the impacts of this step, and what plates bore."""
-        for arbiter, plate, at, cor, impact in self._met:
+        for arbiter, plate, at, cor, impact, edge in self._met:
             if not arbiter.process_collision:
                 continue  # a handler of the user has switched the contact off since
             try:
@@ -191,11 +190,11 @@ class Contacts:
             if plate:
                 self._bear(plate, at, impulse)
             if impact:
-                self._record(arbiter, impact, cor, impulse)
+                self._record(arbiter, impact, cor, impulse, edge)
 
     def _bear(self, plate: PlateShape, at: Vector, impulse: Vector) -> None:
         n, (x, y), (jx, jy), body = NUMBERS * plate.index, at, impulse, plate.mount.body()
-        if not plate.mount.still and body is not None:
+        if not plate.mount.static and body is not None:
             (hub_x, hub_y), (ux, uy) = body.local_to_world(body.center_of_gravity), body.velocity
             x, y = x - hub_x, y - hub_y
             self.borne[n + 6] += ux * jx + uy * jy + body.angular_velocity * (x * jy - y * jx)
@@ -203,8 +202,8 @@ class Contacts:
         self.borne[n + 1] -= jy
         self.borne[n + 5] -= x * jy - y * jx
 
-    def _record(self, arbiter: pymunk.Arbiter, impact: Impact, cor: float, impulse: Vector) -> None:
-        bead, other, shapes, at, (nx, ny), speed, kind, slip, near = impact
+    def _record(self, arbiter: pymunk.Arbiter, impact: Impact, cor: float, impulse: Vector, edge: KnownEdge) -> None:
+        bead, other, shapes, at, (nx, ny), speed, kind, slip = impact
         body, change, work = shapes[0].body, 0.0, 0.0
         if arbiter.friction > 0.0:
             for shape, place in zip(shapes, (at, other.touched(shapes[1], at, impact.normal)), strict=True):
@@ -215,15 +214,13 @@ class Contacts:
                 change = work = math.nan
         after = math.copysign(1.0, slip) * (slip + change)
         plate, partner = (-1, other.index) if isinstance(other, BeadShape) else (other.index, -1)
-        if near:
-            self.record.near[len(self.record)] = near
         seen = self.time, bead.index, plate, partner, *at, 0.0, speed, cor, abs(slip), kind
-        self.record.add((*seen, after, body.angular_velocity, work))
+        self.record.add((*seen, after, body.angular_velocity, work), edge)
 
     def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""
         circle, shape = arbiter.shapes
-        bead = self.beads.get(id(circle))
+        bead = getattr(circle, MARK, None)
         if bead is not None and not arbiter.restitution:
             left, bottom, right, top = shape.bb
             self.stranger = (

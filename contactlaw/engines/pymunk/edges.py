@@ -3,55 +3,33 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import knows
-from contactlaw.engines.pymunk.models import KnownEdge, ModelsByBead
-from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
+from contactlaw.engines.pymunk.models import ModelsByBead
+from contactlaw.engines.pymunk.record import FAR, KnownEdge
+from contactlaw.engines.pymunk.registry import Edges, PlateShape, Side, Vector, ends
 from contactlaw.engines.pymunk.seams import SAME_END, place
 from contactlaw.physical.impacts import check_kind
+from contactlaw.walls.edges import SMOOTH
 
-# Plates that meet at a smaller angle than 30 degrees are one plate; a sharper fold holds both.
-SMOOTH = math.cos(math.radians(30.0))
 # No wave comes back from more than this many thicknesses within a contact.
 FARTHEST = 1000.0
 
 
-class Side(NamedTuple):
-    """A straight piece of a plate, in coordinates of its body [m]."""
-
-    start: Vector
-    along: Vector  # of length 1, from the start
-    length: float
-    edges: tuple[KnownEdge, KnownEdge]  # beyond the start and the end; the distances are from there
-
-
-class PlateEdges:
-    """Sides of the plates of a space; each is measured at the first impact."""
-
-    def __init__(self) -> None:
-        self._sides: dict[int, list[Side]] = {}  # by index of the plate
-
-    def forget(self) -> None:
-        """Measure again, because plates have come or gone."""
-        self._sides.clear()
-
-    def near(self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float) -> KnownEdge | None:
-        """Kind of the nearest edge and its distance [m]; None if it is too far to matter."""
-        sides = self._sides.get(plate.index)
-        if sides is None:
-            sides = self._sides[plate.index] = _sides(plate)
-        u, v = plate.mount.local(*at)
-        least, found = math.inf, ("", math.inf)
-        for (u0, v0), (du, dv), length, (before, after) in sides:
-            s = min(max((u - u0) * du + (v - v0) * dv, 0.0), length)
-            off = math.hypot(u - u0 - s * du, v - v0 - s * dv)
-            if off < least:
-                least, one, other = off, before[1] + s, after[1] + length - s
-                found = (before[0], one) if one <= other else (after[0], other)
-        reach = plate.models.reach(bead.kind, plate.thickness, speed)
-        return found if found[1] < reach else None
+def near(plate: PlateShape, at: Vector) -> KnownEdge:
+    """Kind of the nearest edge and its distance [m]."""
+    plate.sides = plate.sides or _sides(plate)
+    u, v = plate.mount.local(*at)
+    least, nearest = math.inf, FAR
+    for (u0, v0), (du, dv), length, (before, after) in plate.sides:
+        s = min(max((u - u0) * du + (v - v0) * dv, 0.0), length)
+        off = math.hypot(u - u0 - s * du, v - v0 - s * dv)
+        if off < least:
+            least, start, end = off, before[1] + s, after[1] + length - s
+            nearest = (before[0], start) if start <= end else (after[0], end)
+    return nearest
 
 
 def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) -> Edges | None:

@@ -2,48 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from contactlaw._errors import ArgumentError
-from contactlaw.equation.tangential import POINT
-from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
-
-# Sliding speed afterwards by normal and sliding speed before [m/s]
-Slide = Callable[[float, float], float]
 
 SOLID = 2.0 / 5.0  # moment of inertia of a solid sphere over m R^2
 SAME_MOMENT = 1e-3
 # Coulomb's limit, which the model's answer has in it, is this many times looser for the engine. Its
 # normal impulse has a step's gravity in it, which is half of the slowest impact's.
 LOOSE = 2.0
-
-
-def slide_of(model: Any, radius: float, thickness: Any, friction: float) -> Slide:
-    """Sliding speed after impacts of beads of a radius [m] on a plate of a thickness [m].
-
-    One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
-    impacts that it does not know, ``oblique`` answers, or says what is wrong.
-    """
-    try:
-        collide: Any = getattr(model, "collide_kernel", None) if sheet_of(thickness) is thickness else None
-    except RuntimeError:  # numba is switched off
-        collide = None
-    rest, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-
-    def slide(speed: float, sliding_speed: float) -> float:
-        if collide is not None:
-            before = (sliding_speed, 0.0, -speed)
-            (centre, _, _), _ = collide(before, rest, up, radius, thickness, friction, rest)
-            if centre == centre:
-                return sliding_speed - POINT * (sliding_speed - float(centre))
-        found = model.oblique(speed, sliding_speed, radius, thickness, friction)
-        return float(found.sliding_speed)
-
-    return slide
 
 
 def check_moment(body: Any, radius: float) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.pymunk.registry import BeadShape, Mount, PlateShape
+from contactlaw.engines.pymunk.registry import MARK, BeadShape, Mount, PlateShape
 
 if TYPE_CHECKING:
     import pymunk
@@ -58,7 +58,7 @@ class LookAhead:
         space: pymunk.Space,
         beads: Mapping[int, BeadShape],
         plates: Mapping[int, PlateShape],
-        mounts: Mapping[int, Mount],
+        mounts: Mapping[pymunk.Body, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 
@@ -110,9 +110,9 @@ class LookAhead:
         """Beads that are not farther from the plates of a moving body [m]."""
         import pymunk
 
-        for plate in mount.plates.values():
+        for plate in self._plates.values():
             shape: Any = plate.shape()
-            if shape is not None and shape.space is self._space:
+            if plate.mount is mount and shape is not None and shape.space is self._space:
                 left, bottom, right, top = shape.bb
                 box = pymunk.BB(left - far, bottom - far, right + far, top + far)
                 for circle in self._space.bb_query(box, shape.filter):
@@ -124,16 +124,16 @@ class LookAhead:
         """Error for a bead whose centre would pass through a plate in a step, else None."""
         import pymunk
 
-        plate = self._plates.get(id(shape))
-        if plate is None or shape.sensor or circle.sensor:
+        plate = getattr(shape, MARK, None)
+        if not isinstance(plate, PlateShape) or shape.sensor or circle.sensor:
             return None
         start, velocity = circle.body.position, circle.body.velocity
         if shape.body.body_type != pymunk.Body.STATIC:  # the engine never moves a static one, whatever its speed
             velocity -= shape.body.velocity_at_world_point(start)
-        if velocity.length * dt < bead.radius:
+        if velocity.length * dt < bead.kind.radius:
             return None
         hit = shape.segment_query(start, start + velocity * dt)
         if hit is None or not hit.alpha:  # it starts on the plate or in it
             return None
         speed = abs(velocity.dot(hit.normal))
-        return TunnellingError(bead.index, plate.index, time + dt, speed, min(bead.radius / speed, hit.alpha * dt))
+        return TunnellingError(bead.index, plate.index, time + dt, speed, min(bead.kind.radius / speed, hit.alpha * dt))

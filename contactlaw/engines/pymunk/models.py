@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import cache, cached_property, lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -13,9 +13,9 @@ from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
+from contactlaw.equation.tangential import POINT
+from contactlaw.physical.plates import sheet_of
 from contactlaw.physical.rate import flow_with_rate
-
-KnownEdge = tuple[str, float]  # kind of an edge, and the distance from it [m]
 
 
 class ModelsByBead(dict[int, RestitutionModel]):
@@ -25,8 +25,6 @@ class ModelsByBead(dict[int, RestitutionModel]):
         super().__init__()
         self._spheres = spheres
         self.plate = _name(plate)
-        self._reaches: dict[tuple[float, ...], float] = {}
-        self._kernels: dict[tuple[int, str], Callable[..., float] | None] = {}
 
     def __missing__(self, number: int) -> NoReturn:
         """Raise for a pair of materials that no model is for."""
@@ -37,53 +35,66 @@ class ModelsByBead(dict[int, RestitutionModel]):
             "attach(space, [model, ...]) takes one for each pair of materials that meets",
         )
 
-    def reach(self, bead: tuple[float, int], thickness: float, speed: float) -> float:
-        """Distance [m] from which on edges do not matter; found once per doubling of the speed."""
-        (radius, number), octave = bead, math.frexp(speed)[1]
-        found = self._reaches.get((radius, number, thickness, octave))
-        if found is None:
-            model: Any = self[number]
-            # Slower impacts last longer, so the slowest of these speeds has the longest reach.
-            time = model.solve(math.ldexp(0.5, octave), radius, thickness).contact_time
-            found = float(edge_distance(model.pair.plate, thickness, time))
-            self._reaches[radius, number, thickness, octave] = found
-        return found
 
-    def near(self, bead: tuple[float, int], thickness: float, near: KnownEdge) -> CorBySpeed:
-        """COR by speed near an edge."""
-        (radius, number), (kind, distance) = bead, near
-        model: Any = self[number]
-        if (number, kind) not in self._kernels:
-            slow = model.force_law.yields and flow_with_rate(model.pair, model.force_law)
-            self._kernels[number, kind] = None if slow else model.edge_kernel(kind)
-        kernel = self._kernels[number, kind]
+class Answers:
+    """What a model answers for beads of a radius [m] on a plate: a thickness [m], or what swings back."""
 
-        def curve(speed: float) -> float:
-            cor = math.nan if kernel is None else kernel(speed, radius, thickness, distance)
-            # The kernel knows no rate of strain, and cannot say what is wrong with an impact.
-            if cor != cor:
-                return float(model.restitution(speed, radius, thickness, kind, distance))
-            return float(cor)
+    def __init__(self, model: Any, radius: float, wall: Any, friction: float | None) -> None:
+        self._model, self._radius, self._wall, self._friction = model, radius, wall, friction
+        # COR by speed far from edges
+        self.cor: CorBySpeed = model.curve(radius, wall) if sheet_of(wall) is wall else self._swinging
+        self._octave, self._reach, self._kernel = map(cache, (self._corners, self._reach_of, self._kernel_of))
 
-        return curve
+    def _swinging(self, speed: float) -> float:
+        try:
+            return float(np.interp(speed, *self._octave(math.frexp(speed)[1])))
+        except ValueError:  # some of the speeds are refused, perhaps this one
+            return float(self._model.restitution(speed, self._radius, self._wall))
 
-    def swinging(self, bead: tuple[float, int], wall: Any) -> CorBySpeed:
-        """COR by speed on a plate that swings back, from 33 impacts in each doubling of the speed."""
-        radius, number = bead
-        model: Any = self[number]
+    def _corners(self, octave: int) -> Any:
+        """Compute 33 CORs in a doubling of the speed [m/s]."""
+        speeds = np.ldexp(np.linspace(0.5, 1.0, 33), octave)
+        return speeds, self._model.restitution(speeds, self._radius, self._wall)
 
-        @functools.cache
-        def octave(n: int) -> Any:
-            speeds = np.ldexp(np.linspace(0.5, 1.0, 33), n)
-            return speeds, model.restitution(speeds, radius, wall)
+    def reach(self, speed: float) -> float:
+        """Distance [m] from which on edges do not matter."""
+        return self._reach(math.frexp(speed)[1])
 
-        def curve(speed: float) -> float:
-            try:
-                return float(np.interp(speed, *octave(math.frexp(speed)[1])))
-            except ValueError:  # some of the speeds are refused, perhaps this one
-                return float(model.restitution(speed, radius, wall))
+    def _reach_of(self, octave: int) -> float:
+        # Slower impacts last longer, so the slowest of these speeds has the longest reach.
+        time = self._model.solve(math.ldexp(0.5, octave), self._radius, self._wall).contact_time
+        return float(edge_distance(self._model.pair.plate, self._wall, time))
 
-        return curve
+    def near(self, speed: float, kind: str, distance: float) -> float:
+        """COR at a distance [m] from an edge."""
+        kernel = self._kernel(kind)
+        cor = math.nan if kernel is None else kernel(speed, self._radius, self._wall, distance)
+        # The kernel knows no rate of strain, and cannot say what is wrong with an impact.
+        return float(self._model.restitution(speed, self._radius, self._wall, kind, distance) if cor != cor else cor)
+
+    def _kernel_of(self, kind: str) -> Any:
+        law = self._model.force_law
+        return None if law.yields and flow_with_rate(self._model.pair, law) else self._model.edge_kernel(kind)
+
+    def slide(self, speed: float, sliding_speed: float) -> float:
+        """Sliding speed afterwards [m/s].
+
+        One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
+        impacts that it does not know, ``oblique`` answers, or says what is wrong.
+        """
+        if self._collide is not None:
+            before, rest, up = (sliding_speed, 0.0, -speed), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+            (centre, _, _), _ = self._collide(before, rest, up, self._radius, self._wall, self._friction, rest)
+            if centre == centre:
+                return sliding_speed - POINT * (sliding_speed - float(centre))
+        return float(self._model.oblique(speed, sliding_speed, self._radius, self._wall, self._friction).sliding_speed)
+
+    @cached_property
+    def _collide(self) -> Any:
+        try:
+            return getattr(self._model, "collide_kernel", None) if sheet_of(self._wall) is self._wall else None
+        except RuntimeError:  # numba is switched off
+            return None
 
 
 class Models:
@@ -91,6 +102,8 @@ class Models:
 
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
+        # Bounded: a thousand different beads make half a million pairs.
+        self.sphere_curve = lru_cache(maxsize=65536)(self._sphere_curve)
         self.spheres: list[Any] = []
         self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
         seen: list[tuple[Any, Any]] = []
@@ -155,7 +168,7 @@ class Models:
         """Further argument of that model's methods: the other bead's material if it differs."""
         return () if number == other else (self.spheres[other],)
 
-    def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
+    def _sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
         """Restitution by speed of two beads, each of a radius [m] and a material."""
         (radius, number), (other_radius, other) = one, two
         model: Any = self.of_bead(number)

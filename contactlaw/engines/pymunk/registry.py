@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import warnings
 import weakref
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, knows
-from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
-from contactlaw.engines.pymunk.models import ModelsByBead
+from contactlaw.engines.pymunk.friction import check_moment
+from contactlaw.engines.pymunk.models import Answers, Models, ModelsByBead
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
-from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
@@ -24,30 +23,39 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 Edges = tuple[str | None, str | None]  # kinds of a plate's edges, at its start and its end
-BeadKind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
 # a shared end [m], in the body's coordinates, and the other plate
 Joint = tuple[float, float, "PlateShape"]
+# Attribute of a registered shape with its `BeadShape` or `PlateShape`. The shape alone keeps them alive, because
+# otherwise all beads that have ever been in a space would stay in memory. pymunk copies no attributes with _.
+MARK = "_contactlaw"
 LARGEST = 1.0  # radius [m] of a boulder; a larger one was given in pixels
 # Allows for porosity and for a density that is not quite the material's. A disc, a mass of 1 or a
 # diameter taken for the radius are far outside.
 MASS_RATIO = 1.5
 
 
-# The attachment holds weak references to shapes and bodies, because otherwise all beads that have
-# ever been in a space would stay in memory.
-@dataclass(slots=True, eq=False)
+class BeadKind:
+    """Beads that rebound alike."""
+
+    def __init__(self, radius: float, material: int) -> None:
+        self.radius = radius  # [m]
+        self.material = material  # number in the models
+        self.answers: dict[int, Answers] = {}  # by index of the plate
+
+    def __lt__(self, other: BeadKind) -> bool:
+        """Order by radius."""
+        return (self.radius, self.material) < (other.radius, other.material)
+
+
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class BeadShape:
     """A registered sphere, which hits plates and other spheres."""
 
     index: int
     shape: weakref.ref[pymunk.Circle]
-    body: weakref.ref[pymunk.Body]
-    body_id: int  # pymunk may give it to another body after this one
-    radius: float
     kind: BeadKind
-    # COR by speed of two beads, the smaller first
-    pair_curve: Callable[[BeadKind, BeadKind], CorBySpeed]
-    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `PlateShape`
+    models: Models
+    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Mount`
 
     def __str__(self) -> str:
         return f"bead {self.index}"
@@ -55,23 +63,33 @@ class BeadShape:
     def touched(self, circle: Any, at: Vector, normal: Vector) -> Vector:
         """Where it is touched [m] by a bead with this normal."""
         (x, y), (nx, ny) = circle.body.position, normal
-        return x - self.radius * nx, y - self.radius * ny
+        return x - self.kind.radius * nx, y - self.kind.radius * ny
 
     def velocity_at(self, circle: Any, at: Vector, normal: Vector) -> Vector:
         """Velocity of its surface [m/s] where a bead with this normal touches it."""
-        (ux, uy), (nx, ny), speed = circle.body.velocity, normal, self.radius * circle.body.angular_velocity
+        (ux, uy), (nx, ny), speed = circle.body.velocity, normal, self.kind.radius * circle.body.angular_velocity
         return ux + speed * ny, uy - speed * nx
 
-    def curve(self, bead: BeadShape, shape: pymunk.Circle) -> CorBySpeed:
+    def curve(self, bead: BeadShape) -> CorBySpeed:
         """COR by speed of a bead on this one."""
-        if shape.radius != self.radius:
-            raise changed(self, shape)
-        return self.pair_curve(*sorted((bead.kind, self.kind)))
+        one, two = sorted((bead.kind, self.kind))
+        return self.models.sphere_curve((one.radius, one.material), (two.radius, two.material))
+
+    def check(self, circle: pymunk.Circle) -> None:
+        """Refuse a circle that is no longer what was registered."""
+        if circle.radius != self.kind.radius:
+            raise ArgumentError(
+                "radius",
+                None,
+                f"{self} was registered with {self.kind.radius!r} m and has {circle.radius!r} m now; "
+                "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
+                "mass that belongs to the radius",
+            )
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class PlateShape:
-    """A registered plate, and its state from step to step."""
+    """A registered plate."""
 
     index: int
     shape: weakref.ref[Face]
@@ -82,35 +100,27 @@ class PlateShape:
     friction: float | None = None  # None: the engine's own
     edge: Edges | None = None  # None: endless
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
-    curves: dict[BeadKind, CorBySpeed] = field(default_factory=dict)
-    slides: dict[BeadKind, Slide] = field(default_factory=dict)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
-    change: float = 0.0  # change of that velocity in the last step [m/s]
-    shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
+    sides: list[Side] = field(default_factory=list)  # measured at the first impact
 
     def __str__(self) -> str:
         return f"plate {self.index}"
 
-    def curve(self, bead: BeadShape, shape: pymunk.Shape) -> CorBySpeed:
-        """COR by speed of beads of this kind; made once."""
-        curve = self.curves.get(bead.kind)
-        if curve is None:
-            radius, material = bead.kind
-            curve = self.models[material].curve(radius, self.thickness)
-            if sheet_of(self.wall) is not self.wall:
-                curve = self.models.swinging(bead.kind, self.wall)
-            self.curves[bead.kind] = curve
-        return curve
+    @property
+    def shake(self) -> float:
+        """Change of its speed in each step [m/s]."""
+        return self.mount.shake
 
-    def slide(self, bead: BeadShape) -> Slide:
-        """Sliding speed after impacts of beads of this kind on a plate with friction; made once."""
-        slide = self.slides.get(bead.kind)
-        if slide is None:
-            radius, material = bead.kind
-            model: Any = self.models[material]
-            slide = slide_of(model, radius, self.wall, self.friction or 0.0)
-            self.slides[bead.kind] = slide
-        return slide
+    def answers(self, bead: BeadShape) -> Answers:
+        """Answers for beads of this kind; made once."""
+        kind = bead.kind
+        if self.index not in kind.answers:
+            model = self.models[kind.material]
+            kind.answers[self.index] = Answers(model, kind.radius, self.wall, self.friction)
+        return kind.answers[self.index]
+
+    def curve(self, bead: BeadShape) -> CorBySpeed:
+        """COR by speed of a bead on this plate, far from its edges."""
+        return self.answers(bead).cor
 
     def touched(self, shape: Any, at: Vector, normal: Vector) -> Vector:
         """Where it is touched [m]: where the bead touches it."""
@@ -118,62 +128,56 @@ class PlateShape:
 
     def velocity_at(self, shape: Any, at: Vector, normal: Vector) -> Vector:
         """Velocity of the plate [m/s] where a bead touches it."""
-        mount = self.mount
-        if mount.still:
+        if self.mount.still:
             return 0.0, 0.0
-        if mount.still is None:
-            mount.still = not any(shape.body.velocity) and not shape.body.angular_velocity
         velocity: Vector = shape.body.velocity_at_world_point(at)
         return velocity
 
-    def watch(self, body: pymunk.Body, dt: float) -> float:
-        """Update `shake` of a kinematic plate; return the speed of its fastest point [m/s]."""
-        import pymunk
 
-        shape = self.shape()
-        if shape is None:
-            return 0.0
-        (vx, vy), spin = body.velocity, body.angular_velocity
-        centre = body.center_of_gravity
-        extent = max((end - centre).length for end in ends(shape))
-        if body.body_type == pymunk.Body.KINEMATIC:  # a dynamic one is moved by the impacts
-            old_vx, old_vy, old_spin = self.velocity
-            turning = extent * (abs(spin - old_spin) + spin**2 * dt)
-            change = math.hypot(vx - old_vx, vy - old_vy) + turning
-            # The smaller change of two steps: a plate that jumps to its speed does not shake.
-            self.shake = min(change, self.change)
-            self.velocity, self.change = (vx, vy, spin), change
-        return math.hypot(vx, vy) + abs(spin) * extent
+class Side(NamedTuple):
+    """A straight piece of a plate, in coordinates of its body [m]."""
+
+    start: Vector
+    along: Vector  # of length 1, from the start
+    length: float
+    # Kinds of the edges beyond the start and the end, and how far from there they are.
+    edges: tuple[tuple[str, float], tuple[str, float]]
 
 
 @dataclass(slots=True, eq=False)
 class Mount:
-    """A rigid body that carries plates, with its pose in the present step."""
+    """A rigid body that carries plates, with its pose and motion in the present step."""
 
-    key: int  # id of the body
     body: weakref.ref[pymunk.Body]
-    plates: dict[int, PlateShape] = field(default_factory=dict)
-    # Whether the body has no velocity; None for a static body, until that is looked up. To ask
-    # pymunk for the velocity of a point takes a tenth of the time of a collision.
-    still: bool | None = False
-    free: bool = False  # whether impacts move the body
+    extent: float = 0.0  # largest distance of a plate's corner from its centre of gravity [m]
+    # To ask pymunk for the velocity of a point takes a tenth of the time of a collision.
+    still: bool = True  # whether it has no velocity
+    static: bool = True  # whether the engine never moves it
+    free: bool = False  # whether impacts move it
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
+    change: float = 0.0  # change of that velocity in the last step [m/s]
+    shake: float = 0.0  # the change per step of a body that keeps changing, else about 0 [m/s]
     frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of angle
 
     def watch(self, dt: float) -> float:
         """Prepare for a step; return the speed of the fastest point of its plates [m/s]."""
         import pymunk
 
-        body = self.body()
+        body: Any = self.body()
         self.frame = None
-        if body is None or body.body_type == pymunk.Body.STATIC:
-            if self.still is False:
-                for plate in self.plates.values():
-                    plate.shake = plate.change = 0.0
-            self.still, self.free = None, False
+        if body is None:
             return 0.0
-        self.still = False
-        self.free = body.body_type == pymunk.Body.DYNAMIC
-        return max((plate.watch(body, dt) for plate in self.plates.values()), default=0.0)
+        (vx, vy), spin = body.velocity, body.angular_velocity
+        self.still = not (vx or vy or spin)
+        self.static = body.body_type == pymunk.Body.STATIC
+        self.free = body.body_type == pymunk.Body.DYNAMIC  # its change is the impacts' work
+        old_vx, old_vy, old_spin = self.velocity
+        turning = self.extent * (abs(spin - old_spin) + spin**2 * dt)
+        change = 0.0 if self.static or self.free else math.hypot(vx - old_vx, vy - old_vy) + turning
+        # The smaller change of two steps: a plate that jumps to its speed does not shake.
+        self.shake = min(change, self.change)
+        self.velocity, self.change = (vx, vy, spin), change
+        return 0.0 if self.static else math.hypot(vx, vy) + abs(spin) * self.extent
 
     def local(self, x: float, y: float) -> Vector:
         """Point in coordinates of the body [m]."""
@@ -201,22 +205,23 @@ def may_meet(circle: pymunk.Circle, shape: pymunk.Shape) -> bool:
     return not (grouped or masked)
 
 
-def body_of(shape: Any, kinds: Sequence[type], space: pymunk.Space, collision_type: int) -> pymunk.Body:
+def body_of(shape: Any, kinds: tuple[type, ...], space: pymunk.Space, collision_types: tuple[int, int]) -> Any:
     """Body of a shape that may be registered."""
-    if not isinstance(shape, tuple(kinds)):
+    if not isinstance(shape, kinds):
         expected = " or ".join(f"pymunk.{kind.__name__}" for kind in kinds)
         raise TypeError(f"expected a {expected}, got {shape!r}")
     shape_of: Any = shape
-    body: pymunk.Body | None = shape_of.body
-    if body is None or shape_of.sensor:
+    if shape_of.collision_type in collision_types and hasattr(shape, MARK):
+        raise ValueError(f"{shape!r} is registered already")
+    if shape_of.body is None or shape_of.sensor:
         raise ValueError(f"{shape!r} has no body, or is a sensor: it would never rebound")
     if shape_of.space not in (None, space):
         raise ValueError(f"{shape!r} belongs to another space")
-    if shape_of.collision_type not in (0, collision_type):  # a copied shape has the adapter's type
+    if shape_of.collision_type not in (0, *collision_types):  # a copied shape has the adapter's type
         remedy = "leave it 0 and make handlers for impacts.bead_type and impacts.plate_type"
         reason = f"the attachment needs its own for {shape!r}; {remedy}"
         raise ArgumentError("collision_type", shape_of.collision_type, reason)
-    return body
+    return shape_of.body
 
 
 def radius_of(circle: pymunk.Circle) -> float:
@@ -230,17 +235,6 @@ def radius_of(circle: pymunk.Circle) -> float:
             "metres and seconds; where you draw, pymunk.SpaceDebugDrawOptions has a transform",
         )
     return radius
-
-
-def changed(bead: BeadShape, circle: pymunk.Circle) -> ValueError:
-    """Make the error for a circle that is no longer what was registered."""
-    return ArgumentError(
-        "radius",
-        None,
-        f"{bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "
-        "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
-        "mass that belongs to the radius",
-    )
 
 
 def check_alone(circle: pymunk.Circle, body: pymunk.Body) -> None:
@@ -290,7 +284,7 @@ def friction_of(friction: float, models: ModelsByBead, shape: Any, beads: Iterab
     for bead in beads if friction else ():
         circle = bead.shape()
         if circle is not None:
-            check_solid(circle, bead.radius, [shape])
+            check_solid(circle, bead.kind.radius, [shape])
     return friction
 
 
