@@ -161,17 +161,13 @@ class Contacts:
         `gain` times that far away, and so is the bead's tangential motion at sliding speeds that
         are as much larger.
         """
-        (nx, ny), slip, mount, body = impact.normal, impact.slip, plate.mount, impact.shapes[0].body
-        friction, target = plate.friction or 0.0, slip + belt(arbiter, impact.normal)
-        if not mount.still:  # between the surfaces, which overlap
-            (gx, gy), (ux, uy) = body.velocity, plate.velocity_at(impact.shapes[1], impact.at, impact.normal)
-            along = nx * (gy - uy) - ny * (gx - ux) + impact.bead.kind.radius * body.angular_velocity
-            target += sliding(arbiter) - along
+        (nx, ny), slip, body, friction = impact.normal, impact.slip, impact.shapes[0].body, plate.friction or 0.0
+        target = sliding(arbiter)
         if friction:
             check_moment(body, impact.bead.kind.radius)
             target += gain * (plate.answers(impact.bead).slide(impact.speed, slip / gain) - slip / gain)
         arbiter.friction = friction
-        if not mount.free:  # else the plate falls as the bead does, and a light one limits the impulses
+        if not plate.mount.free:  # else the plate falls as the bead does, and a light one limits the impulses
             arbiter.friction *= LOOSE
             target += nx * self._fall[1] - ny * self._fall[0]
         arbiter.surface_velocity = -ny * target, nx * target

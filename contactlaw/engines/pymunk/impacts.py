@@ -32,9 +32,8 @@ from contactlaw.engines.pymunk.registry import (
     body_of,
     check_alone,
     check_mass,
-    check_solid,
     ends,
-    friction_of,
+    forget,
     radius_of,
 )
 from contactlaw.engines.pymunk.seams import join
@@ -120,8 +119,8 @@ class PymunkImpacts:
         ------
         TypeError, ValueError, RuntimeError
             If the circle is no such circle, is a part of a rigid body, is registered already, or
-            has a radius above 1 m, as in pixels; if no attached model is for the material; if a
-            plate with friction is there and the moment is not a sphere's; after `detach`.
+            has a radius above 1 m, as in pixels; if no attached model is for the material; after
+            `detach`.
 
         Examples
         --------
@@ -162,7 +161,6 @@ class PymunkImpacts:
         check_alone(circle, body)
         warn_of_metres("radius", radius, stacklevel=2)
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
-        check_solid(circle, radius, (plate.shape() for plate in self._plates.values() if plate.friction))
         kind = self._kinds.setdefault((radius, number), BeadKind(radius, number))
         bead = BeadShape(self._register.bead(number, radius), ref(circle), kind, self._models)
         setattr(circle, MARK, bead)
@@ -222,6 +220,7 @@ class PymunkImpacts:
         body = self._admit(shape, (pymunk.Segment, pymunk.Poly))
         wall, thickness = thickness, float(scalars(thickness=sheet_of(thickness))[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
+        friction = friction if friction is None else float(scalars(friction=friction)[0][0])
         corners = ends(shape)
         if len(set(corners)) < 2:
             reason = f"has no length, all of it is at {tuple(corners[0])}"
@@ -236,8 +235,11 @@ class PymunkImpacts:
                 if not knows(one, "pair", "oblique"):
                     raise TypeError(f"thickness: {one!r} knows no plate that swings back; give an ImpactModel")
                 wall = wall if swing_of(plate_of(one), wall)[1] else sheet_of(wall)
-        if friction is not None:
-            friction = friction_of(friction, chosen, shape, self._beads.values())
+            if friction is not None and not knows(one, "oblique"):
+                raise TypeError(
+                    f"friction: {one!r} knows none, it has no oblique(); leave friction=None, which is pymunk's own, "
+                    "or give an ImpactModel"
+                )
         edges = edges_of(edge, chosen, len(corners), thickness)
         mount = self._mounts.setdefault(body, Mount(ref(body)))
         mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
@@ -263,7 +265,7 @@ class PymunkImpacts:
         """
         if circle.collision_type != self.bead_type:
             raise ArgumentError("circle", None, f"{circle!r} is no bead of this attachment")
-        _forget(circle)
+        forget(circle)
 
     def remove_plate(self, shape: pymunk.Segment | pymunk.Poly) -> None:
         """Forget a plate, as `remove_bead` forgets a bead.
@@ -275,7 +277,7 @@ class PymunkImpacts:
         """
         if shape.collision_type != self.plate_type:
             raise ArgumentError("shape", None, f"{shape!r} is no plate of this attachment")
-        _forget(shape)
+        forget(shape)
         self._joined = False
 
     def beads(self) -> NDArray[np.void]:
@@ -369,7 +371,7 @@ class PymunkImpacts:
             state["step"] = self._replaced
         for shape in [one.shape() for one in (*self._beads.values(), *self._plates.values())]:
             if shape is not None:
-                _forget(shape)
+                forget(shape)
         self._space.collision_slop = self._slop
         self._attached = False
 
@@ -401,9 +403,3 @@ class PymunkImpacts:
         if stranger is not None:
             self._handlers.ignore_strangers()
             warnings.warn(stranger, stacklevel=2)
-
-
-def _forget(shape: Any) -> None:
-    """Make a registered shape an ordinary one again."""
-    delattr(shape, MARK)
-    shape.collision_type = 0

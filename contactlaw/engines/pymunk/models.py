@@ -106,9 +106,8 @@ class Models:
         self.sphere_curve = lru_cache(maxsize=65536)(self._sphere_curve)
         self.spheres: list[Any] = []
         self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
-        seen: list[tuple[Any, Any]] = []
         for model in self.all:
-            pair = sphere_of(model), plate_of(model)
+            sphere, plate = pair = sphere_of(model), plate_of(model)
             if len(self.all) > 1 and None in pair:
                 raise ArgumentError(
                     "model",
@@ -116,34 +115,37 @@ class Models:
                     f"several are told apart by their pairs, but {model!r} has none; give it one "
                     "(an attribute `pair`, a contactlaw.Pair), or attach it alone",
                 )
-            if pair in seen:
-                names = f"{_name(pair[0])} on {_name(pair[1])}"
-                raise ArgumentError("model", None, f"two are for {names}; give one for each pair")
-            seen.append(pair)
-            if pair[0] not in self.spheres:
-                self.spheres.append(pair[0])
-            number = self.spheres.index(pair[0])
-            models = next((own for plate, own in self._plates if plate == pair[1]), None)
+            if sphere not in self.spheres:
+                self.spheres.append(sphere)
+            models = next((models for known, models in self._plates if known == plate), None)
             if models is None:
-                models = ModelsByBead(self.spheres, pair[1])
-                self._plates.append((pair[1], models))
+                models = ModelsByBead(self.spheres, plate)
+                self._plates.append((plate, models))
+            number = self.spheres.index(sphere)
+            if number in models:
+                reason = f"two are for {_name(sphere)} on {_name(plate)}; give one for each pair"
+                raise ArgumentError("model", None, reason)
             models[number] = model
 
     def bead(self, material: Material | str | None) -> int:
         """Return the number of a bead's material, by default that of the first model."""
-        if material is None:
-            return 0
-        for number, sphere in enumerate(self.spheres):
-            if _is(material, sphere):
-                return number
-        raise self._missing("spheres", material, self.spheres)
+        return self._number("spheres", material, self.spheres)
 
     def plate(self, material: Material | str | None) -> ModelsByBead:
         """Models for a plate of a material, by default that of the first model."""
-        for plate, models in self._plates:
-            if material is None or _is(material, plate):
-                return models
-        raise self._missing("plates", material, [plate for plate, _ in self._plates])
+        return self._plates[self._number("plates", material, [plate for plate, _ in self._plates])][1]
+
+    def _number(self, kind: str, material: Material | str | None, known: list[Any]) -> int:
+        for number, one in enumerate(known):
+            if material is None or _is(material, one):
+                return number
+        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
+        raise ArgumentError(
+            "material",
+            None,
+            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
+            "attach(space, [model, ...]) takes one for each pair of materials",
+        )
 
     def own_models(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ModelsByBead:
         """Models of a plate that was given its own."""
@@ -186,15 +188,6 @@ class Models:
     def names(self) -> list[str]:
         """Names of the bead materials, "" for a model without a pair."""
         return [_name(sphere) for sphere in self.spheres]
-
-    def _missing(self, kind: str, material: Any, known: list[Any]) -> ValueError:
-        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
-        return ArgumentError(
-            "material",
-            None,
-            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
-            "attach(space, [model, ...]) takes one for each pair of materials",
-        )
 
 
 def sphere_of(model: RestitutionModel) -> Any:

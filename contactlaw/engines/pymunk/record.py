@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
-from contactlaw.engines.needs import RestitutionModel, knows_rebounds
+from contactlaw.engines.needs import knows_rebounds
 from contactlaw.engines.pymunk.models import Models, ModelsByBead
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.equation.edge import KINDS
@@ -45,6 +45,7 @@ class Register:
 
     def __init__(self, models: Models) -> None:
         self.models = models
+        self.whole = all(map(knows_rebounds, models.all))  # whether all models complete the record
         self._radii, self._materials = array("d"), array("l")
         self._walls: list[Any] = []  # what was given for the thicknesses
         self._plates: list[ModelsByBead] = []
@@ -57,6 +58,7 @@ class Register:
 
     def plate(self, models: ModelsByBead, wall: Any) -> int:
         """Add a plate and return its index."""
+        self.whole = self.whole and all(map(knows_rebounds, models.values()))
         self._walls.append(wall)
         self._plates.append(models)
         return len(self._plates) - 1
@@ -75,11 +77,6 @@ class Register:
     def materials(self) -> NDArray[np.int64]:
         """Number of the material by bead."""
         return np.array(self._materials, dtype=np.int64)
-
-    def every_model(self) -> list[RestitutionModel]:
-        """All models of beads and plates."""
-        several = {id(models): models for models in self._plates}.values()
-        return [*self.models.all, *(model for models in several for model in models.values())]
 
     def questions(self, rows: Rows, edge: NDArray[np.int64]) -> Iterator[Question]:
         """Sort impacts by the model that answers, with the numbers of their edges in EDGES."""
@@ -127,17 +124,16 @@ class Record:
 
         Unless every model is a `ReboundModel`, there are only the columns of OBSERVED.
         """
-        whole = all(knows_rebounds(model) for model in register.every_model())
         seen = np.array(self._seen[len(self._rows) * WIDTH :]).reshape(-1, WIDTH)
         if len(seen):
             rows = np.zeros(len(seen), IMPACT)
             for name, column in zip(SEEN, seen.T, strict=False):
                 rows[name] = column
-            if whole:
+            if register.whole:
                 _complete(rows, register, seen[:, -2].astype(np.int64), seen[:, -1])
             self._rows = np.concatenate((self._rows, rows))
         # Once a model gives a COR alone, the rest of the run has the columns of OBSERVED only.
-        return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
+        return self._rows.copy() if register.whole else repack_fields(self._rows[list(OBSERVED)])
 
 
 def _complete(rows: Rows, register: Register, edge: NDArray[np.int64], distance: NDArray[np.float64]) -> None:

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 import warnings
 import weakref
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from contactlaw._errors import ArgumentError
-from contactlaw.engines.needs import CorBySpeed, knows
-from contactlaw.engines.pymunk.friction import check_moment
+from contactlaw.engines.needs import CorBySpeed
 from contactlaw.engines.pymunk.models import Answers, Models, ModelsByBead
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
@@ -38,13 +36,8 @@ class BeadKind:
     """Beads that rebound alike."""
 
     def __init__(self, radius: float, material: int) -> None:
-        self.radius = radius  # [m]
-        self.material = material  # number in the models
+        self.radius, self.material = radius, material  # [m]; number in the models
         self.answers: dict[int, Answers] = {}  # by index of the plate
-
-    def __lt__(self, other: BeadKind) -> bool:
-        """Order by radius."""
-        return (self.radius, self.material) < (other.radius, other.material)
 
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
@@ -72,8 +65,7 @@ class BeadShape:
 
     def curve(self, bead: BeadShape) -> CorBySpeed:
         """COR by speed of a bead on this one."""
-        one, two = sorted((bead.kind, self.kind))
-        return self.models.sphere_curve((one.radius, one.material), (two.radius, two.material))
+        return self.models.sphere_curve(*sorted((kind.radius, kind.material) for kind in (bead.kind, self.kind)))
 
     def check(self, circle: pymunk.Circle) -> None:
         """Refuse a circle that is no longer what was registered."""
@@ -146,7 +138,7 @@ class Side(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class Mount:
-    """A rigid body that carries plates, with its pose and motion in the present step."""
+    """A rigid body that carries plates, with its motion in the present step."""
 
     body: weakref.ref[pymunk.Body]
     extent: float = 0.0  # largest distance of a plate's corner from its centre of gravity [m]
@@ -157,14 +149,12 @@ class Mount:
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
     change: float = 0.0  # change of that velocity in the last step [m/s]
     shake: float = 0.0  # the change per step of a body that keeps changing, else about 0 [m/s]
-    frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of angle
 
     def watch(self, dt: float) -> float:
         """Prepare for a step; return the speed of the fastest point of its plates [m/s]."""
         import pymunk
 
         body: Any = self.body()
-        self.frame = None
         if body is None:
             return 0.0
         (vx, vy), spin = body.velocity, body.angular_velocity
@@ -181,11 +171,9 @@ class Mount:
 
     def local(self, x: float, y: float) -> Vector:
         """Point in coordinates of the body [m]."""
-        if self.frame is None:
-            body: Any = self.body()
-            self.frame = (*body.local_to_world((0.0, 0.0)), *body.rotation_vector)
-        u, v, c, s = self.frame
-        return c * (x - u) + s * (y - v), c * (y - v) - s * (x - u)
+        body: Any = self.body()
+        point: Vector = body.world_to_local((x, y))
+        return point
 
 
 def ends(shape: Face) -> list[pymunk.Vec2d]:
@@ -263,29 +251,10 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
         )
 
 
-def check_solid(circle: Any, radius: float, rough: Iterable[Any]) -> None:
-    """Refuse a bead without a sphere's moment that may meet a plate with friction."""
-    try:
-        check_moment(circle.body, radius)
-    except ValueError:
-        if any(shape is not None and may_meet(circle, shape) for shape in rough):
-            raise
-
-
-def friction_of(friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]) -> float:
-    """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
-    friction = float(scalars(friction=friction)[0][0])
-    for model in models.values():
-        if not knows(model, "oblique"):
-            raise TypeError(
-                f"friction: {model!r} knows none, it has no oblique(); leave friction=None, which "
-                "is pymunk's own, or give an ImpactModel"
-            )
-    for bead in beads if friction else ():
-        circle = bead.shape()
-        if circle is not None:
-            check_solid(circle, bead.kind.radius, [shape])
-    return friction
+def forget(shape: Any) -> None:
+    """Make a registered shape an ordinary one again."""
+    delattr(shape, MARK)
+    shape.collision_type = 0
 
 
 def unregistered(shape: Any) -> ValueError:

