@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 from unittest import mock
 
+import numpy as np
 import pymunk
 
 import contactlaw as cl
+from contactlaw._arrays import Array
 from contactlaw.engines import pymunk as adapter
 from dem_demo.rain.engine import Rain
 from dem_demo.rain.scene import rain as drawn
@@ -30,6 +33,10 @@ class _Constant:
         return lambda speed: COR
 
     sphere_sphere_curve = curve
+    edge_kernel = None
+
+    def solve(self, *_: float) -> SimpleNamespace:
+        return SimpleNamespace(contact_time=1e-12)  # so short that no edge is felt
 
 
 class _Elasticities:
@@ -43,6 +50,9 @@ class _Elasticities:
 
     def add_bead(self, circle: pymunk.Circle) -> None:
         circle.elasticity = self.each
+
+    def loads(self) -> tuple[float, Array, Array, Array]:
+        return 0.0, np.zeros((5, 3)), np.zeros((5, 3)), np.zeros(5)  # of the five plates
 
 
 def rows() -> Iterator[Row]:

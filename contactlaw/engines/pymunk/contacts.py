@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from contactlaw.engines.pymunk.edges import near
+from contactlaw.engines.pymunk.edges import belongs_to_neighbour, near
 from contactlaw.engines.pymunk.friction import LOOSE, belt, check_moment, pushed, sliding
 from contactlaw.engines.pymunk.handlers import Hook
 from contactlaw.engines.pymunk.lookahead import TunnellingError
 from contactlaw.engines.pymunk.record import FAR, KnownEdge, Record
 from contactlaw.engines.pymunk.registry import MARK, BeadShape, PlateShape, Vector, unregistered
-from contactlaw.engines.pymunk.seams import belongs_to_neighbour
 from contactlaw.engines.record import Kind
 from contactlaw.stepping.loads import NUMBERS
 

@@ -26,7 +26,7 @@ class Handlers:
     def __init__(self, space: pymunk.Space, contacts: Contacts, bead: int, plate: int) -> None:
         self._space, self._contacts, self._stranger = space, contacts, (bead, 0)
         self._replaced = vars(space).get("on_collision")
-        self._engine = space.on_collision
+        self._engine: Any = space.on_collision
         self._users: dict[tuple[Key, str], Hook] = {}
         self._hooks: dict[Key, list[Hook]] = {(bead, plate): [], (bead, bead): []}
         for key, hooks in self._hooks.items():
@@ -76,10 +76,6 @@ class Handlers:
 
         if (self._stranger, "post_solve") not in self._users:
             self._engine(*self._stranger, post_solve=pymunk.empty_callback)
-
-    def replaced(self) -> bool:
-        """Whether the user has replaced ``space.on_collision``."""
-        return vars(self._space).get("on_collision") != self.on_collision
 
     def detach(self) -> None:
         """Remove the adapter's handlers from the space; the user's stay."""

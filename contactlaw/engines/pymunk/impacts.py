@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import RestitutionModel, knows
 from contactlaw.engines.pymunk.contacts import Contacts
-from contactlaw.engines.pymunk.edges import edges_of
+from contactlaw.engines.pymunk.edges import edges_of, join
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
 from contactlaw.engines.pymunk.models import Models, plate_of
@@ -36,7 +36,6 @@ from contactlaw.engines.pymunk.registry import (
     forget,
     radius_of,
 )
-from contactlaw.engines.pymunk.seams import join
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.physical.plates import Foundation, Shell, check_wall, sheet_of
 from contactlaw.physical.scaling import swing_of
@@ -361,17 +360,16 @@ class PymunkImpacts:
         state = vars(self._space)
         if not self._attached:
             return
-        if state.get("step") != self._step:
-            raise RuntimeError("space.step has been replaced since attach(); undo that first")
-        if self._handlers.replaced():
-            raise RuntimeError("space.on_collision has been replaced since attach(); undo that first")
+        for name, own in (("step", self._step), ("on_collision", self._handlers.on_collision)):
+            if state.get(name) != own:
+                raise RuntimeError(f"space.{name} has been replaced since attach(); undo that first")
         self._handlers.detach()
         del state["step"]
         if self._replaced:
             state["step"] = self._replaced
-        for shape in [one.shape() for one in (*self._beads.values(), *self._plates.values())]:
-            if shape is not None:
-                forget(shape)
+        registered: list[BeadShape | PlateShape] = [*self._beads.values(), *self._plates.values()]
+        for shape in filter(None, [one.shape() for one in registered]):
+            forget(shape)
         self._space.collision_slop = self._slop
         self._attached = False
 

@@ -77,7 +77,7 @@ class LookAhead:
             return
         if not np.isfinite(motion).all():
             self._refuse()
-        found = []
+        found: list[TunnellingError] = []
         speeds, ids = np.hypot(motion[:, 2], motion[:, 3]), np.frombuffer(self._buffer.int_buf(), np.uintp)
         for n in np.flatnonzero(speeds * dt >= reach):
             bead = self._beads.get(int(ids[n]))
@@ -88,7 +88,8 @@ class LookAhead:
 
     def _refuse(self) -> None:
         """Raise if the position or velocity of a bead or plate is not finite."""
-        for owner in (*self._beads.values(), *self._plates.values()):
+        owners: list[BeadShape | PlateShape] = [*self._beads.values(), *self._plates.values()]
+        for owner in owners:
             shape = owner.shape()
             if shape is not None and shape.space is self._space and shape.body is not None:
                 (x, y), (vx, vy) = shape.body.position, shape.body.velocity
@@ -103,6 +104,7 @@ class LookAhead:
         if circle is None or circle.space is None or circle.sensor:
             return
         start, radius = circle.body.position, bead.kind.radius
+        shape: Any
         for shape in self._space.bb_query(pymunk.BB.newForCircle(start, far), circle.filter):
             plate, velocity = getattr(shape, MARK, None), circle.body.velocity
             if not isinstance(plate, PlateShape) or shape.sensor:

@@ -43,7 +43,7 @@ class Answers:
         self._model, self._radius, self._wall, self._friction = model, radius, wall, friction
         # COR by speed far from edges
         self.cor: CorBySpeed = model.curve(radius, wall) if sheet_of(wall) is wall else self._swinging
-        self._octave, self._reach, self._kernel = map(cache, (self._corners, self._reach_of, self._kernel_of))
+        self._reach, self._kernel, self._octave = cache(self._reach_of), cache(self._kernel_of), cache(self._corners)
 
     def _swinging(self, speed: float) -> float:
         try:

@@ -49,6 +49,8 @@ class Register:
         self._radii, self._materials = array("d"), array("l")
         self._walls: list[Any] = []  # what was given for the thicknesses
         self._plates: list[ModelsByBead] = []
+        self._alike = array("l")  # the first plate of which a model is asked together with this one
+        self._sheets: dict[int, int] = {}  # first bare sheet, by the id of its models
 
     def bead(self, material: int, radius: float) -> int:
         """Add a bead and return its index."""
@@ -59,9 +61,11 @@ class Register:
     def plate(self, models: ModelsByBead, wall: Any) -> int:
         """Add a plate and return its index."""
         self.whole = self.whole and all(map(knows_rebounds, models.values()))
+        index = len(self._plates)
         self._walls.append(wall)
         self._plates.append(models)
-        return len(self._plates) - 1
+        self._alike.append(self._sheets.setdefault(id(models), index) if type(wall) in SHEETS else index)
+        return index
 
     def beads(self) -> Rows:
         """Radius [m] and material by index."""
@@ -80,23 +84,19 @@ class Register:
 
     def questions(self, rows: Rows, edge: NDArray[np.int64]) -> Iterator[Question]:
         """Sort impacts by the model that answers, with the numbers of their edges in EDGES."""
-        several = list({id(models): models for models in self._plates}.values())
-        number = {id(models): n for n, models in enumerate(several)}
-        groups = np.array([*(number[id(models)] for models in self._plates), -1])
-        bare = np.array([*(type(wall) in SHEETS for wall in self._walls), True])
-        material, plate = np.append(self.materials, -1), rows["plate"]
-        wall = np.where(bare[plate], -1, plate)
-        keys = np.stack([material[rows["bead"]], material[rows["other"]], groups[plate], wall, edge], axis=1)
+        material, alike = np.append(self.materials, -1), np.array([*self._alike, -1])
+        keys = np.stack([material[rows["bead"]], material[rows["other"]], alike[rows["plate"]], edge], axis=1)
         kinds, which = np.unique(keys, axis=0, return_inverse=True)
-        for n, (bead, other, group, own, near) in enumerate(kinds.tolist()):
-            model = self.models.of_bead(bead) if group < 0 else several[group][bead]
-            given = None if own < 0 else self._walls[own]
-            yield Question(model, which.ravel() == n, bead, other, given, EDGES[near])
+        for n, (bead, other, plate, near) in enumerate(kinds.tolist()):
+            model = self._plates[plate][bead] if other < 0 else self.models.of_bead(bead)
+            wall = self._walls[plate] if other < 0 and type(self._walls[plate]) not in SHEETS else None
+            yield Question(model, which.ravel() == n, bead, other, wall, EDGES[near])
 
     def bodies(self, rows: Rows) -> tuple[list[Bodies], NDArray[np.int64]]:
         """Materials and laws of impacts, and the number of these for each row; -1: no pair."""
         known: dict[tuple[int, int, int], int] = {}
-        which, found = np.full(len(rows), -1), []
+        found: list[Bodies] = []
+        which = np.full(len(rows), -1)
         for model, own, bead, other, *_ in self.questions(rows, np.zeros(len(rows), np.int64)):
             if hasattr(model, "pair"):
                 key = id(model), bead if other >= 0 else -1, other
