@@ -105,7 +105,7 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --out $(PICTURES)/small/report
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
-	cd $(PICTURES) && cp thickness.png speed.png map.png oblique.png fit.png $(CURDIR)/docs/gallery
+	cd $(PICTURES) && cp thickness.png speed.png both.png oblique.png fit.png $(CURDIR)/docs/gallery
 	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
 
 # What a person would forget: each line stops with what to do.

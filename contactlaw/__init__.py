@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from contactlaw.answers.sensitivity import Sensitivity
     from contactlaw.answers.uncertainty import Uncertainty
     from contactlaw.comparison import Comparison, compare
-    from contactlaw.fitting.bounces import Bounces, bounces
     from contactlaw.fitting.fit import Fit, fit
     from contactlaw.fitting.identify import UnidentifiedError
     from contactlaw.fitting.measurements import Measurements
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
 __all__ = [
     "ArgumentError",
     "Bodies",
-    "Bounces",
     "Comparison",
     "Fit",
     "ForceHistory",
@@ -64,7 +62,6 @@ __all__ = [
     "UnidentifiedError",
     "Validity",
     "__version__",
-    "bounces",
     "compare",
     "edge_distance",
     "explain",
@@ -84,7 +81,6 @@ __all__ = [
 _MODULES = {
     "_errors": "ArgumentError",
     "comparison": "Comparison compare",
-    "fitting.bounces": "Bounces bounces",
     "fitting.fit": "Fit fit",
     "fitting.identify": "UnidentifiedError",
     "fitting.measurements": "Measurements",

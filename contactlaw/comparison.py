@@ -45,11 +45,12 @@ class Comparison:
         Share of cases in which chance alone makes `chi_squared` as large; small if the model
         differs by more than the errors explain.
     if_exact : float
-        `chi_squared` if the law had no error of its own: by this laws are told from each other.
+        `chi_squared` as if the law had no error of its own. The law with the least is the nearest.
     rms : float
         Root mean square of measured minus modelled COR [-], weighted by the errors of the data.
     unknown : tuple of str
-        Causes that `chi_squared` is without: specified minima, and a law whose error is not known.
+        Causes that `chi_squared` is without: a strength that is a specified minimum, if impacts
+        yield, and a law whose error is not known.
     """
 
     data: Measurements
@@ -119,21 +120,25 @@ def compare(
     errors = {"speed_error": speed_error, "radius_error": radius_error, "thickness_error": thickness_error}
     band = model.uncertainty(speed, radius, thickness, **errors).restitution
     off = measured - hit.restitution
-    normal = {"model", *band.signs}  # a minimum is no normal deviate, even if its range is known
-    known = {cause: np.asarray(band.causes[cause]) for cause in normal if np.isfinite(band.causes[cause]).all()}
     slenderness = np.log(np.maximum(radius / thickness, _THICK))
     apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
     covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)
-    by_law = known.pop("model", 0.0 * off)
-    for cause, size in known.items():
-        covariance += np.outer(band.signs[cause] * size, band.signs[cause] * size)
+    for cause, sign in band.signs.items():
+        moved = sign * np.asarray(band.causes[cause])
+        covariance += np.outer(moved, moved)
     if_exact = float(off @ np.linalg.solve(covariance, off))
-    covariance += np.outer(by_law, by_law) * np.exp(-apart / _LENGTH)
+    by_law = np.asarray(band.causes["model"])
+    knows_law = bool(np.isfinite(by_law).all())
+    if knows_law:
+        covariance += np.outer(by_law, by_law) * np.exp(-apart / _LENGTH)
     chi_squared = float(off @ np.linalg.solve(covariance, off))
     chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
-    unknown = tuple(cause for cause, size in band.causes.items() if cause not in normal or np.isinf(size).any())
+    unknown = ["model"] * (not knows_law)
+    if np.any(hit.overload > 1.0):
+        bodies = {"the bead": pair.sphere, "the plate": pair.plate}
+        unknown += [f"yield strength of {role}" for role, body in bodies.items() if body.specified_minimum]
     cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
-    return Comparison(data, cor, band, flags, chi_squared, chance, if_exact, rms, unknown)
+    return Comparison(data, cor, band, flags, chi_squared, chance, if_exact, rms, (*unknown,))
 
 
 def _by_chance(chi_squared: float, count: int) -> float:

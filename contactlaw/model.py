@@ -428,7 +428,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     def speed_table(
         self, radius: float, thickness: Thickness, error: float = 1e-3, slowest: float = 0.1, fastest: float = 10.0
     ) -> SpeedTable:
-        """COR over speed in the fewest rows, for engines that interpolate in a table.
+        """COR over speed in few rows, for engines that interpolate in a table.
 
         Parameters
         ----------
@@ -442,7 +442,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         Returns
         -------
         SpeedTable
-            Speeds and their own CORs, in as few rows as straight lines between them allow.
+            Speeds and their own CORs. The rows are few, though not always the fewest: from each row
+            the longest straight line is taken that keeps the error.
 
         Raises
         ------
@@ -455,7 +456,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
         >>> rows = model.speed_table(radius=0.9e-3, thickness=1e-3, error=5e-3)
         >>> rows.speed.round(2), rows.restitution.round(3)
-        (array([ 0.1 ,  0.15,  1.24, 10.  ]), array([0.952, 0.948, 0.922, 0.871]))
+        (array([ 0.1 ,  0.88,  5.06, 10.  ]), array([0.952, 0.927, 0.896, 0.871]))
         """
         scalars(radius=radius, thickness=sheet_of(thickness))
         return speed_table(lambda v: self.lookup(v, radius, thickness), error, (slowest, fastest))

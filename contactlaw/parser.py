@@ -28,11 +28,18 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"{name}: no such option{self._hint(name)}")
         return super().parse_known_args(words, namespace)
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Name the choice nearest to an unknown one."""
+        if action.choices is not None and value not in action.choices:
+            near = difflib.get_close_matches(str(value), action.choices, n=1)
+            hint = f", did you mean {near[0]}?" if near else f"; choose from {', '.join(action.choices)}"
+            raise argparse.ArgumentError(action, f"got {value!r}{hint}")
+
     def _hint(self, name: str) -> str:
         known = [option.lstrip("-") for option in self._option_string_actions]
-        asked = name.lower().lstrip("-").replace("_", "-")
-        for near in difflib.get_close_matches(asked, known, n=1):
+        option = name.lower().lstrip("-").replace("_", "-")
+        for near in difflib.get_close_matches(option, known, n=1):
             return f", did you mean --{near}?"
-        if asked.startswith("edge"):
+        if option.startswith("edge"):
             return ": edges are for Python, restitution(..., edge=..., edge_distance=...)"
         return f", known: --{', --'.join(known[2:])}"  # without -h, --help

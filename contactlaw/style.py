@@ -25,6 +25,16 @@ if TYPE_CHECKING:
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE = "#56B4E9", "#CC79A7"
 INK, MUTED, PALE = "#222222", "#6E6E6E", "#D9D9D9"
+# Words and colour of each place where the energy of a bead goes, for all figures and pages.
+ENERGIES = {
+    "kept": ("kept by the bead", PALE),
+    "wave": ("bending wave in the plate", BLUE),
+    "plastic": ("lost at the contact", ORANGE),
+    "other": ("micro-slip and vibration", PURPLE),
+    "friction": ("friction along the plate", SKY),
+    "beads": ("bead on bead", GREEN),
+}
+COLUMN = 6.0  # [inches] width of figures on pages: their letters are readable on a phone
 
 _SETTINGS: dict[Any, Any] = {
     "figure.dpi": 150,

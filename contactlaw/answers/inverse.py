@@ -149,7 +149,9 @@ class _Curve:
 
 
 def _filled(layers: Stack, thickness: float) -> Layers:
-    pairs: Any = [[thickness if part is None else part for part in np.ravel(np.array(one, object))] for one in layers]
+    pairs: Any = [
+        [thickness if part is None else part for part in np.ravel(np.array(layer, object))] for layer in layers
+    ]
     return Layers(pairs)
 
 
@@ -255,20 +257,19 @@ class Inverse(Uncertain):
         border = TableLookup(self._bodies, self._tabulated.given, Border("clamp"))
         curve = functools.cache(functools.partial(_Curve, by, border, plate))
         found = np.empty(wanted.size, dtype=object)
-        for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):
-            found[n] = self._solutions(unknown, e, curve(size), errors)
+        for n, (cor, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):
+            found[n] = self._solutions(unknown, cor, curve(size), errors)
         return found[0] if shape is None else found.reshape(shape)
 
     def _solutions(self, unknown: str, wanted: float, curve: _Curve, errors: dict[str, float]) -> Solutions:
         x = curve.solutions(wanted)
         impacts, ends, band = curve.impacts(x), np.empty((2, x.size)), None
         if x.size:
-            sizes = impacts.speed, impacts.radius, impacts.thickness
-            band = self.uncertainty(*sizes, **errors).restitution
+            band = self.uncertainty(impacts.speed, impacts.radius, impacts.thickness, **errors).restitution
             least = np.minimum(2.0 * wanted - band.high, wanted)
             most = np.maximum(2.0 * wanted - band.low, wanted)
-            for n, one in enumerate(zip(x, least, most, strict=True)):
-                ends[:, n] = [curve.leaves(wanted, *one, up=up) for up in (False, True)]
+            for n, solution in enumerate(zip(x, least, most, strict=True)):
+                ends[:, n] = [curve.leaves(wanted, *solution, up=up) for up in (False, True)]
         last = [int(curve.e.argmin()), int(curve.e.argmax())]
         with np.errstate(divide="ignore"):
             value, low, high, at = 1.0 / x, *(1.0 / ends), 1.0 / curve.x[last]

@@ -1,4 +1,4 @@
-"""COR over speed as a table that engines interpolate: the fewest rows for an error."""
+"""COR over speed as a table that engines interpolate: few rows for an error."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -19,8 +19,8 @@ _ROUNDS = 10
 class SpeedTable(NamedTuple):
     """COR over normal approach speed.
 
-    Its rows are the fewest of 4000 logarithmically spaced speeds between which straight lines keep
-    within the wanted error.
+    Its rows are some of 4000 logarithmically spaced speeds: each is the farthest one that a straight
+    line from the row before reaches within the wanted error.
 
     Attributes
     ----------
@@ -53,18 +53,22 @@ def speed_table(lookup: Callable[[Array], Rebound], error: float, ends: tuple[fl
     e, there = (np.asarray(lookup(v).restitution) for v in (speed, probe))
     allowed = error
     for _ in range(_ROUNDS):
-        rows = fewest(speed, e, allowed)
+        rows = longest_lines(speed, e, allowed)
         measured = float(np.abs(np.interp(probe, speed[rows], e[rows]) - there).max())
         if measured <= error:
             flags = np.asarray(lookup(speed[rows]).flags)
             return SpeedTable(speed[rows], e[rows], measured, count_flags(flags))
-        allowed -= 1.01 * (measured - error)
+        allowed = max(allowed - 1.01 * (measured - error), 0.0)
     reason = f"too small from {slowest:g} to {fastest:g} m/s: narrow the range, or raise it"
     raise ArgumentError("error", error, reason)
 
 
-def fewest(x: Array, y: Array, error: float) -> Places:
-    """Fewest points, ends included, between which straight lines miss no point by more than error.
+def longest_lines(x: Array, y: Array, error: float) -> Places:
+    """Points, ends included, between which straight lines miss no point by more than the error.
+
+    From each point the longest line is taken. A line to another point may be drawn if its slope is
+    within those to all points up to there, moved up and down by the error. Where the curvature
+    changes sign another choice may have fewer points.
 
     Parameters
     ----------
@@ -78,30 +82,17 @@ def fewest(x: Array, y: Array, error: float) -> Places:
     ndarray of int
         Which of the points.
 
-    Notes
-    -----
-    The shortest path through the graph of all lines that may be drawn (Imai and Iri, Comput.
-    Vision Graph. 36 (1986) 31). To take the longest line each time is not enough where the
-    curvature changes sign. A line from point i may be drawn if its slope is within those to all
-    points up to its end, moved up and down by the error.
-
     Examples
     --------
     >>> x = np.linspace(0.0, 1.0, 11)
-    >>> fewest(x, np.abs(x - 0.5), 0.01)
+    >>> longest_lines(x, np.abs(x - 0.5), 0.01)
     array([ 0,  5, 10])
     """
-    count = np.full(x.size, x.size)
-    count[0] = 0
-    before = np.zeros(x.size, dtype=np.intp)
-    for i in range(x.size - 1):
-        run, rise = x[i + 1 :] - x[i], y[i + 1 :] - y[i]
-        slope = rise / run
+    rows = [0]
+    while (start := rows[-1]) < x.size - 1:
+        run, rise = x[start + 1 :] - x[start], y[start + 1 :] - y[start]
         low = np.maximum.accumulate((rise - error) / run)
         high = np.minimum.accumulate((rise + error) / run)
-        shorter = (low <= slope) & (slope <= high) & (count[i] + 1 < count[i + 1 :])
-        count[i + 1 :][shorter], before[i + 1 :][shorter] = count[i] + 1, i
-    rows = [x.size - 1]
-    while rows[-1] > 0:
-        rows.append(int(before[rows[-1]]))
-    return np.array(rows[::-1])
+        drawn = np.flatnonzero((low <= rise / run) & (rise / run <= high))
+        rows.append(start + 1 + int(drawn[-1]))
+    return np.array(rows)

@@ -48,8 +48,6 @@ _LARGEST_ERROR = 1.0
 _LEAST_COR = 1e-12  # the lower end of a range that reaches below zero
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
 _STRENGTHS = "yield_strength", "hardness"
-# A specified minimum matters if a strength 10 % or 3 times higher changes an answer by more than 1e-4.
-_STRONGER, _MATTERS = (0.1, math.log(3.0)), 1e-4
 _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
 
 
@@ -60,16 +58,14 @@ class Band:
     Attributes
     ----------
     low, high
-        Quantiles of 16 and 84 %: of three real impacts two are between them. An end is -inf or
-        inf where it is not known: that towards which a strength above a specified minimum moves
-        the answer, mostly the high one of the COR, and both of a law of your own. If it is known
-        how far the minimum is exceeded, the end is that of the strongest.
+        Quantiles of 16 and 84 %: of three real impacts two are between them. They are -inf and
+        inf for a law of your own, whose errors are not known.
     causes : dict of str to float or ndarray
         Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
-        ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf of a law
-        of your own and of a specified minimum that matters.
+        ``"thickness"``, ..., and ``"model"``, the law beside finite elements, which is inf for a
+        law of your own.
     signs : dict of str to float or ndarray
-        1 where more of a number raises the answer, -1 where it lowers it; not of law and minima.
+        1 where more of a number raises the answer, -1 where it lowers it; without ``"model"``.
     """
 
     low: float | Array
@@ -112,16 +108,12 @@ class Variants:
     def __init__(self, bodies: SphereOnPlate) -> None:
         self.bodies, self.given = bodies, dict(zip(_ROLES, bodies.pair.given, strict=True))
         alike = self.given["sphere"] == self.given["plate"]
-        changes = [
+        self.changes = [
             Change(name, error, roles)
             for roles in ([("sphere", "plate")] if alike else [("sphere",), ("plate",)])
             for name, error in self.given[roles[0]].uncertainty.items()
             if error
         ]
-        self.changes = [one for one in changes if 0.0 < one.error < math.inf]
-        self.minima = [one for one in changes if one.error == math.inf]
-        # Minima whose excess is known, each with the number that makes it the most.
-        self.ranges = [(one._replace(error=1.0), math.log1p(-one.error)) for one in changes if one.error < 0.0]
         self.solver = functools.cache(self._solver)
 
     def _solver(self, moved: tuple[tuple[Change, float], ...], *decades: float) -> Solver:
@@ -350,20 +342,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
         causes["model"][0] = curves.cor_by_law
     else:
         causes["model"] = np.full_like(low, math.inf)
-    up, down = np.zeros(low.shape, dtype=bool), np.zeros(low.shape, dtype=bool)
-    if variants.ranges:  # from the answers at the minima to those at the most, all together
-        gain = shifted(curves.moved(*variants.ranges)) - shifted(0.0 * logs)
-        low, high = low + np.minimum(gain, 0.0), np.minimum(high + np.maximum(gain, 0.0), np.exp(most))
-        for top in variants.ranges:
-            causes[top[0].cause] = 0.5 * np.abs(shifted(curves.moved(top)) - shifted(0.0 * logs))
-    for one in variants.minima:
-        moved = np.array([curves.moved((one._replace(error=1.0), z)) for z in _STRONGER])
-        higher, lower = moved.max(axis=0) > _MATTERS, moved.min(axis=0) < -_MATTERS
-        if np.any((higher | lower)[:3]):
-            causes[one.cause] = np.where(higher | lower, math.inf, 0.0)
-        up, down = up | higher, down | lower
-    unknown = np.isinf(causes["model"])
-    low, high = np.where(unknown | down, -math.inf, low), np.where(unknown | up, math.inf, high)
+        low, high = -causes["model"], causes["model"]
     bands = (
         Band(
             shaped(low[n], impacts.shape),

@@ -37,7 +37,8 @@ def with_number(body: Material, name: str, value: float) -> Material:
     if name == "hardening" and body.flow is not None:
         new |= {name: (value, body.flow.exponent), "yield_strength": body.flow.strength}
     errors = {of: error for of, error in body.uncertainty.items() if of != name}
-    return dataclasses.replace(body, **new, uncertainty=errors)
+    is_minimum = body.specified_minimum and name != "yield_strength"
+    return dataclasses.replace(body, **new, uncertainty=errors, specified_minimum=is_minimum)
 
 
 def with_numbers(bodies: tuple[Material, Material], numbers: Mapping[Number, float]) -> Pair:

@@ -1,27 +1,35 @@
-"""Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
+"""Command line: ``contactlaw cor | find | constant | fit | export | ...``.
 
-Each file or folder but `parts` has a subcommand: its function `add` adds the parser and options to
-argparse's subparsers, and a line of its docstring that begins with ``contactlaw NAME`` says what it
-is for. Only the file of the subcommand that is called is imported, so that help comes at once. Code
-that several subcommands share is in `parts`.
+A file or folder has the subcommand of its name: its function `add` adds the parser and options to
+argparse's subparsers, and the line of its docstring that begins with ``contactlaw NAME`` says what
+it is for. Only the file of the subcommand that is called is imported, so that help comes at once.
+Code that several subcommands share is in `parts`.
 """
 
 import argparse
-import ast
 import importlib
 import os
 import re
 import sys
+import textwrap
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from contactlaw._version import VERSION
+from contactlaw.cli import old_names
 from contactlaw.parser import Parser
 
-_ABOUT = re.compile(r"^``contactlaw ([\w-]+)``: (.*)\.$", re.MULTILINE)
-_DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
+_GROUPS = {
+    "ask": ("cor", "find", "materials"),
+    "measure": ("fit", "compare"),
+    "engines": ("constant", "export", "table"),
+    "pages": ("explore", "report"),
+}
+_COMMANDS = [name for names in _GROUPS.values() for name in names]
+_ABOUT = re.compile(r"``contactlaw \w+``: (.*)\.")
+_DONE, _REFUSED, _MISUSED, _INTERRUPTED = 0, 1, 2, 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -73,7 +81,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """Make the parser; parsed arguments have the function of the subcommand as `run`.
 
-    With the words of a command line, other subcommands than its own have a line of help only.
+    With the words of a command line only the called subcommand has its options. Without any call
+    the help lists all subcommands in their groups.
     """
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}", help="print the version and exit")
@@ -83,15 +92,32 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         choices=("bash", "zsh", "tcsh"),
         help="print a script for the shell's completion and exit",
     )
-    commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
-    listed = _subcommands()
-    asked = next((word for word in words or () if not word.startswith("-")), None)
-    modules = {module for name, (module, _) in listed.items() if words is None or name == asked}
-    for name, (_, about) in listed.items() if not modules else ():
-        commands.add_parser(name, help=about)
-    for module in sorted(modules):
-        importlib.import_module(f"{__name__}.{module}").add(commands)
+    commands = made.add_subparsers(required=True, metavar="COMMAND", help="one of those below")
+    called = next((word for word in words or () if not word.startswith("-")), None)
+    if words and (answer := old_names.answer([*words])):
+        made.exit(_MISUSED, f"contactlaw: {answer}\n")
+    if words is None or called in _COMMANDS:
+        for name in _COMMANDS if words is None else [called]:
+            importlib.import_module(f"{__name__}.{name}").add(commands)
+        return made
+    for name in _COMMANDS:
+        commands.add_parser(name)
+    made.formatter_class = argparse.RawDescriptionHelpFormatter
+    made.epilog = "\n".join(_grouped())
     return made
+
+
+def _grouped() -> Iterator[str]:
+    """Lines of the help with all subcommands, each with the sentence of its file's docstring."""
+    for title, names in _GROUPS.items():
+        yield f"{title}:"
+        for name in names:
+            path = Path(__file__).parent / name
+            file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+            about = _ABOUT.search(file.read_text(encoding="utf-8"))
+            yield from textwrap.wrap(f"  {name:12}{about[1] if about else ''}", 80, subsequent_indent=" " * 14)
+        yield ""
+    yield "`contactlaw COMMAND --help` lists the options of a command."
 
 
 class _Completion(argparse.Action):
@@ -108,27 +134,16 @@ class _Completion(argparse.Action):
         names = {"sphere": materials(), "plate": materials(), "law": laws.names()}
         files = {"FILE": shtab.FILE, "FOLDER": shtab.DIR, "DIR": shtab.DIR}
         made = parser()
-        found = list(made._actions)  # those of subcommands are put behind, and follow
-        for action in found:
+        actions = list(made._actions)  # those of subcommands are put behind, and follow
+        for action in actions:
             if isinstance(action.choices, dict):
-                found += [one for each in action.choices.values() for one in each._actions]
+                actions += [inner for command in action.choices.values() for inner in command._actions]
             elif action.dest in names:
                 action.choices = names[action.dest]
             elif action.metavar in files:
                 action.complete = files[action.metavar]  # type: ignore[attr-defined]
         print(shtab.complete(made, shell))
         caller.exit()
-
-
-def _subcommands() -> dict[str, tuple[str, str]]:
-    """Find module and purpose of each subcommand, from the docstring of its file."""
-    found = dict[str, tuple[str, str]]()
-    for path in sorted(Path(__file__).parent.glob("*")):
-        file = path / "__init__.py" if path.is_dir() else path
-        if file.suffix == ".py" and path.stem not in ("__init__", "parts") and file.exists():
-            said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-            found |= {name: (path.stem, about) for name, about in _ABOUT.findall(said)}
-    return found
 
 
 def _drop_output() -> None:

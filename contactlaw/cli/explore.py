@@ -9,12 +9,12 @@ from contactlaw.cli.parts import chosen, options, wording
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "a page for a browser: sliders, curves, energy, one hit in slow motion"
+    about = "a page for a browser: sliders, curves of the COR, energies, the force over time"
     command = options.command(commands, "explore", about, _run)
     options.add_pair(command, action="append")
     options.add_name_of_law(command)
     command.add_argument("--out", default="page.html", metavar="FILE", help="file to write (default: %(default)s)")
-    command.epilog = "Give --sphere or --plate again for a page with a menu of pairs."
+    command.epilog = "If you give --sphere or --plate several times, the page has a menu of all pairs."
 
 
 def _run(arguments: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""``contactlaw export``: source files for codes that do not run Python: header, lammps, liggghts."""
+"""``contactlaw export``: source files for codes without Python: C header, LAMMPS, LIGGGHTS."""
 
 import argparse
 from typing import Any
@@ -10,34 +10,26 @@ from contactlaw.model import ImpactModel
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "source files for codes that do not run Python: header, lammps, liggghts"
+    about = "source files for codes without Python: C header, LAMMPS, LIGGGHTS"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
-    header = options.command(kinds, "header", "the law and a table of COR as one file for C, C++ and GPUs", _header)
-    options.add_pair(header)
-    options.add_name_of_law(header)
+    header = options.command(kinds, "header", "write a C header for C, C++ and GPUs", _header)
+    lammps = options.command(
+        kinds, "lammps", "write a fix for LAMMPS's input scripts, and a script that builds it", _lammps
+    )
+    liggghts = options.command(
+        kinds, "liggghts", "write contact models for LIGGGHTS, and a script that builds them", _liggghts
+    )
+    for command in (header, lammps, liggghts):
+        options.add_pair(command, action="append" if command is lammps else "store")
+        options.add_name_of_law(command)
+    for command in (lammps, liggghts):
+        command.add_argument("--out", required=True, metavar="DIR", help="folder to write into; it is made if missing")
     header.add_argument("--out", default="contactlaw.h", metavar="FILE", help="file to write (default: %(default)s)")
-    header.add_argument(
-        "--table",
-        default="cor",
-        choices=["cor", "none"],
-        help="with a table of COR, or without: law and integration alone (default: %(default)s)",
-    )
-    header.add_argument(
-        "--prefix",
-        default="contactlaw",
-        metavar="NAME",
-        help="what its names begin with, as in steel_on_glass: several pairs in "
-        "one source file need one each (default: %(default)s)",
-    )
-    lammps = options.command(kinds, "lammps", "a fix for LAMMPS's input scripts, with a build script", _lammps)
-    options.add_pair(lammps, action="append")
-    options.add_name_of_law(lammps)
-    lammps.add_argument("--out", required=True, metavar="DIR", help="folder to write into, made if need be")
-    lammps.epilog = "Give --sphere or --plate again for beads or walls of several materials."
-    liggghts = options.command(kinds, "liggghts", "contact models for LIGGGHTS, with a build script", _liggghts)
-    options.add_pair(liggghts)
-    options.add_name_of_law(liggghts)
-    liggghts.add_argument("--out", required=True, metavar="DIR", help="folder to write into, made if need be")
+    what = "include a table of the COR, or leave it out, which keeps the law and its integration (default: %(default)s)"
+    header.add_argument("--table", default="cor", choices=["cor", "none"], help=what)
+    what = "begin all names with this; headers of several pairs in one program need one each (default: %(default)s)"
+    header.add_argument("--prefix", default="contactlaw", metavar="NAME", help=what)
+    lammps.epilog = "Repeat --sphere or --plate for beads or walls of several materials."
 
 
 def _header(arguments: argparse.Namespace) -> None:

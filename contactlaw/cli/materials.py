@@ -1,69 +1,64 @@
-"""``contactlaw materials``: the catalogue, with the source of each number."""
+"""``contactlaw materials``: the catalogue of materials, with the source of each number."""
 
 import argparse
 import json
+import math
+import sys
 from dataclasses import asdict
 from typing import Any
 
 from contactlaw.cli.parts import options
+from contactlaw.cli.parts.table import Column, Table, wrapped
 from contactlaw.physical.materials import Material, find, materials
 
-# Heading, width and places of each column, and what one of its unit is in SI units.
-_COLUMNS = {
-    "E [GPa]": (9, 3, 1e9),
-    "nu [-]": (7, 3, 1.0),
-    "rho [kg/m3]": (12, 0, 1.0),
-    "sigma_Y [MPa]": (14, 1, 1e6),
-    "H [GPa]": (8, 3, 1e9),
-    "B [MPa]": (8, 0, 1e6),
-    "n [-]": (6, 2, 1.0),
-    "C [-]": (6, 3, 1.0),
-    "tan delta [-]": (13, 3, 1.0),
-}
+# Title and unit of each column, and the number of these units in one SI unit.
+_TITLES: tuple[tuple[str, str, float], ...] = (
+    ("name", "", 1.0),
+    ("E", "GPa", 1e-9),
+    ("nu", "-", 1.0),
+    ("rho", "g/cm3", 1e-3),
+    ("yield", "MPa", 1e-6),
+    ("H", "GPa", 1e-9),
+    ("B", "MPa", 1e-6),
+    ("n", "-", 1.0),
+    ("C", "-", 1.0),
+    ("tan delta", "-", 1.0),
+)
+_COLUMNS = [Column(title, title=title, shown=unit, scale=scale) for title, unit, scale in _TITLES]
+_LISTED = 8  # columns of the catalogue; one material has all others
+_MEANING = (
+    "E Young's modulus, nu Poisson's ratio, rho density, yield: yield strength, H hardness; hardening: flow stress "
+    "= yield + B strain^n"
+)
+_OF_ONE = "; C growth of the flow stress per e-fold of the strain rate; tan delta loss factor"
 
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "the catalogue, with the source of each number"
-    command = options.command(commands, "materials", about, _run)
+    command = options.command(commands, "materials", "the catalogue of materials, with the source of each number", _run)
     options.add_materials(command)
-    command.add_argument("name", nargs="?", metavar="NAME", help="one material, and its sources")
-    command.add_argument("--json", action="store_true", help="print all fields, in SI units")
+    command.add_argument("name", nargs="?", metavar="NAME", help="print this material alone, with its sources")
+    command.add_argument("--json", action="store_true", help="print all properties as JSON, in SI units")
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    own = arguments.materials
+    own, name = arguments.materials, arguments.name
     listed = sorted({body.name for body in own.values()}) or materials()
-    names = [arguments.name] if arguments.name else listed
-    entries = [find(name, own) for name in names]
+    bodies = [find(one, own) for one in ([name] if name else listed)]
     if arguments.json:
-        rows = [asdict(entry) for entry in entries]
-        for errors in (row["uncertainty"] for row in rows):  # JSON has no inf; others are up to 1
-            errors |= {name: None for name, error in errors.items() if error > 1.0}
-        print(json.dumps(rows, indent=2))
+        print(json.dumps([asdict(body) for body in bodies], indent=2))
         return
-    headings = (f"{heading:>{width}s}" for heading, (width, *_) in _COLUMNS.items())
-    print(f"{'name':25s}", *headings)
-    for entry in entries:
-        print(f"{entry.name:25s}", *_cells(entry))
-    if arguments.name:
-        print(entries[0].source)
+    values = dict(zip((title for title, *_ in _TITLES), zip(*map(_numbers, bodies), strict=True), strict=True))
+    Table(_COLUMNS[1:] if name else _COLUMNS[:_LISTED], values).write(sys.stdout)
+    print("", *wrapped(f"{_MEANING}{_OF_ONE * bool(name)}."), sep="\n")
+    if name:
+        print("", *wrapped(f"{bodies[0].name}: {bodies[0].source}"), sep="\n")
 
 
-def _cells(entry: Material) -> list[str]:
-    """Numbers of a material, each as wide as its column; a dash for those that it lacks."""
-    hardening = entry.hardening if isinstance(entry.hardening, tuple) else (None, entry.hardening)
-    numbers = (
-        entry.youngs_modulus,
-        entry.poissons_ratio,
-        entry.density,
-        entry.yield_strength,
-        entry.hardness,
-        *hardening,
-        entry.rate and entry.rate[0],
-        entry.loss_factor and entry.loss_factor[0],
-    )
-    return [
-        f"{'-':>{width}s}" if number is None else f"{number / unit:{width}.{places}f}"
-        for number, (width, places, unit) in zip(numbers, _COLUMNS.values(), strict=True)
-    ]
+def _numbers(body: Material) -> list[Any]:
+    """Values of the columns; NaN for those that a material lacks."""
+    hardening = body.hardening if isinstance(body.hardening, tuple) else (None, body.hardening)
+    of_time = (pair and pair[0] for pair in (body.rate, body.loss_factor))
+    strengths = body.yield_strength, body.hardness, *hardening, *of_time
+    elastic = body.name, body.youngs_modulus, body.poissons_ratio, body.density
+    return [*elastic, *(math.nan if number is None else number for number in strengths)]

@@ -20,18 +20,19 @@ def add(commands: Any) -> None:
     add(
         "record",
         nargs="+",
-        help="record of a run: saved by an engine's `save` (.h5), or its rows by np.save (.npy); "
-        "several files of one run are put together",
+        metavar="FILE",
+        help="record of a run, or several files of one run: written by an engine's `save` (.h5), or rows of impacts "
+        "written by np.save (.npy)",
     )
     add(
         "--mesh",
         action="append",
         default=[],
         metavar="FILE",
-        help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; once for each wall, in "
-        "the order of their numbers (default: the walls that the record has)",
+        help="mesh of a wall (STL, PLY, OBJ), for a map of the energy if the record has no walls, as .npy files. If "
+        "several walls are meshes, give the option once for each: first the mesh of the wall with the lowest number",
     )
-    what = "length of the mesh's unit, 1mm for a drawing in millimetres (default: 1 m)"
+    what = "length of one unit of the mesh: 1mm for a drawing in millimetres (default: 1 m)"
     options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH")
     add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
@@ -46,7 +47,7 @@ def _run(arguments: argparse.Namespace) -> None:
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")
     if record.surface is None and (record.rows["triangle"] >= 0).any():
-        wording.print_message("without --mesh there is no map of the energy on the walls")
+        wording.print_message("the page has no map of the energy on the walls; for a map, add --mesh")
 
 
 def _mesh(path: str, scale: float | None) -> Mesh:

@@ -1,4 +1,4 @@
-"""``contactlaw table``: lookup tables, to build, describe and check."""
+"""``contactlaw table``: describe, check or build a lookup table."""
 
 import argparse
 import math
@@ -11,6 +11,7 @@ from contactlaw import laws, table
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
+from contactlaw.cli.parts.table import Column, Table, wrapped
 from contactlaw.physical.law import law_of
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.table import cache, file
@@ -18,34 +19,37 @@ from contactlaw.table import cache, file
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    actions = options.group(commands, "table", "lookup tables: build, info, check", "ACTION", "what to do")
-    info = options.command(actions, "info", "extent, settings and certified errors of a table", _info)
+    actions = options.group(commands, "table", "describe, check or build a lookup table", "ACTION", "what to do")
+    info = options.command(actions, "info", "print the range of a table, its settings and its certified errors", _info)
     about = "measure the errors of a table at random points, and fail if one exceeds its bound"
     check = options.command(actions, "check", about, _check)
-    build = options.command(actions, "build", "solve the equation at every node of a table", _build)
+    build = options.command(
+        actions, "build", "solve the equation at every node of a table, and write the table", _build
+    )
     for action in (info, check):
-        action.add_argument("file", nargs="?", metavar="FILE", help="a table (default: the one in use for LAW)")
+        action.add_argument("file", nargs="?", metavar="FILE", help="table to read (default: the one in use for LAW)")
     for action in (info, check, build):
         # not laws.DEFAULT, whose table may depend on the pair; this table comes with the package
         action.add_argument("--law", default="myc", metavar="LAW", help="force law of the table (default: %(default)s)")
-        options.add_pair(action, "; for laws with a table per pair")
-    check.add_argument(
-        "--points", type=int, default=10_000, metavar="N", help="number of points, at least 100 (default: %(default)s)"
-    )
-    check.add_argument("--seed", type=int, metavar="S", help="seed of the points (default: a fresh one)")
+        options.add_pair(action, "; only for laws with a table for each pair")
+    what = "number of random points, at least 100 (default: %(default)s)"
+    check.add_argument("--points", type=int, default=10_000, metavar="N", help=what)
+    check.add_argument("--seed", type=int, metavar="S", help="seed of the random points (default: a new one)")
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
 
 
 def _info(arguments: argparse.Namespace) -> None:
-    found = _stored(arguments)
-    print(f"law {found.law.family}: {found.law.source}")
-    lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
-    strengths = found.law.strengths
-    more = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
-    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {more}{found.grid.shape}")
-    for name, value in asdict(found.settings).items():
-        print(f"  {name:22s} {value:g}")
-    _print_certificate(found.certificate, table.bounds(found.law))
+    stored = _stored(arguments)
+    lam, chi = stored.settings.largest_inelasticity, stored.settings.largest_overload
+    strengths = stored.law.strengths
+    strength = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
+    extent = f"inelasticity 0 to {lam:g}, overload to {chi:g}, {strength}{stored.grid.shape}"
+    print(*wrapped(f"law {stored.law.family}: {stored.law.source}"), *wrapped(extent), sep="\n")
+    print(
+        *wrapped(f"settings: {', '.join(f'{name} {value:g}' for name, value in asdict(stored.settings).items())}"),
+        sep="\n",
+    )
+    _print_certificate(stored.certificate, table.bounds(stored.law))
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -94,10 +98,10 @@ def _print_certificate(certificate: table.Certificate | None, limits: dict[str, 
     if certificate is None:
         print("no certificate")
         return
-    print(f"errors at {certificate.points} random points, seed {certificate.seed}:")
-    print(f"  {'field':22s} {'median':>9s} {'99 %':>9s} {'largest':>9s} {'bound':>9s}")
-    for name in certificate.largest:
-        bound = limits[name]
-        values = (certificate.median, certificate.percentile_99, certificate.largest)
-        figures = " ".join(f"{value[name]:9.1e}" for value in values)
-        print(f"  {name:22s} {figures} {bound:9.0e}")
+    errors = {"median": certificate.median, "99 %": certificate.percentile_99, "largest": certificate.largest}
+    errors["bound"] = limits
+    fields = [*certificate.largest]
+    columns = [Column("field", title="field", shown=""), *(Column(name, title=name, digits=".1e") for name in errors)]
+    values = {"field": fields} | {name: [sizes[field] for field in fields] for name, sizes in errors.items()}
+    print("", f"errors at {certificate.points} random points, seed {certificate.seed}", sep="\n")
+    print(*Table(columns, values).text(), sep="\n")

@@ -3,10 +3,7 @@ const SLIDERS = { // unit and its size; ends: from 0 on evenly, others by equal 
   speed: ["m/s", 1, 0.05, 50], radius: ["mm", 1e-3, 5e-5, 0.01], thickness: ["mm", 1e-3, 5e-5, 0.1],
   mass: ["×", 1, 0.65, 5], angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
 const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, mass: 1, angle: 0, friction: 0.2 };
-const COLOURS = { rebound: BLUE, wave: "#56b4e9", plastic: "#e69f00", other: "#cc79a7",
-  friction: "#009e73" };
-const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after touch; seconds
-let pair = pairs[0], hit, curves, phase = still ? 0.5 : -BEFORE, playing = !still, larger = 1, last = null;
+let pair = pairs[0], hit, curves;
 const round = (x, digits = 3) => Number(x.toPrecision(digits));
 const place = ([low, high], x) => (low > 0 ? Math.log(x / low) / Math.log(high / low) : x / high);
 const $min = (one, other) => other < one ? other : one; // what the kernels call beside Math
@@ -65,23 +62,22 @@ function show() {
   byId("cor").textContent = hit ? hit.restitution.toFixed(4) : "–";
   const facts = {}, shares = {};
   if (hit) {
-    sample(hit);
-    Object.assign(facts, { "rebound": `${round(hit.restitution * hit.speed)} m/s`,
-      "contact": `${round(hit.contact_time * 1e6)} µs`, "peak force": `${round(hit.peak_force)} N`,
+    Object.assign(facts, { "rebound speed": `${round(hit.restitution * hit.speed)} m/s`,
+      "contact time": `${round(hit.contact_time * 1e6)} µs`, "peak force": `${round(hit.peak_force)} N`,
       "dent": `${round(hit.residual_compression * 1e6)} µm` });
     if (angle > 0) Object.assign(facts, { "along plate": `${round(hit.along)} m/s`,
       "spin": `${round(hit.spin)} rad/s` });
     const lost = { friction: hit.friction_share };
     for (const name of ["other", "plastic", "wave"])
       lost[name] = hit.normal_share * hit[`${name}_fraction`];
-    shares.rebound = Object.values(lost).reduce((left, share) => left - share, 1);
+    shares.kept = Object.values(lost).reduce((left, share) => left - share, 1);
     for (const [name, share] of Object.entries(lost).reverse()) if (share > 0) shares[name] = share;
   }
   fill("facts", Object.entries(facts).flatMap(([name, value]) => [["dt", name], ["dd", value]]));
   fill("bar", Object.entries(shares).map(([name, share]) =>
-    ["i", "", { style: `flex:${share};background:${COLOURS[name]}` }]));
+    ["i", "", { style: `flex:${share};background:${ENERGIES[name][1]}` }]));
   fill("shares", Object.entries(shares).map(([name, share]) =>
-    ["li", `${name} ${(100 * share).toFixed(1)} %`, { style: `border-color:${COLOURS[name]}` }]));
+    ["li", `${ENERGIES[name][0]} ${(100 * share).toFixed(1)} %`, { style: `border-color:${ENERGIES[name][1]}` }]));
   const [python, shell] = thickness < Infinity ? [thickness, thickness] : ["math.inf", "inf"];
   const kilograms = round(mass * pair.solid * radius ** 3, 9);
   const [heavy, option] = mass === 1 ? ["", ""] : [`, mass=${kilograms}`, `--mass ${kilograms} `];
@@ -91,24 +87,14 @@ function show() {
       + `friction=${friction}, method="solve"${heavy},\n)`
     : `hit = model.solve(speed=${speed}, radius=${radius}, thickness=${python}${heavy})`)
     + "\nprint(hit.restitution, hit.flags)";
-  byId("command").textContent = `contactlaw ${angle > 0 ? "oblique" : "cor"} ${pair.options} `
-    + `--radius ${radius} --thickness ${shell} ${option}--speed ${speed} `
-    + (angle > 0 ? `--angle ${angle} --friction ${friction}` : "--solve");
+  byId("command").textContent = `contactlaw cor ${pair.options} --radius ${radius} `
+    + `--thickness ${shell} ${option}--speed ${speed} --solve`
+    + (angle > 0 ? ` --angle ${angle} --friction ${friction}` : "");
   redraws.forEach((redraw) => redraw());
 }
 function collide(given) { // null for what is refused
   const { impact, ...oblique } = pair.collide(given, given.angle, given.friction);
   return impact.restitution >= 0 ? { ...given, ...impact, ...oblique } : null;
-}
-function sample(one) { // the contact at even times, as drawHit takes it; the tail of a long one is cut
-  const path = pair.shown(one, one);
-  Object.assign(one, { duration: path.time.at(-1), model: one.restitution, force: path.force,
-    compression: path.compression, displacement: path.impulse,
-    spread: pair.wave_path * Math.min(one.thickness, 4 * one.radius) });
-  const most = Math.max(...one.compression.map((d, n) => d + one.displacement[n])) / one.radius;
-  larger = Math.max(1, Math.min(0.35 / most, 3 * one.radius / (one.size * one.duration)));
-  byId("larger").textContent = round(larger, 2);
-  byId("slower").textContent = round(LOOP / (BEFORE + AFTER) / one.duration, 2).toLocaleString("en");
 }
 
 // Axes of a chart, in the units of their labels.
@@ -157,19 +143,18 @@ const drawCurve = (id, title) => (pen, width, tall) => {
 };
 function drawForce(pen, width, tall) {
   if (!hit) return;
-  const end = hit.duration * 1e6, up = [0, Math.max(...hit.force) * 1.08], now = bounded(phase, 0, 1);
-  const [X, Y] = axes(pen, width, tall, [0, end], up, ["time since touch [µs]", "contact force [N]"]);
+  const path = pair.shown(hit, hit), end = path.time.at(-1) * 1e6;
+  const [X, Y] = axes(pen, width, tall, [0, end], [0, Math.max(...path.force) * 1.08],
+    ["time since touch [µs]", "contact force [N]"]);
   pen.beginPath();
-  hit.force.forEach((f, n) => pen.lineTo(X(n / (hit.force.length - 1) * end), Y(f)));
+  path.force.forEach((f, n) => pen.lineTo(X(path.time[n] * 1e6), Y(f)));
   pen.stroke();
-  dot(pen, X(now * end), Y(sampled(hit.force, now)));
 }
 const redraws = [];
 show();
 redraws.push(surface("over-speed", 0.56, drawCurve("speed", "speed of the bead [m/s]")),
   surface("over-thickness", 0.56, drawCurve("thickness", "thickness of the plate [mm]")),
-  surface("force", 0.56, drawForce), surface("contact", 0.56, (pen, width, tall) =>
-    hit && drawHit(pen, width, tall, hit, phase, larger, BLUE)));
+  surface("force", 0.56, drawForce));
 
 byId("pair").onchange = () => {
   pair = pairs[byId("pair").selectedIndex];
@@ -178,24 +163,3 @@ byId("pair").onchange = () => {
   byId("shell").hidden = !pair.options;
   show();
 };
-byId("play").onclick = () => {
-  playing = !playing;
-  byId("play").textContent = playing ? "Pause" : "Play";
-};
-byId("play").textContent = playing ? "Pause" : "Play";
-for (const button of document.querySelectorAll("[data-copy]"))
-  button.onclick = () => {
-    getSelection().selectAllChildren(byId(button.dataset.copy));
-    document.execCommand("copy");
-  };
-function step(time) {
-  const passed = last === null ? 0 : Math.min(0.1, (time - last) / 1e3);
-  last = time;
-  if (playing) {
-    phase += passed * (BEFORE + AFTER) / LOOP;
-    if (phase > AFTER) phase = -BEFORE;
-    redraws.slice(2).forEach((redraw) => redraw());
-  }
-  requestAnimationFrame(step);
-}
-requestAnimationFrame(step);

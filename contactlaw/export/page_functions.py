@@ -1,4 +1,4 @@
-"""What the page of a pair computes beside `contactlaw.export.functions`, as kernels; see there."""
+"""Kernels of the page with sliders, beside those of `contactlaw.export.functions`."""
 
 import math
 from typing import NamedTuple
@@ -23,7 +23,7 @@ LONGEST = 12.0  # Hertz's times, after which the tail of a long contact is not d
 
 
 class Page(NamedTuple):
-    """What a pair of materials fixes beside `Bodies`."""
+    """Numbers of a pair of materials that `Bodies` does not have."""
 
     modulus: float  # E* [Pa]
     strength: float  # of the weaker body [Pa]
@@ -36,7 +36,6 @@ class Hit(NamedTuple):
     impact: Answer
     flags: int
     speed: float  # normal to the plate before [m/s]
-    size: float  # along it before [m/s]
     sliding_speed: float  # of the contact point afterwards [m/s]
     along: float  # of the centre along the plate afterwards [m/s]
     spin: float  # afterwards [rad/s]
@@ -44,14 +43,14 @@ class Hit(NamedTuple):
     friction_share: float  # of it that friction takes
 
 
-REFUSED = Hit(NOTHING, -1, *[math.nan] * 7)
+REFUSED = Hit(NOTHING, -1, *[math.nan] * 6)
 
 
 @kernel
 def for_curve(pair: Bodies, impact: Impact) -> Answer:
-    """One impact for a point of a curve: its COR is within 3e-4.
+    """Solve the impact of a point of a curve; its COR is within 3e-4.
 
-    One that leaves hardly any speed is not followed to its end.
+    An impact that leaves hardly any speed is followed only to its largest compression.
     """
     if not is_valid(impact):
         return NOTHING
@@ -62,7 +61,7 @@ def for_curve(pair: Bodies, impact: Impact) -> Answer:
 
 @kernel
 def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
-    """Contact of an impact over time; for the impulse it has the displacement of the plate [m]."""
+    """Force [N] of an impact over time [s]; the other columns have no units."""
     at, time, velocity = np.empty((1, SHOWN)), np.empty((1, SHOWN)), np.empty((1, SHOWN))
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
     units = numbers_of(pair, impact)
@@ -72,16 +71,14 @@ def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
     for n in range(SHOWN):
         path.time[n] *= units.time
         path.force[n] *= units.force
-        path.compression[n] *= units.compression
-        path.impulse[n] *= units.inelasticity * units.compression
     return path
 
 
 @kernel
 def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: float) -> Hit:
-    """Impact of a bead without spin, at an angle [deg] to the normal of the plate.
+    """Solve the impact of a bead without spin, at an angle [deg] to the normal of the plate.
 
-    The speed that is given is the bead's.
+    The speed is that of the bead along its path.
     """
     tilt = angle * math.pi / 180.0
     speed, size = given.speed * math.cos(tilt), given.speed * math.sin(tilt)
@@ -97,7 +94,6 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
         hit,
         found,
         speed,
-        size,
         after,
         size - change / POINT,
         (1.0 - 1.0 / POINT) * change / impact.radius,

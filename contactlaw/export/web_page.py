@@ -1,7 +1,8 @@
-"""One page of pairs of materials for a browser, with sliders; it integrates the law itself.
+"""A page with sliders for a browser; it answers for some pairs of materials.
 
-It computes by the package's own kernels, written in JavaScript (`contactlaw.emit`). ``drawing.js``
-has what the pages of the demo draw with, too, and ``explore.js`` the page of ``explore.html``.
+The page computes by the package's own kernels, which `contactlaw.emit` writes in JavaScript.
+``explore.html`` and ``explore.js`` are the page. The page of the demo's rain draws with the
+functions of ``drawing.js``, too.
 """
 
 import dataclasses
@@ -12,7 +13,7 @@ import shlex
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from contactlaw import _atomic, laws
+from contactlaw import _atomic, laws, style
 from contactlaw._template import template
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
@@ -23,14 +24,14 @@ from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.scaling import constants_of, wave_path
+from contactlaw.physical.scaling import constants_of
 from contactlaw.physical.validity import Validity, explain
 
 _CONSTANT = re.compile(r"^const (\$\w+) = (.*?);$\n*", re.MULTILINE | re.DOTALL)
 
 
 class _Kernels(NamedTuple):
-    """Kernels in JavaScript for any pair whose constants have these names."""
+    """Kernels in JavaScript, and the names of the constants of a pair that they read."""
 
     names: tuple[str, ...]
     functions: str
@@ -39,21 +40,22 @@ class _Kernels(NamedTuple):
 def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel]) -> None:
     """Write a page for a browser that answers for pairs of materials, without a network.
 
-    It has sliders for speed, radius, thickness, angle and friction, curves of the COR, where the
-    energy goes, the force over time and flags. It integrates the law.
+    It has sliders for speed, radius, thickness, mass, angle and friction. It shows curves of the
+    COR, where the energy goes, the force over time, and which limits of the model are exceeded. It
+    integrates the law.
 
     Parameters
     ----------
     path : path-like
-        File to write, 0.13 MB and 0.03 to 0.06 MB for each further pair; an existing file is
+        File to write, 0.12 MB and 0.03 to 0.06 MB for each further pair; an existing file is
         replaced.
     model : ImpactModel or sequence of ImpactModel
-        Pair and law, or several, of which a menu on the page chooses.
+        Pair and law. For several, the page has a menu to choose one.
 
     Raises
     ------
     TypeError, ValueError
-        If a model is no ImpactModel, or there is none.
+        If a model is not an ImpactModel, or if the sequence is empty.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -75,6 +77,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     kernels = list(dict.fromkeys(one for one, _ in made))  # each once, for all its pairs
     text = template("contactlaw.export", "explore.html").render(
         version=VERSION,
+        energies=style.ENERGIES,
         words={flag.value: explain(flag)[0] for flag in Validity if flag < Validity.CURVED_WALL},
         pairs=[_shown(one) for one in models],
         kernels=kernels,
@@ -84,7 +87,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
 
 
 def _shown(model: ImpactModel) -> dict[str, float | str]:
-    """Collect what the page shows of a pair beside its answers; options are empty if none do."""
+    """Collect what the page says of a pair; options are empty if the command line cannot take the pair."""
     pair, law = model.pair, model.force_law
     registered, default = law.family in laws.names(), law.family == laws.DEFAULT
     bodies = ", ".join(_python(body) for body in pair.given)
@@ -95,7 +98,6 @@ def _shown(model: ImpactModel) -> dict[str, float | str]:
     return {
         "title": f"{pair.sphere.name} on {pair.plate.name}",
         "law": f"law {law.family}: {law.source}",
-        "wave_path": wave_path(pair.plate),
         "solid": constants_of(pair, law).mass,
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options if registered and all(typed) else "",
@@ -128,7 +130,7 @@ def _in_catalogue(body: Material) -> bool:
 
 
 def _typed(body: Material) -> str:
-    """Write a material as the commands take it; "" if it has numbers that they do not take."""
+    """Write a material as the command line takes it; "" if it has numbers that no option takes."""
     if _in_catalogue(body):
         return body.name
     if body.hardening or body.rate or body.loss_factor:
@@ -145,7 +147,7 @@ def _typed(body: Material) -> str:
 
 
 def _python(body: Material) -> str:
-    """Write a material as Python has it."""
+    """Write a material as an expression in Python."""
     if _in_catalogue(body):
         return repr(body.name)
     return f"cl.{dataclasses.replace(body, source='', uncertainty={})!r}"

@@ -85,66 +85,47 @@ class ModelCovariance(NamedTuple):
         return found
 
 
-def covariances(predictor: Predictor, slopes: Array, error: Array, model: ModelCovariance | None) -> Errors:
-    """Propagate errors of the values, the priors and the model.
+class Linear(NamedTuple):
+    """The fit near its minimum, where values are linear in the logarithms of the parameters."""
 
-    Parameters
-    ----------
-    predictor : Predictor
-        Model and parameters of the fit.
-    slopes : ndarray (m, p)
-        Derivatives of the values with respect to the logarithms of the parameters.
-    error : ndarray (m,)
-        Standard errors of the values.
-    model : ModelCovariance or None
-        Covariance of the model's errors; None where they are not known.
-    """
-    scaled = slopes / error[:, None]
-    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + prior_information(predictor)))
-    gain = statistical @ (scaled / error[:, None]).T
-    from_model = np.zeros_like(statistical) if model is None else model.propagated(gain)
-    return Errors(statistical, from_model)
+    slopes: Array  # (m, p) of the values, over their standard errors
+    covariance: Array  # (p, p) of the parameters, by the errors of data and priors
 
+    @classmethod
+    def of(cls, predictor: Predictor, slopes: Array, error: Array) -> Linear:
+        """Linear fit with these slopes (m, p) and standard errors (m,) of the values."""
+        scaled = slopes / error[:, None]
+        held = np.diag([one.prior**-2.0 + _RIDGE for one in predictor.parameters])
+        return cls(scaled, np.asarray(np.linalg.inv(scaled.T @ scaled + held)))
 
-def freedoms(predictor: Predictor, slopes: Array, error: Array, found: Sequence[tuple[Mask, float]]) -> Array:
-    """Degrees of freedom of each parameter's variance, by Welch and Satterthwaite.
+    def covariances(self, error: Array, model: ModelCovariance | None) -> Errors:
+        """Propagate errors of the values, the priors and the model; None: its errors are not known."""
+        gain = self.covariance @ (self.slopes / error[:, None]).T
+        from_model = np.zeros_like(self.covariance) if model is None else model.propagated(gain)
+        return Errors(self.covariance, from_model)
 
-    Each kind of values adds a part to the variance, as uncertain as the scatter of that kind, which
-    was found from few or many values; the parts of priors and given errors are known. A thickness
-    that rests on five contact times is known no better for thirty peak forces beside them.
+    def freedoms(self, found: Sequence[tuple[Mask, float]]) -> Array:
+        """Degrees of freedom of each parameter's variance, by Welch and Satterthwaite.
 
-    Parameters
-    ----------
-    predictor, slopes, error
-        As in `covariances`.
-    found : sequence of tuple of ndarray (m,) and float
-        Values whose errors were found together, and from how many degrees of freedom.
-    """
-    scaled = slopes / error[:, None]
-    statistical = np.linalg.inv(scaled.T @ scaled + prior_information(predictor))
-    parts = (statistical @ scaled.T) ** 2
-    doubt = np.zeros(len(statistical))
-    for these, freedom in found:
-        doubt += parts[:, these].sum(axis=1) ** 2 / freedom
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.diag(statistical) ** 2 / doubt)
+        Each kind of values adds a part to the variance, as uncertain as the scatter of that kind,
+        which was found from few or many values; the parts of priors and given errors are known. A
+        thickness that rests on five contact times is known no better for thirty peak forces beside
+        them. `found` has masks (m,) of values whose errors were found together, and from how many
+        degrees of freedom.
+        """
+        parts = (self.covariance @ self.slopes.T) ** 2
+        doubt = np.zeros(len(self.covariance))
+        for these, freedom in found:
+            doubt += parts[:, these].sum(axis=1) ** 2 / freedom
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.diag(self.covariance) ** 2 / doubt)
 
+    def leverages(self) -> Array:
+        """Leverage of each value: how many parameters it determines.
 
-def leverages(predictor: Predictor, slopes: Array, error: Array) -> Array:
-    """Leverage of each value: how many parameters it determines.
-
-    The sum over all values is one for each free parameter, and a share of one for each prior.
-    """
-    scaled = slopes / error[:, None]
-    solved = np.linalg.solve(scaled.T @ scaled + prior_information(predictor), scaled.T)
-    return np.asarray(np.einsum("ij,ji->i", scaled, solved))
-
-
-def prior_information(predictor: Predictor) -> Array:
-    """Fisher information of the priors."""
-    priors = [one.prior for one in predictor.parameters]
-    held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])
-    return np.asarray(held + _RIDGE * np.eye(len(priors)))
+        The sum over all values is one for each free parameter, and a share of one for each prior.
+        """
+        return np.asarray(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
 
 
 def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> ModelCovariance | None:
@@ -185,17 +166,17 @@ def _cells(kind: Places, *places: Array) -> tuple[Places, Array]:
         width *= 2.0
 
 
-def student(freedom: float) -> float:
-    """Factor that widens an error which was itself estimated from few data.
+def student(freedom: Array) -> Array:
+    """Factors that widen errors which were themselves estimated from few data.
 
     With it 68.3 % of the true values lie within the error, as with a known standard error.
 
     Examples
     --------
-    >>> round(student(2.0), 2), round(student(1e9), 2)
-    (1.32, 1.0)
+    >>> student(np.array([2.0, 1e9])).round(2)
+    array([1.32, 1.  ])
     """
     from scipy.special import stdtrit
 
     within = 0.5 * (1.0 + math.erf(1.0 / math.sqrt(2.0)))
-    return float(stdtrit(freedom, within))
+    return np.asarray(stdtrit(freedom, within))

@@ -19,7 +19,6 @@ from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
@@ -129,16 +128,13 @@ class Fit:
         if not kinds:
             reason = "has to be given, since only oblique kinds were measured"
             raise ArgumentError("sliding_speed", None, reason)
-        *flat, _ = broadcast(**inputs)
-        data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
+        data = Measurements(**inputs, **dict.fromkeys(kinds, 0.5))
         varied = [replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)]
-        along = Predictor(self.pair, state.predictor.law, data, varied, Values.of(data))
+        along = Predictor(self.pair, state.predictor.law, data, varied)
         here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
-        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
-        parts = np.split(spread, len(kinds))
-        in_order = [name for name in KINDS if name in kinds]
-        return along.flagged(state.at), dict(zip(in_order, parts, strict=True))
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance, slopes))
+        return along.flagged(state.at), {name: spread[rows] for name, rows in along.values.by_kind().items()}
 
 
 def fit(
@@ -205,11 +201,11 @@ def fit(
     enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    unknown = (unknown,) if isinstance(unknown, str) else tuple(unknown)
-    data = Measurements.of(data, {*unknown} - {*(priors or {})}, pair.sphere.density)
+    unknown, priors = (unknown,) if isinstance(unknown, str) else tuple(unknown), priors or {}
+    data = Measurements.of(data, {*unknown} - {*priors}, pair.sphere.density)
     given, pair = pair, with_loss_factors(pair, data, unknown)
-    varied = parameters(pair, data, unknown, priors or {}, given)
-    predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
+    varied = parameters(pair, data, unknown, priors, given)
+    predictor = Predictor(pair, _law(pair, law, varied), data, varied)
     descent = search.Descent(predictor, to_the_lowest=True)
     ended = _least_squares(predictor, descent)
     try:
@@ -239,7 +235,7 @@ class _LeastSquares(NamedTuple):
 def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquares:
     """Find the minimum of each basin, and estimate the errors that the data lack."""
     values = predictor.values
-    free = sum(one.prior is None for one in predictor.parameters)
+    free = sum(one.is_free for one in predictor.parameters)
     if values.value.size < free:
         many = f"{values.value.size} measured values cannot determine {free} unknowns"
         remedy = "leave one out, give priors, or measure more"
@@ -268,29 +264,26 @@ def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, erro
     off = values.value / fitted - 1.0
     left = np.ones_like(off)
     for _ in range(_SETTLED):
-        left = 1.0 - errors.leverages(predictor, slopes, error)
+        left = 1.0 - errors.Linear.of(predictor, slopes, error).leverages()
         error = error.copy()
-        for part, pool in _pools(values):
-            square = float(np.sum(off[pool] ** 2)) / max(float(left[pool].sum()), _LEAST_FREEDOM)
-            error[part] = max(math.sqrt(square), _LEAST) * fitted[part]
+        for part, pool, freedom in _pools(values, left):
+            error[part] = max(math.sqrt(float(np.sum(off[pool] ** 2)) / freedom), _LEAST) * fitted[part]
     return error, float(left.sum())
 
 
-def _pools(values: Values) -> Iterator[tuple[Mask, Mask]]:
-    """Values that share one unknown error, and the values from whose scatter it is found.
+def _pools(values: Values, left: Array) -> Iterator[tuple[Mask, Mask, float]]:
+    """Values that share one unknown error, those from whose scatter it is found, and the freedom of these.
 
-    Both are the values of one kind. Kinds with few values take the scatter of all kinds.
+    Both are the values of one kind. Kinds with few values take the scatter of all kinds. Of each
+    value `left` is what the parameters leave of its degree of freedom.
     """
     unknown = np.isnan(values.error)
-    kinds = [(values.kind == kind) & unknown for kind in np.unique(values.kind[unknown])]
-    few = np.zeros_like(unknown)
-    for of_kind in kinds:
-        if np.count_nonzero(of_kind) >= _POOLED:
-            yield of_kind, of_kind
-        else:
-            few |= of_kind
-    if few.any():
-        yield few, unknown
+    counts = np.bincount(values.kind[unknown], minlength=len(KINDS))
+    group = np.where(counts[values.kind] < _POOLED, -1, values.kind)
+    for n in np.unique(group[unknown]):
+        part = unknown & (group == n)
+        pool = unknown if n < 0 else part
+        yield part, pool, max(float(left[pool].sum()), _LEAST_FREEDOM)
 
 
 class _State(NamedTuple):
@@ -298,7 +291,7 @@ class _State(NamedTuple):
 
     predictor: Predictor
     at: Array
-    covariance: errors.Errors  # of the logarithms of all parameters
+    covariance: Array  # of the logarithms of all parameters
 
 
 def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares) -> Fit:
@@ -309,7 +302,8 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     hit = predictor.flagged(at)
     model = errors.model_covariance(predictor, at, hit)
     slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
-    found = errors.covariances(predictor, slopes, error, model)
+    linear = errors.Linear.of(predictor, slopes, error)
+    found = linear.covariances(error, model)
     unknowns = slice(len(names))  # the unknowns come first
     model_error = None if model is None else np.abs(model.size)
     # with as many values as unknowns there is no scatter: only the model's errors are known
@@ -317,21 +311,17 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     _check_strengths(predictor, at, fitted, doubt, model_error)
     widths = np.zeros(at.size)
     if freedom > 0.0:
-        left = 1.0 - errors.leverages(predictor, slopes, error)
-        pools = [(part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)]
-        each = errors.freedoms(predictor, slopes, error, pools)
-        widths = np.array([errors.student(one) for one in each.tolist()])
+        pools = [(part, freed) for part, _, freed in _pools(values, 1.0 - linear.leverages())]
+        widths = errors.student(linear.freedoms(pools))
     found = found.widened(widths)
-    total = found.total[unknowns, unknowns]
-    identify.check(names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns])
     used = found.statistical if freedom > 0.0 else found.total
+    identify.check(names, at[unknowns], used[unknowns, unknowns])
     found = found.widened(_nonlinearity_factors(predictor, at, fitted, used, doubt))
-    total = found.total[unknowns, unknowns]
-    spread = np.sqrt(np.diag(total))
-    others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
+    spread = np.sqrt(np.diag(found.total))
+    others = _alternatives(predictor, ended, spread, model)
     off = values.value / fitted - 1.0
     relative = None if model_error is None else model_error / fitted
-    kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
+    kinds = values.by_kind()
     bodies = predictor.setting(at)
 
     def named(sizes: Array) -> dict[str, float]:
@@ -340,17 +330,17 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     return Fit(
         unknown=names,
         values=named(at),
-        errors=named(at * np.sqrt(np.diag(found.total))),
+        errors=named(at * spread),
         statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
         model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(found.model)))),
-        correlation=total / np.outer(spread, spread),
+        correlation=(found.total / np.outer(spread, spread))[unknowns, unknowns],
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
         flags=np.asarray(hit.flags),
         alternatives=tuple(named(other) for other in others),
         notes=(
-            *notes(predictor, at, hit, error / fitted, freedom, relative, found.total),
+            *notes(predictor, at, hit, off, error / fitted, freedom, relative, found.total),
             *(alternative_note(names, other) for other in others),
         ),
         pair=bodies.pair,
@@ -358,7 +348,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
-        _state=_State(predictor, at, found),
+        _state=_State(predictor, at, found.total),
     )
 
 
@@ -404,9 +394,9 @@ def _nonlinearity_factors(predictor: Predictor, at: Array, fitted: Array, covari
     """
     low, high = search.limits(predictor)
     factors = np.ones(at.size)
-    priors = np.array([one.prior or math.inf for one in predictor.parameters])
+    priors = np.array([one.prior for one in predictor.parameters])
     for n, one in enumerate(predictor.parameters):
-        if not one.is_unknown or one.prior is not None:
+        if not one.is_free:
             continue
         shift = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
         for sign, words in ((1.0, "above"), (-1.0, "below")):
@@ -434,42 +424,33 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
     ------
     UnidentifiedError
     """
+    low, high = search.limits(predictor)
     for n, one in enumerate(predictor.parameters):
-        free = one.is_unknown and one.prior is None
-        if free and (one.is_strength or one.name == "friction"):
-            # in a contact that sticks, friction changes less than the model's errors
-            doubt = error if one.is_strength or model is None else np.hypot(error, model)
-            strong = at.copy()
-            strong[n] = search.limits(predictor)[1][n]
-            there = predictor.at_trials(strong[None])[0]
-            least = _squares(predictor, fitted, doubt)
-            if _squares(predictor, there, doubt) < least + _EXCLUDED:
-                why = _least_value(predictor, strong, n, error)
-                raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
+        if not (one.is_free and (one.is_strength or one.name == "friction")):
+            continue
+        trials = np.tile(at, (_TRIALS, 1))
+        trials[:, n] = np.geomspace(high[n], low[n], _TRIALS)
+        largest = predictor.at_trials(trials[:1])[0]
+        # in a contact that sticks, friction changes less than the model's errors
+        doubt = error if one.is_strength or model is None else np.hypot(error, model)
+        if _squares(predictor, largest, doubt) < _squares(predictor, fitted, doubt) + _EXCLUDED:
+            most = _squares(predictor, largest, error) + _EXCLUDED
+            squares = (_squares(predictor, predictor.at_trials(trial[None])[0], error) for trial in trials)
+            excluded = (trial[n] for trial, square in zip(trials, squares, strict=True) if square > most)
+            why = _any_above(predictor, one, next(excluded, None))
+            raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
 
 
-def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> str:
-    """Say above which strength or friction the data exclude none."""
-
-    def squares(values: Array) -> float:
-        return _squares(predictor, predictor.at_trials(values[None])[0], error)
-
-    is_strength = predictor.parameters[n].is_strength
-    other = OTHER_STRENGTH.get(predictor.parameters[n].name)
-    trial, high = strong.copy(), squares(strong) + _EXCLUDED
-    low = search.limits(predictor)[0][n]
-    for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
-        trial[n] = strong[n] * factor
-        if squares(trial) > high:
-            if not is_strength:
-                return (
-                    f"any above {trial[n]:.2g} or so fits as well, since the beads stick. Measure "
-                    "at larger angles from the normal"
-                )
-            return (
-                f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
-                f"yield enough. Measure faster impacts, or ask for {other} if that body yields"
-            )
-    if not is_strength:
-        return "any fits as well. Measure at other angles"
-    return f"law {predictor.law.family!r} does not depend on it with these bodies"
+def _any_above(predictor: Predictor, one: Parameter, least: float | None) -> str:
+    """Say above which strength or friction the data exclude none; None: they exclude no value at all."""
+    if one.name == "friction":
+        if least is None:
+            return "any fits as well. Measure at other angles"
+        stick = "fits as well, since the beads stick. Measure at larger angles from the normal"
+        return f"any above {least:.2g} or so {stick}"
+    if least is None:
+        return f"law {predictor.law.family!r} does not depend on it with these bodies"
+    return (
+        f"any above {least / 1e6:.3g} MPa or so fits as well, since the body does not yield enough. "
+        f"Measure faster impacts, or ask for {OTHER_STRENGTH[one.name]} if that body yields"
+    )

@@ -51,14 +51,15 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     if len(names) == 1:
         error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
         raise UnidentifiedError(f"the data do not determine {names[0]}: its standard error is {error:.0f} %", names)
-    known = []
-    for square, direction in zip(squares, directions.T, strict=True):
-        if square <= _VAGUE**2:
-            known.append(_product(names, values, direction, float(np.sqrt(square))))
+    known = [
+        _product(names, values, direction, float(np.sqrt(square)))
+        for square, direction in zip(squares, directions.T, strict=True)
+        if square <= _VAGUE**2
+    ]
     what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}" for powers, value, error in known)
-    products = f"they determine {what} (in SI units). " if known else ""
+    products = f"They determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
-        f"the data do not tell {' and '.join(names)} apart: {products}"
+        f"the data do not determine {' and '.join(names)} separately. {products}"
         "Fix one of them, give one with its prior standard error, or measure another quantity",
         names,
         tuple(known),

@@ -119,8 +119,7 @@ class Measurements:
 
     def __post_init__(self) -> None:
         """Check every value and store flat arrays."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        given = {name: values for name, values in given.items() if values is not None}
+        given = {name: values for name, values in vars(self).items() if values is not None}
         if not given.keys() & KINDS.keys():
             reason = f"have to hold at least one of {', '.join(KINDS)}, got none"
             raise ArgumentError("data", None, reason)

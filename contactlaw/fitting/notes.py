@@ -1,4 +1,4 @@
-"""Remarks on a fit, in words, also on signs that it is of nonsense, as with mistaken units."""
+"""Remarks on a fit, in words; some name signs of mistaken units, materials or measurements."""
 
 import math
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from contactlaw._readable import percent, rounded, scale_of
 from contactlaw.fitting import search
 from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
-from contactlaw.fitting.predictions import Predictor, columns_of
+from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
@@ -33,6 +33,7 @@ def notes(
     predictor: Predictor,
     at: Array,
     hit: Rebound,
+    off: Array,
     standard: Array,
     freedom: float,
     model: Array | None,
@@ -48,6 +49,8 @@ def notes(
         Values found.
     hit : Rebound
         Fitted rebounds.
+    off : ndarray (m,)
+        Measured over fitted values, minus 1.
     standard : ndarray (m,)
         Standard errors of the values, as given or found, relative to the fitted values.
     freedom : float
@@ -57,9 +60,6 @@ def notes(
     covariance : ndarray (p, p)
         Covariance of the parameters' logarithms.
     """
-    values = predictor.values
-    fitted = columns_of(hit, predictor.setting(at))[values.kind, values.row]
-    off = values.value / fitted - 1.0
     if freedom <= 0.0:
         yield ("as many unknowns as values, and no errors of these: the errors stated are those of the model alone")
     else:
@@ -71,9 +71,9 @@ def notes(
             "errors stated are those of the data alone"
         )
     low, high = search.limits(predictor)
-    for one, value, least, largest in zip(predictor.parameters, at, low, high, strict=True):
-        if not least * (1.0 + _AT_BOUND) < value < largest * (1.0 - _AT_BOUND):
-            yield f"{one.name} is at an end of what is searched, {least:.3g} to {largest:.3g}"
+    at_end = np.flatnonzero((at < low * (1.0 + _AT_BOUND)) | (at > high * (1.0 - _AT_BOUND)))
+    for n in at_end:
+        yield f"{predictor.parameters[n].name} is at an end of the range searched, {low[n]:.3g} to {high[n]:.3g}"
     if any(one.is_strength for one in predictor.parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
@@ -82,11 +82,11 @@ def notes(
         sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
         yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
     flags = np.asarray(hit.flags)
-    for flag, _ in count_flags(flags).items():
+    for flag in count_flags(flags):
         (words,) = explain(flag)
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
     yield from _above_one(predictor)
-    if ((at < 1.001 * low) | (at > 0.999 * high)).any():
+    if at_end.size:
         yield from _outside(predictor, at)
     yield from _far(predictor, at, covariance)
     yield from _trends(predictor, off, standard, model)
@@ -128,9 +128,8 @@ def listed(rows: Places) -> str:
 
 
 def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
-    values = predictor.values
-    for n, name in enumerate(KINDS):
-        of_kind = (values.kind == n) & np.isnan(values.error)
+    for name, of_kind in predictor.values.by_kind().items():
+        of_kind = of_kind & np.isnan(predictor.values.error)
         if of_kind.any():
             share = float(standard[of_kind][0])
             yield (
@@ -142,7 +141,7 @@ def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
     values = predictor.values
     given = np.isfinite(values.error)
-    free = max(1, sum(one.prior is None for one in predictor.parameters))
+    free = max(1, sum(one.is_free for one in predictor.parameters))
     if np.count_nonzero(given) > free:
         ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
         if ratio > _MISFIT:
@@ -165,8 +164,7 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
         rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
         if rows.size:
-            which = f"rebounds {listed(rows)}"
-            which = predictor.data.rebound(rows[0]) if rows.size == 1 else which
+            which = predictor.data.rebound(rows[0]) if rows.size == 1 else f"rebounds {listed(rows)}"
             yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
 
 
@@ -214,10 +212,10 @@ def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:
 
 def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | None) -> Iterator[str]:
     """Name kinds of values whose residuals trend with speed."""
-    values = predictor.values
-    for n, name in enumerate(KINDS):
-        of_kind = np.flatnonzero(values.kind == n)
-        order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
+    speed = np.asarray(predictor.data.speed)[predictor.values.row]
+    for name, of_kind in predictor.values.by_kind().items():
+        order = np.flatnonzero(of_kind)
+        order = order[np.argsort(speed[order])]
         thirds = np.array_split(order, 3)
         if chance(thirds, off / standard) >= _SIGNIFICANCE:
             continue

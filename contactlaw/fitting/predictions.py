@@ -7,13 +7,14 @@ too.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array, Mask, Places
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import Solver
@@ -40,8 +41,7 @@ ROUGH = Fineness(2, 1e-5, 6.0, 0.12, REACH, 5e-3)
 _STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 
-@dataclass(frozen=True, eq=False)
-class Values:
+class Values(NamedTuple):
     """Measured values of all kinds, one after the other.
 
     Attributes
@@ -59,27 +59,9 @@ class Values:
     value: Array
     error: Array
 
-    @staticmethod
-    def of(data: Measurements) -> Values:
-        """Gather what was measured."""
-        parts = []
-        for n, name in enumerate(KINDS):
-            values: Any = getattr(data, name)
-            if values is None:
-                continue
-            rows = np.flatnonzero(np.isfinite(values))
-            errors: Any = getattr(data, f"{name}_error")
-            known = np.full(rows.size, np.nan) if errors is None else errors[rows]
-            shifted = values[rows] + KINDS[name].shift
-            parts.append((np.full(rows.size, n), rows, shifted, known))
-        return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-
-    def part(self, rows: Places) -> Values:
-        """Values of some rebounds, which are numbered anew."""
-        place = np.full(int(self.row.max()) + 1, -1)
-        place[rows] = np.arange(rows.size)
-        kept = place[self.row] >= 0
-        return Values(self.kind[kept], place[self.row[kept]], self.value[kept], self.error[kept])
+    def by_kind(self) -> dict[str, Mask]:
+        """Which values are of each kind that was measured."""
+        return {name: self.kind == n for n, name in enumerate(KINDS) if n in self.kind}
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +72,20 @@ class Predictor:
     law: Law
     data: Measurements
     parameters: list[Parameter]
-    values: Values
     fineness: Fineness = FINE
+
+    @functools.cached_property
+    def values(self) -> Values:
+        """What was measured."""
+        parts = []
+        for n, (name, kind) in enumerate(KINDS.items()):
+            measured: Any = getattr(self.data, name)
+            if measured is not None:
+                rows = np.flatnonzero(np.isfinite(measured))
+                errors: Any = getattr(self.data, f"{name}_error")
+                known = np.full(rows.size, np.nan) if errors is None else errors[rows]
+                parts.append((np.full(rows.size, n), rows, measured[rows] + kind.shift, known))
+        return Values(*map(np.concatenate, zip(*parts, strict=True)))
 
     def setting(self, values: Array) -> Setting:
         """Bodies and sizes with these values."""
@@ -99,20 +93,20 @@ class Predictor:
 
     def flagged(self, values: Array) -> Rebound:
         """Everything about the rebounds."""
-        return impacts(self.setting(values), self.law, np.array(self.data.speed))
+        return impacts(self.setting(values), self.law)
 
-    def impacts(self, values: Array) -> Rebound:
-        """Everything about the rebounds but the flags, which are those of slow ones."""
-        return self._trial(self.setting(values), np.array(self.data.speed))
+    def impacts(self, at: Setting) -> Rebound:
+        """Everything about rebounds but the flags, which are those of slow ones."""
+        return _integrated(solver(at.pair, self.law, rates(at.speed, at.radius), _RTOL, self.fineness), at)
 
-    def _trial(self, at: Setting, speed: Array) -> Rebound:
-        found = solver(at.pair, self.law, rates(speed, at.radius), _RTOL, self.fineness)
-        return _integrated(found, at, speed)
-
-    def predicted(self, values: Array) -> Array:
-        """Predict the measured values."""
-        columns = columns_of(self.impacts(values), self.setting(values))
-        return np.asarray(columns[self.values.kind, self.values.row])
+    def predicted(self, *trials: Array) -> Array:
+        """Predict the measured values at one or several trials that differ only in sizes, one after the other."""
+        settings = [self.setting(values) for values in trials]
+        sizes: Any = zip(*(one[1:] for one in settings), strict=True)
+        joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
+        together = Setting(settings[0].pair, *joined)
+        columns = columns_of(self.impacts(together), together).reshape(len(KINDS), len(settings), -1)
+        return np.ravel(columns[self.values.kind, :, self.values.row].T)
 
     def at_trials(self, trials: Array) -> Array:
         """Predict the measured values at trials (k, p) that differ only in sizes, not in materials.
@@ -120,19 +114,12 @@ class Predictor:
         Where the model has no answer, as for impossible bodies or plates far too thin, predictions
         are 0, far from any measured value.
         """
-        speed = np.array(self.data.speed)
         try:
-            settings = [self.setting(values) for values in trials]
-            sizes: Any = zip(*(one[1:] for one in settings), strict=True)
-            joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
-            together = Setting(settings[0].pair, *joined)
-            found = self._trial(together, np.tile(speed, len(settings)))
+            return self.predicted(*trials).reshape(len(trials), -1)
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
                 return np.zeros((1, self.values.value.size))
             return np.concatenate([self.at_trials(one[None]) for one in trials])
-        columns = columns_of(found, together).reshape(len(KINDS), len(settings), speed.size)
-        return np.asarray(columns[self.values.kind, :, self.values.row].T)
 
     def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
         """Differentiate with respect to the logarithms of the values; a column for each.
@@ -157,14 +144,14 @@ class Predictor:
         return (self.predicted(moved) - here) / step
 
 
-def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
+def impacts(at: Setting, law: Law) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
-    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at, speed)
+    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at)
 
 
-def _integrated(backend: Solver, at: Setting, speed: Array) -> Rebound:
-    check(speed=speed, radius=at.radius, thickness=at.thickness)
-    given = Impacts(speed, at.radius, at.thickness, speed.shape)
+def _integrated(backend: Solver, at: Setting) -> Rebound:
+    check(speed=at.speed, radius=at.radius, thickness=at.thickness)
+    given = Impacts(at.speed, at.radius, at.thickness, at.speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)
     return oblique.answer(backend, backend.bodies, given, at.friction, at.sliding_speed)

@@ -9,11 +9,11 @@ fine grid, on which the sum of squares shows every basin.
 import itertools
 import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
@@ -84,32 +84,46 @@ def guessed(values: Values) -> Array:
 
 def distinct(found: list[Basin]) -> list[Basin]:
     """Keep each basin once, the best first; drop those that cannot be the best."""
+    kept = _apart(found, _SAME_BASIN)
+    return [one for one in kept if one.squares <= 3.0 * kept[0].squares + _HOPELESS]
+
+
+def _apart(found: list[Basin], least: float) -> list[Basin]:
+    """Best basin of each place, the best first; logarithms in one place differ by less than `least`."""
     kept: list[Basin] = []
     for one in sorted(found, key=lambda one: one.squares):
-        apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME_BASIN for other in kept)
-        if apart and one.squares <= 3.0 * (kept or [one])[0].squares + _HOPELESS:
+        if all(np.abs(np.log(one.at / other.at)).max() > least for other in kept):
             kept.append(one)
     return kept
 
 
 def scan(predictor: Predictor) -> list[Array]:
     """Values in each basin that a grid shows, the best first."""
+    from scipy.interpolate import CubicSpline
+
     axes = _axes(predictor)
-    sizes = [axis.size for axis in axes.points]
-    fine, predicted = _finer(axes, _predicted(predictor, axes).reshape(*sizes, -1))
+    free = [n for n, axis in enumerate(axes) if axis.size > 1]
+    grid = [axes[n] for n in free]
+    predicted = _predicted(predictor, axes).reshape(*(axis.size for axis in grid), -1)
+    for n, axis in enumerate(grid):  # points between those of the grid, and predictions there by splines
+        grid[n] = np.linspace(axis[0], axis[-1], (axis.size - 1) * _FINER[min(3, len(free))] + 1)
+        predicted = CubicSpline(axis, predicted, axis=n)(grid[n])
     soft = np.hypot(guessed(predictor.values), _BETWEEN * predictor.values.value)
     off = (predicted - predictor.values.value) / soft
-    low, high = limits(predictor)
-    bottoms = _bottoms(fine, off) if off[..., 0].size > 1 else [np.concatenate(fine)]
-    return [np.clip(axes.values(one), low, high) for one in bottoms[:_MOST]]
+    starts = []
+    for bottom in _bottoms(grid, off)[:_MOST] if free else [np.empty(0)]:
+        start = np.array([axis[0] for axis in axes])
+        start[free] = bottom
+        starts.append(np.clip(_trial(predictor, start), *limits(predictor)))
+    return starts
 
 
 def attainable(predictor: Predictor) -> Array:
     """Predict the measured values over the range of the unknowns; a row for each trial."""
     axes = _axes(predictor)
-    free = [n for n, one in enumerate(predictor.parameters) if _scanned(one)]
+    free = [n for n, one in enumerate(predictor.parameters) if one.is_free]
     if [predictor.parameters[n].name for n in free] == ["thickness"]:  # up to a half-space
-        axes.points[free[0]] = np.append(axes.points[free[0]], np.log(limits(predictor)[1][free]))
+        axes[free[0]] = np.append(axes[free[0]], np.log(limits(predictor)[1][free]))
     return _predicted(predictor, axes)
 
 
@@ -127,96 +141,57 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     regions, count = ndimage.label(lowest, np.ones([3] * squares.ndim))
     places = ndimage.minimum_position(squares, regions, range(1, count + 1))
     places = sorted(places, key=lambda place: float(squares[place]))[:_CHAIN]
-    free = [n for n, axis in enumerate(axes) if axis.size > 1]
-    between = interpolate.RegularGridInterpolator(
-        [axes[n] for n in free], off.reshape(*(axes[n].size for n in free), -1)
-    )
-    ends = [(axes[n][0], axes[n][-1]) for n in free]
-    bottoms: list[tuple[float, Array]] = []
+    between = interpolate.RegularGridInterpolator(axes, off)
+    ends = np.array([(axis[0], axis[-1]) for axis in axes]).T
+    bottoms = []
     for place in places:
-        start = np.clip([axes[n][place[n]] for n in free], *(np.array(ends).T + _INSIDE))
-        done = optimize.least_squares(lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20)
-        bottoms.append((float(done.cost), done.x))
-    kept: list[Array] = []
-    for _, x in sorted(bottoms, key=lambda one: one[0]):
-        if all(np.abs(x - other).max() > _SAME_MINIMUM for other in kept):
-            kept.append(x)
-    found = np.array([[axis[0] for axis in axes]] * len(kept))
-    found[:, free] = kept
-    return list(found)
+        start = np.clip([axis[n] for axis, n in zip(axes, place, strict=True)], *(ends + _INSIDE))
+        done = optimize.least_squares(lambda x: between(x)[0], start, bounds=ends, ftol=1e-3, max_nfev=20)
+        bottoms.append(Basin(np.exp(done.x), float(done.cost)))
+    return [np.log(one.at) for one in _apart(bottoms, _SAME_MINIMUM)]
 
 
-class _Axes(NamedTuple):
-    """Grid of the parameters' logarithms; if a radius is sought, too, R/H replaces thickness."""
-
-    points: list[Array]
-    by_radius: tuple[int, int] | None  # indices of thickness and radius, if both are sought
-
-    def values(self, coordinates: Array) -> Array:
-        """Parameters at a point."""
-        found = np.exp(coordinates)
-        if self.by_radius is not None:
-            thickness, radius = self.by_radius
-            found[thickness] = found[radius] / found[thickness]
-        return found
-
-
-def _predicted(predictor: Predictor, axes: _Axes) -> Array:
-    """Predict the measured values at all points of the grid, one after the other."""
-    count = predictor.values.value.size
-    points = np.array(list(itertools.product(*axes.points)))
-    # sorted, so that points with the same law are next to each other
-    laws = [n for n, one in enumerate(predictor.parameters) if one.changes(predictor.law)]
-    order = np.lexsort(points[:, laws].T) if laws else np.arange(len(points))
-    found = np.empty((len(points), count))
-    bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
-    ends = np.flatnonzero(np.any(np.diff(points[order][:, bodies], axis=0), axis=1)) + 1
-    parts = np.split(order, ends) if bodies else [order]
-    for part in progress_bar(iter(parts), len(parts)):
-        found[part] = predictor.at_trials(np.array([axes.values(points[n]) for n in part]))
+def _trial(predictor: Predictor, point: Array) -> Array:
+    """Trial at a point of the grid, where R/H replaces the thickness if a radius is sought, too."""
+    found = np.exp(point)
+    place = {one.name: n for n, one in enumerate(predictor.parameters) if one.is_free}
+    if {"thickness", "radius"} <= place.keys():
+        found[place["thickness"]] = found[place["radius"]] / found[place["thickness"]]
     return found
 
 
-def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
-    """Points between those of the grid, and predictions there by splines."""
-    from scipy.interpolate import CubicSpline
-
-    finer = _FINER[min(3, sum(axis.size > 1 for axis in axes.points))]
-    fine = []
-    for n, axis in enumerate(axes.points):
-        if axis.size > 1:
-            dense = np.linspace(axis[0], axis[-1], (axis.size - 1) * finer + 1)
-            predicted = CubicSpline(axis, predicted, axis=n)(dense)
-            axis = dense
-        fine.append(axis)
-    return fine, predicted
+def _predicted(predictor: Predictor, axes: list[Array]) -> Array:
+    """Predict the measured values at all points of the grid, one after the other."""
+    count = predictor.values.value.size
+    points = np.array(list(itertools.product(*axes)))
+    found = np.empty((len(points), count))
+    bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
+    bodies.sort(key=lambda n: not predictor.parameters[n].changes(predictor.law))  # one law after the other
+    _, group = np.unique(points[:, bodies], axis=0, return_inverse=True)
+    groups = int(group.max()) + 1
+    for n in progress_bar(iter(range(groups)), groups):
+        part = group.ravel() == n
+        found[part] = predictor.at_trials(np.array([_trial(predictor, point) for point in points[part]]))
+    return found
 
 
 def _few(predictor: Predictor, count: int) -> Predictor:
-    """Keep only `count` rebounds of each kind."""
-    rows = _some(predictor.values, predictor.data, count)
-    return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
-
-
-def _some(values: Values, data: Measurements, count: int) -> Places:
-    """Rebounds of each kind, evenly over the speeds, and over what else differs."""
-    chosen: set[int] = set()
-    for given in (getattr(data, name) for name in INPUTS):
-        along = np.asarray(given, dtype=np.float64)
-        if given is not data.speed and np.unique(along[np.isfinite(along)]).size < 2:
+    """Keep `count` rebounds of each kind, evenly over the speeds, and over each input that differs."""
+    values, chosen = predictor.values, set[int]()
+    names = *KINDS, *(f"{name}_error" for name in KINDS), *INPUTS
+    columns: dict[str, Any] = {name: getattr(predictor.data, name) for name in names}
+    columns = {name: column for name, column in columns.items() if column is not None}
+    for name in columns.keys() & INPUTS:
+        along = columns[name]
+        if name != "speed" and np.unique(along[np.isfinite(along)]).size < 2:
             continue
         for kind in np.unique(values.kind):
             rows = values.row[values.kind == kind]
             rows = rows[np.argsort(along[rows], kind="stable")]
             at = np.linspace(0, rows.size - 1, min(count, rows.size)).round().astype(int)
             chosen.update(rows[at].tolist())
-    return np.array(sorted(chosen))
-
-
-def _part(data: Measurements, rows: Places) -> Measurements:
-    names = [*KINDS, *(f"{name}_error" for name in KINDS), *INPUTS]
-    given = {name: getattr(data, name) for name in names}
-    return Measurements(**{name: v[rows] for name, v in given.items() if v is not None})
+    kept = sorted(chosen)
+    return replace(predictor, data=Measurements(**{name: column[kept] for name, column in columns.items()}))
 
 
 def _middle(one: Parameter, predictor: Predictor) -> float:
@@ -231,29 +206,23 @@ def _middle(one: Parameter, predictor: Predictor) -> float:
     return float(np.median(np.asarray(other)[np.isfinite(other)]))
 
 
-def _scanned(one: Parameter) -> bool:
-    return one.is_unknown and one.prior is None
-
-
-def _axes(predictor: Predictor) -> _Axes:
-    """Trial values of each parameter; one value where it is not scanned."""
+def _axes(predictor: Predictor) -> list[Array]:
+    """Logarithms of trial values of each parameter; one value where it is not scanned."""
     parameters, data = predictor.parameters, predictor.data
-    scanned = {one.name for one in parameters if _scanned(one)}
-    laws = min(3, sum(_scanned(one) and one.changes(predictor.law) for one in parameters))
+    scanned = {one.name for one in parameters if one.is_free}
+    laws = min(3, sum(one.is_free and one.changes(predictor.law) for one in parameters))
+    counts = {"youngs_modulus": _MODULI[laws or 1], "density": _DENSITIES, "loss_factor": _DENSITIES}
+    counts["friction"] = _FRICTIONS[min(3, len(scanned))]
     low, high = limits(predictor)
     points = []
     for n, one in enumerate(parameters):
-        if one.name not in scanned:
-            axis = np.array([_middle(one, predictor)])
+        if not one.is_free:
+            axis = np.array([one.centre])
         elif one.is_strength:
             top = min(high[n], 2.0 * _onset(predictor, n))
             axis = np.geomspace(low[n], max(top, 2.0 * low[n]), _STRENGTHS[laws or 1])
-        elif one.unknown.field == "youngs_modulus":
-            axis = np.geomspace(low[n], high[n], _MODULI[laws or 1])
-        elif one.unknown.field in ("density", "loss_factor"):
-            axis = np.geomspace(low[n], high[n], _DENSITIES)
-        elif one.name == "friction":
-            axis = np.geomspace(low[n], high[n], _FRICTIONS[min(3, len(scanned))])
+        elif one.unknown.field in counts:
+            axis = np.geomspace(low[n], high[n], counts[one.unknown.field])
         elif one.name == "thickness":
             radius = np.ones(1) if data.radius is None else np.asarray(data.radius)
             ends = radius.max() / _SLENDEREST, radius.min() / _THICKEST
@@ -266,15 +235,13 @@ def _axes(predictor: Predictor) -> _Axes:
                 ends = _THICKEST * thickness.max(), _SLENDEREST * thickness.min()
                 axis = np.geomspace(*ends, _SLENDERNESS)
         points.append(np.log(np.sort(axis)))
-    names = [one.name for one in parameters]
-    both = {"thickness", "radius"} <= scanned
-    return _Axes(points, (names.index("thickness"), names.index("radius")) if both else None)
+    return points
 
 
 def _onset(predictor: Predictor, n: int) -> float:
     """Strength above which a body hardly yields; other parameters have their `_middle` values."""
     trial = np.array([_middle(one, predictor) for one in predictor.parameters])
-    chi = float(np.max(predictor.impacts(trial).overload))
+    chi = float(np.max(predictor.impacts(predictor.setting(trial)).overload))
     # d_Y is in proportion to the square of the strength
     return float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
 
@@ -285,11 +252,9 @@ class Descent:
     def __init__(self, predictor: Predictor, to_the_lowest: bool = False) -> None:
         self.predictor = predictor
         self._converged, self._near = _LOWEST if to_the_lowest else _NEARBY
-        parameters = predictor.parameters
         self._low, self._high = np.log(np.array(limits(predictor)))
-        self._held = [n for n, one in enumerate(parameters) if one.prior is not None]
-        self._centres = np.log([parameters[n].centre for n in self._held])
-        self._widths = np.array([parameters[n].prior for n in self._held], dtype=np.float64)
+        self._centres = np.array([0.0 if one.is_free else math.log(one.centre) for one in predictor.parameters])
+        self._widths = np.array([one.prior for one in predictor.parameters])
         self._last_predicted: tuple[Array, Array] | None = None
         self._last_slopes: tuple[Array, Array] | None = None
 
@@ -309,18 +274,16 @@ class Descent:
 
     def __call__(self, start: Array, error: Array, steps: int = 60) -> Basin:
         """Find the minimum from a start, in so many steps."""
-        pull = np.zeros((len(self._held), start.size))
-        pull[np.arange(len(self._held)), self._held] = 1.0 / self._widths
 
         def residuals(x: Array) -> Array:
             try:
                 off = (self.predicted(x) - self.predictor.values.value) / error
             except (UnsolvedError, ValueError):  # no answer there: scipy shortens the step
                 off = np.full_like(error, np.inf)
-            return np.concatenate([off, (x[self._held] - self._centres) / self._widths])
+            return np.concatenate([off, (x - self._centres) / self._widths])
 
         def slopes(x: Array) -> Array:
-            return np.vstack([self.slopes(x) / error[:, None], pull])
+            return np.vstack([self.slopes(x) / error[:, None], np.diag(1.0 / self._widths)])
 
         from scipy.optimize import least_squares
 

@@ -63,13 +63,18 @@ class Parameter:
 
     name: str
     centre: float  # value given; NaN: none
-    prior: float | None  # standard error of the logarithm
+    prior: float  # standard error of the logarithm; inf: none
     is_unknown: bool  # whether it is an unknown; else a given value with a prior
 
     @property
     def unknown(self) -> Unknown:
         """Its entry in `UNKNOWNS`."""
         return UNKNOWNS[self.name]
+
+    @property
+    def is_free(self) -> bool:
+        """Whether it is an unknown without a prior."""
+        return self.prior == math.inf
 
     @property
     def is_strength(self) -> bool:
@@ -86,6 +91,7 @@ class Setting(NamedTuple):
     """Bodies and sizes of all rebounds, with all numbers in place."""
 
     pair: Pair
+    speed: Array
     radius: Array
     thickness: Array
     friction: Array | None = None  # None: nothing that was measured depends on it
@@ -118,16 +124,13 @@ def parameters(
     for size in _SIZES if data.is_oblique else _SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
-    for name in [*names, *(name for name in priors if name not in names)]:
-        middle = centre(pair, data, UNKNOWNS[name])
-        prior = None
-        if name in priors:
-            prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name])
-        found.append(Parameter(name, middle, prior, name in names))
+    for name in dict.fromkeys([*names, *priors]):
+        prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name]) if name in priors else math.inf
+        found.append(Parameter(name, centre(pair, data, UNKNOWNS[name]), prior, name in names))
     return found
 
 
-def with_loss_factors(pair: Pair, data: Measurements, unknown: str | Iterable[str]) -> Pair:
+def with_loss_factors(pair: Pair, data: Measurements, unknown: Iterable[str]) -> Pair:
     """Give bodies whose loss factor is unknown one, at the frequency of the impacts.
 
     Raises
@@ -135,9 +138,8 @@ def with_loss_factors(pair: Pair, data: Measurements, unknown: str | Iterable[st
     ValueError
         If that frequency is not known, because the radius is unknown, too.
     """
-    names = {unknown} if isinstance(unknown, str) else set(unknown)
     bodies = {"sphere": pair.sphere, "plate": pair.plate}
-    for name in names & UNKNOWNS.keys():
+    for name in UNKNOWNS.keys() & unknown:
         one = UNKNOWNS[name]
         if one.field != "loss_factor" or bodies[one.body].loss_factor:
             continue
@@ -210,7 +212,7 @@ def _by_hardness(body: Any) -> bool:
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
     numbers: dict[Number, float] = {}
-    sizes = {name: getattr(data, name) for name in _SIZES}
+    sizes = {name: getattr(data, name) for name in ("speed", *_SIZES, "sliding_speed")}
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         role, field = parameter.unknown.body, parameter.unknown.field
         if role:
@@ -223,8 +225,8 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
             sizes[field] = np.full(len(data), value)
         else:
             sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
+    if not data.is_oblique:
+        sizes["friction"] = sizes["sliding_speed"] = None
     # copies: for read-only arrays kernels would be compiled once more
-    wanted = _SIZES if data.is_oblique else _SIZES[:2]
-    bodies = with_numbers((pair.sphere, pair.plate), numbers)
-    found = Setting(bodies, *(np.array(sizes[name]) for name in wanted))
-    return found._replace(sliding_speed=np.array(data.sliding_speed)) if data.is_oblique else found
+    copies: Any = (None if size is None else np.array(size) for size in sizes.values())
+    return Setting(with_numbers((pair.sphere, pair.plate), numbers), *copies)

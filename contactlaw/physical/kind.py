@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._arrays import Mask
+from contactlaw._readable import percent
 
 
 class Kind(enum.IntEnum):
@@ -22,6 +23,17 @@ class Kind(enum.IntEnum):
     OF_BODY = 6  # an impact of a rigid body, of which the bead is a part
 
 
+# What happened in contacts that are no impacts, for sentences about them.
+_HAPPENED = {
+    Kind.SLIDING_ON: "slid on from another wall",
+    Kind.OVER_EDGE: "left over the edge of a wall",
+    Kind.STRUCK: "were struck by another bead while they touched the wall",
+    Kind.RESTING: "stayed as under their weight",
+    Kind.IN_CLUMP: "were parts of a rigid body of unknown mass",
+}
+_REASON = "their COR is not that of a free impact, so they do not count as impacts"
+
+
 def only_impacts(kinds: NDArray[Any]) -> tuple[Mask, str]:
     """Pick the rows of a record that are impacts; every reader of CORs and speeds does so.
 
@@ -33,16 +45,20 @@ def only_impacts(kinds: NDArray[Any]) -> tuple[Mask, str]:
     Returns
     -------
     ndarray of bool, str
-        Mask of the impacts, and which rows are none, "" if all are.
+        Mask of the impacts, and a sentence about the other rows, "" if there are none.
 
     Examples
     --------
-    >>> only_impacts(np.array([0, 2, 0, 4, 2]))[1]
-    '3 of 5 rows are no impacts and left out: 2 over edge, 1 resting'
+    >>> only_impacts(np.array([0, 2, 0, 4, 2]))[1].partition(";")[0]
+    'Of 5 contacts, 40 % left over the edge of a wall and 20 % stayed as under their weight'
     """
-    found = np.isin(kinds, (Kind.IMPACT, Kind.OF_BODY))
-    names = {kind.value: kind.name.lower().replace("_", " ") for kind in Kind}
-    others, counts = np.unique(kinds[~found], return_counts=True)
-    listed = (f"{n} {names.get(kind, 'unknown')}" for kind, n in zip(others, counts, strict=True))
-    head = f"{counts.sum()} of {kinds.size} rows are no impacts and left out: "
-    return found, head + ", ".join(listed) if others.size else ""
+    impacts = np.isin(kinds, (Kind.IMPACT, Kind.OF_BODY))
+    others, counts = np.unique(kinds[~impacts], return_counts=True)
+    if not others.size:
+        return impacts, ""
+    parts = [
+        f"{percent(n / kinds.size)} {_HAPPENED.get(kind, 'are of an unknown kind')}"
+        for kind, n in zip(others, counts, strict=True)
+    ]
+    what = " and ".join([", ".join(parts[:-1])] * (len(parts) > 1) + parts[-1:])
+    return impacts, f"Of {kinds.size:,} contacts, {what}; {_REASON}."

@@ -42,12 +42,10 @@ _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 _LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
 _FREQUENCIES = 1e-3, 1e9  # [Hz]; from slow tests to ultrasound and beads of micrometres
 _LARGEST_ERROR = 1.0  # relative standard error; beyond, nothing is known
-_LARGEST_EXCESS = 9.0  # of a strength over its specified minimum
-# Least and largest loss factor that handbooks of acoustics print for audible sound, without a frequency:
-# Mechel, Formulas of Acoustics (2008), Table 3; Bies, Hansen & Howard, Engineering Noise Control,
-# 5th ed. (2017), Table C.1, which has a range from the material to a mounted panel.
-_HANDBOOK = {"hdpe": (0.003, 0.1), "pmma": (0.002, 0.06), "polypropylene": (0.003, 0.1), "polystyrene": (0.003, 0.1)}
-_AUDIBLE = 1e3  # [Hz]; our choice
+WRITE_LOSS = (
+    "write loss_factor = [0.03, 1e4] with your numbers, in Python or in a file of materials; "
+    "docs/materials.md has the lines of handbooks"
+)
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
@@ -177,19 +175,19 @@ class Material:
     rate : (float, float), optional
         C [-], 0 to 0.5, and rate0 [1/s], positive: the flow stress grows by the factor
         1 + C ln(rate/rate0) (Johnson & Cook 1983). Only ``law="fem"`` takes it.
-    loss_factor : (float, float) or str, optional
+    loss_factor : (float, float), optional
         tan delta [-], 0 to 1, and the frequency [Hz] at which it and Young's modulus were measured:
         that of an impact, 1/(2 contact times), or near it. From there the modulus is carried to
         each impact's frequency as that of a body whose loss factor is the same at all of them.
-        Only ``law="fem"`` takes it. ``"handbook"`` takes that of handbooks of acoustics, with
-        their disagreement as its error, for the polymers of the catalogue that they have.
+        Only ``law="fem"`` takes it.
     uncertainty : mapping of str to float, optional
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out. That of a strength that is a specified minimum is ``inf``, if nobody
-        knows it: of answers that depend on it one end is known; or -0.4, if real ones are up to
-        40 % above it.
+        lacks are left out. The error of a number that is not named is not stated, and counts as 0.
+    specified_minimum : bool, optional
+        Whether the yield strength is a specified minimum, as standards and data sheets print it:
+        real metal is stronger, and its COR may be higher. `contactlaw cor` says so.
 
     Raises
     ------
@@ -216,6 +214,7 @@ class Material:
     rate: tuple[float, float] | None = None
     loss_factor: tuple[float, float] | None = None
     uncertainty: Mapping[str, float] = field(default_factory=dict, hash=False)
+    specified_minimum: bool = False
 
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
@@ -258,12 +257,12 @@ class Material:
         object.__setattr__(self, "hardness", hardness)
         object.__setattr__(self, "hardening", _hardening(self))
         object.__setattr__(self, "rate", _rate(self))
-        if str(self.loss_factor) == "handbook":
-            loss_factor, error = _from_handbook(self.name)
-            object.__setattr__(self, "loss_factor", loss_factor)
-            object.__setattr__(self, "uncertainty", {"loss_factor": error, **self.uncertainty})
         object.__setattr__(self, "loss_factor", _loss_factor(self))
         object.__setattr__(self, "uncertainty", _uncertainty(self))
+        if self.specified_minimum not in (False, True):
+            reason = "must be True or False: whether yield_strength is a specified minimum"
+            raise ArgumentError("specified_minimum", self.specified_minimum, reason)
+        object.__setattr__(self, "specified_minimum", bool(self.specified_minimum) and strength is not None)
 
     @property
     def flow(self) -> Flow | None:
@@ -456,9 +455,10 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     ----------
     path : path-like
         A TOML file with a table for each material: numbers as in `Material`, in SI units or as
-        texts with a unit, its ``kind`` and, if you like, ``aliases``, ``grade``, ``source`` and
-        ``uncertainty``. ``E``, ``nu``, ``rho`` and ``yield`` are short names. Another entry, of the
-        file or of the catalogue, gives modulus, ratio and density with ``like``.
+        texts with a unit, its ``kind`` and, if you like, ``aliases``, ``grade``, ``source``,
+        ``uncertainty`` and ``specified_minimum``. ``E``, ``nu``, ``rho`` and ``yield`` are short
+        names. Another entry, of the file or of the catalogue, gives modulus, ratio and density with
+        ``like``.
 
     Returns
     -------
@@ -544,7 +544,8 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
 
 
 def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], references: dict[str, str]) -> Material:
-    known = (*_LABELS, "kind", "grade", "aliases", "like", "source", "uncertainty")
+    taken = (*_LABELS, "kind", "specified_minimum")
+    known = (*taken, "grade", "aliases", "like", "source", "uncertainty")
     for key in table.keys() - known:
         near = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
@@ -556,16 +557,12 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
     # Hardening and rate are of the same fit as the yield strength A.
     fitted = {"hardening", "rate"} & set(table)
     source = {field: source.get("yield_strength", "") for field in fitted} | source
-    values = {field: table[field] for field in _LABELS if field in table}
+    values = {field: table[field] for field in taken if field in table}
     errors = {  # an error has a reason in the catalogue
         number: error if isinstance(error, list) else [error, ""]
         for number, error in table.get("uncertainty", {}).items()
     }
-    relative = {number: error for number, (error, _) in errors.items()}
-    if "{bias}" in source.get("yield_strength", ""):
-        relative.setdefault("yield_strength", math.inf)
-    of = str(table.get("like", name)) if values.get("loss_factor") == "handbook" else name
-    body = Material(of, **values, kind=table.get("kind"), uncertainty=relative)
+    body = Material(name, **values, uncertainty={number: error for number, (error, _) in errors.items()})
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -576,9 +573,8 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
         parts.append(f"{label}{shown}: {_cited(source[number], references)}")
         if number in errors:
             error, reason = errors[number][0], _cited(errors[number][1], references)
-            size = f"standard error of it {100.0 * error:g} %" if error > 0.0 else f"up to {-100.0 * error:g} % more"
-            parts.append(f"{size}: {reason}")
-    return replace(body, name=name, source="; ".join(parts))
+            parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
+    return replace(body, source="; ".join(parts))
 
 
 def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
@@ -680,16 +676,6 @@ def _rate(body: Material) -> tuple[float, float] | None:
     return (slope, rate0) if slope else None
 
 
-def _from_handbook(name: str) -> tuple[tuple[float, float], float]:
-    """Loss factor of a polymer by handbooks, even in its logarithm between their extremes, and its error."""
-    if name not in _HANDBOOK:
-        reason = f"no handbook has that of {name!r}, but of {', '.join(_HANDBOOK)}: measure it by a drop"
-        raise ArgumentError("loss_factor", "handbook", reason)
-    low, high = _HANDBOOK[name]
-    error = math.log(high / low) / math.sqrt(12.0)
-    return (math.sqrt(low * high), _AUDIBLE), min(error, _LARGEST_ERROR)
-
-
 def _loss_factor(body: Material) -> tuple[float, float] | None:
     """Check the loss factor of a material; None if it loses nothing."""
     given, refused = body.loss_factor, functools.partial(ArgumentError, "loss_factor")
@@ -698,7 +684,7 @@ def _loss_factor(body: Material) -> tuple[float, float] | None:
     if isinstance(given, np.ndarray):
         given = given.tolist()
     if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refused(given, "must be (tan delta, frequency), the frequency in Hz")
+        raise refused(given, f"must be (tan delta, frequency), the frequency in Hz: {WRITE_LOSS}")
     loss = _finite("loss_factor", given[0], "-")
     if not (0.0 <= loss <= _LARGEST_LOSS):
         raise refused(given, f"tan delta must be from 0 to {_LARGEST_LOSS:g}")
@@ -720,14 +706,20 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
-        error = math.inf if str(value) == "inf" else _finite(f"uncertainty[{name!r}]", value, "-")
-        strength = name in ("yield_strength", "hardness")
-        minimum = strength and (error == math.inf or -_LARGEST_EXCESS <= error < 0.0)
-        if not (0.0 <= error <= _LARGEST_ERROR or minimum):
-            limits = f"from 0 to {_LARGEST_ERROR:g}" + f", of a minimum {-_LARGEST_EXCESS:g} to 0 or inf" * strength
-            raise refused(value, f"{name} must be a relative standard error {limits}")
-        if getattr(body, name) is not None:
-            found[name] = error
+        known = getattr(body, name)
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if not (is_number and 0.0 <= value <= _LARGEST_ERROR):
+            reason = f"{name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, as 0.1 for 10 %"
+            if name == "yield_strength" and str(value) in ("inf", "minimum"):
+                reason += "; leave it out, and write specified_minimum = true (True in Python)"
+            elif name in ("yield_strength", "hardness") and is_number and value < 0.0 and known is not None:
+                # The error of a strength that is even between the minimum and the largest one.
+                middle, share = known * (1.0 - 0.5 * value), value / (value - 2.0) / math.sqrt(3.0)
+                reason += f"; for {known:.3g} to {known * (1.0 - value):.3g} Pa write {name} = {middle:.3g} "
+                reason += f"and uncertainty = {{{name} = {share:.2g}}}"
+            raise refused(value, reason)
+        if known is not None:
+            found[name] = float(value)
     return found
 
 

@@ -19,7 +19,7 @@ import platform
 import tokenize
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -434,28 +434,26 @@ def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
 
 
 def _write_material(file: h5py.File, name: str, material: Material) -> None:
-    values = asdict(material) | {"uncertainty": json.dumps(dict(material.uncertainty))}
-    values |= {"units": "Pa (moduli, strength, hardness), kg/m3"}
-    group = file.create_group(name)
-    group.attrs.update({key: value for key, value in values.items() if value is not None})
+    texts = {"uncertainty": json.dumps(dict(material.uncertainty)), "units": "Pa (moduli, strength, hardness), kg/m3"}
+    values = asdict(material) | texts
+    file.create_group(name).attrs.update({key: value for key, value in values.items() if value is not None})
 
 
 def _read_bodies(group: h5py.Group) -> Bodies:
-    sphere, plate = (_material(hdf5.group(group, body)) for body in _BODIES)
-    return Bodies(Pair(sphere, plate), hdf5.attribute(group, "law", str))
+    return Bodies(Pair(*(_material(hdf5.group(group, body)) for body in _BODIES)), hdf5.attribute(group, "law", str))
 
 
 def _material(group: h5py.Group) -> Material:
-    names = [one.name for one in fields(Material)]
     stored: dict[str, Any] = {
         name: hdf5.number_or_list(group, name)
         if name in _LISTS
         else hdf5.attribute(group, name, str if name in _TEXTS else float)
-        for name in names
+        for name in Material.__dataclass_fields__
         if name in _REQUIRED or name in group.attrs
     }
-    stored["uncertainty"] = json.loads(stored.get("uncertainty", "{}"))
-    return Material(**stored)
+    errors = json.loads(stored.pop("uncertainty", "{}")).items()
+    # 0.3 stored inf and negative numbers for specified minima, whose errors are not stated.
+    return Material(**stored, uncertainty={name: error for name, error in errors if 0.0 <= error <= 1.0})
 
 
 def _write_surface(group: h5py.Group, surface: Surface) -> None:

@@ -83,7 +83,7 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
     value = parent.attrs.get(name)
     if value is None:
         raise ValueError(f"{_place(parent)} has no attribute {name}, expected {expected}")
-    if isinstance(value, np.generic) and value.dtype.kind in "iuf":
+    if isinstance(value, np.generic) and value.dtype.kind in "biuf":
         value = value.item()
     if not isinstance(value, (int, float) if kind is float else kind):
         raise ValueError(f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}")

@@ -1,4 +1,4 @@
-"""Charts that the figures of several kinds of runs have: bars by cause, and energy on a sheet."""
+"""Energy on a sheet, as the figures of several kinds of runs draw it."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,39 +13,8 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw._arrays import Array
 
+_BAR, _AROUND = 0.15, 2.0  # [inches] height of a bar of colours, and of all that is around the drawings
 DENSITY, _SPAN = "inferno", 100.0  # colours of energies per area, and largest over least
-PARTS = (
-    ("kept by the bead", style.PALE),
-    ("bending wave in the plate", style.BLUE),
-    ("plastic flow at the contact", style.ORANGE),
-    ("micro-slip and vibration", style.GREEN),
-    ("friction along the plate", style.SKY),
-)
-_DARK = style.BLUE, style.MUTED, style.GREEN
-_WIDE = 6.0  # [%], the width of a number with room around it
-
-
-def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> None:
-    """Stack shares from left to right, with the numbers of those that have room for theirs."""
-    begins = 0.0
-    for (name, colour), share in parts:
-        length = 100.0 * share
-        if length < 0.05:
-            continue
-        axes.barh(y, length, 0.7, begins, color=colour, label=name, edgecolor="white")
-        if length >= _WIDE:
-            ink = "white" if colour in _DARK else style.INK
-            axes.text(begins + 0.5 * length, y, f"{length:.0f}", ha="center", va="center", color=ink, fontsize=11)
-        begins += length
-
-
-def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") -> None:
-    """Give every wall a column, with its name below."""
-    crowded = len(labels) > 10
-    axes.set_xticks(range(len(labels)), labels, rotation=60 if crowded else 0)
-    axes.set_xlim(-0.55, len(labels) - 0.45)
-    axes.set_xlabel(what)
-    axes.grid(visible=False, axis="x")
 
 
 def density_scale(values: Sequence[Array]) -> LogNorm:
@@ -68,6 +37,7 @@ def sheet(axes: Axes, corners: NDArray[np.floating], value: Array, scale: LogNor
 
 def density_bar(figure: Figure, drawn: Any, axes: Sequence[Axes]) -> None:
     """Explain the colours of a `sheet` below some axes."""
-    bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=0.06, pad=0.03, aspect=50)
-    bar.set_label("dissipated energy [J/m²]")
+    part = _BAR / max(figure.get_figheight() - _AROUND, 4.0 * _BAR)
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=part, pad=0.4 * part, aspect=40)
+    bar.set_label("energy taken per area [J/m²]")
     style.decades(bar.ax.xaxis, (1.0, 2.0, 5.0))

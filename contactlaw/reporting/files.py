@@ -1,6 +1,5 @@
 """The folder of a report."""
 
-import datetime
 import json
 import os
 from collections.abc import Sequence
@@ -16,10 +15,10 @@ from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
 from contactlaw.reporting.meshes import with_meshes
 from contactlaw.reporting.run import Run, taken
-from contactlaw.reporting.surface import EnergyMap, areas, ply, vtk
+from contactlaw.reporting.surface import EnergyMap, areas, vtk
 from contactlaw.walls.mesh import Mesh
 
-_MAPS, _SERIES = ("energy.vtk", "energy.ply"), ".vtk.series"
+_MAP, _SERIES = "energy.vtk", ".vtk.series"
 
 
 def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()) -> Path:
@@ -39,7 +38,7 @@ def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Seque
     -------
     Path
         The page, index.html, which needs no other file. Beside it are its figures, summary.txt,
-        record.h5, and the map as energy.vtk and energy.ply.
+        record.h5, and the map, energy.vtk.
 
     Raises
     ------
@@ -59,38 +58,30 @@ def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Seque
         run.record.save(folder / "record.h5")
     try:
         with style.applied(), _atomic.folder(out) as folder:
-            pictures = {name: figures.draw(name, run) for name in figures.names()}
+            modules = figures.modules()
+            pictures = {name: style.png(module.draw(run)) for name, module in modules.items()}
             for name, picture in pictures.items():
                 (folder / f"{name}.png").write_bytes(picture)
             (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
             if run.map is not None:
                 from contactlaw.reporting.figures.places import colours
 
-                shown = colours(run.map)
-                for name, form in zip(_MAPS, (vtk, ply), strict=True):
-                    (folder / name).write_bytes(form(run.map, shown))
-            (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
+                (folder / _MAP).write_bytes(vtk(run.map, colours(run.map)))
+            text = page.template(__package__, "report.html").render(
+                facts=[summary.counts(run), run.left_out],
+                run=run,
+                summary=summary,
+                figures=page.shown(modules, pictures),
+                made=page.made({"contactlaw": VERSION}),
+            )
+            (folder / "index.html").write_text(text, encoding="utf-8")
     except Exception as error:
         kept = Path(out) / "record.h5"
         error.add_note(f"The record is in {kept}, and `contactlaw report {kept} --out {out}` draws it.")
         raise
     if run.map is None:
-        for name in _MAPS:  # of an earlier report
-            (Path(out) / name).unlink(missing_ok=True)
+        (Path(out) / _MAP).unlink(missing_ok=True)  # of an earlier report
     return Path(out) / "index.html"
-
-
-def _page(run: Run, pictures: dict[str, bytes]) -> str:
-    made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    return page.template(__package__, "report.html").render(
-        subject=run.subject,
-        facts=[summary.counts(run), *[run.left_out] * bool(run.left_out)],
-        run=run,
-        summary=summary,
-        figures=page.shown(figures.module, pictures),
-        map=run.map is not None,
-        made=page.made(made, {"contactlaw": VERSION}),
-    )
 
 
 def add_to_series(path: str | os.PathLike[str], times: Sequence[float], new: Record, force: Array) -> None:

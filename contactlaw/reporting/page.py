@@ -4,7 +4,8 @@
 """
 
 import base64
-from collections.abc import Callable, Mapping
+import datetime
+from collections.abc import Mapping
 from types import ModuleType
 from typing import NamedTuple
 
@@ -20,18 +21,18 @@ class Figure(NamedTuple):
     more: str
 
 
-def shown(module: Callable[[str], ModuleType], pictures: Mapping[str, bytes]) -> list[Figure]:
+def shown(modules: Mapping[str, ModuleType], pictures: Mapping[str, bytes]) -> list[Figure]:
     """Prepare figures for a page, with the docstrings of their modules for captions."""
-    found = []
+    figures = []
     for name, picture in pictures.items():
-        caption, _, more = str(module(name).__doc__).strip().partition("\n\n")
+        texts = (" ".join(text.split()) for text in str(modules[name].__doc__).partition("\n\n")[::2])
         image = f"data:image/png;base64,{base64.b64encode(picture).decode()}"
-        texts = (" ".join(text.split()) for text in (caption, more))
-        found.append(Figure(name, image, *texts))
-    return found
+        figures.append(Figure(name, image, *texts))
+    return figures
 
 
-def made(created: str, versions: Mapping[str, str]) -> str:
-    """Say when a run was made, and by which versions."""
-    programs = ", ".join(f"{name} {text}" for name, text in sorted(versions.items()))
-    return f"{created}; {programs}"
+def made(versions: Mapping[str, str]) -> str:
+    """Say when a page was made, and by which versions."""
+    now = datetime.datetime.now(datetime.UTC)
+    programs = ", ".join(f"{name} {version}" for name, version in sorted(versions.items()))
+    return f"Made on {now:%Y-%m-%d at %H:%M} UTC by {programs}"

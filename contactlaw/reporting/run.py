@@ -12,7 +12,6 @@ from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
-from contactlaw.physical.materials import Material
 from contactlaw.record.file import Record
 from contactlaw.reporting.surface import EnergyMap, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
@@ -20,7 +19,7 @@ from contactlaw.walls.motion import FARTHEST
 
 CAUSES = "wave", "plastic", "other", "friction"
 _CAUSED = tuple(f"{cause}_energy" for cause in CAUSES)
-# Least and largest numbers that can be; in contacts that are no impacts of the energies alone.
+# Least and largest values; of contacts that are no impacts only the energies are checked.
 _LIMITS = {
     "approach_speed": (V_MIN, V_MAX),
     "restitution": (-1.0, 2.0),
@@ -32,40 +31,33 @@ _LIMITS = {
     **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
 }
 _NEEDED = *_LIMITS, "kind", "plate", "triangle", "flags"
-_MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
+_MOST = 12  # rows of walls; of more walls, those that take the least energy share the last row
 OTHERS = "other walls"
 
 
 class WallRow(NamedTuple):
     """What happened on one wall."""
 
-    name: str  # number of the wall, its thickness, and its material where that is known
+    name: str  # number of the wall, its thickness, and its materials where the run has several
     rows: Rows  # contacts on it
     impacts: Rows  # those of them that are impacts
     best: Constant | None  # one COR for all of the impacts; None without any
 
 
-class Shares(NamedTuple):
-    """Shares of the energy that impacts bring, which sum to 1.
+def shares(rows: Rows, friction: bool) -> Array:
+    """Find where the energy of impacts went: shares kept and lost by each of `CAUSES`, with sum 1.
 
     Without friction it is the kinetic energy of the normal motion, with friction that of the
     contact point, m v_n^2/2 + m v_s^2/7 with the sliding speed v_s: an impact changes no other.
+    Without impacts the shares are 0.
     """
-
-    kept: float
-    wave: float
-    plastic: float
-    other: float
-    friction: float
-
-
-def shares(rows: Rows, mass: Array, friction: bool) -> Shares:
-    """Find where the energy of impacts went; `mass` is that of the bead of each [kg]."""
-    total = 0.5 * float((mass * rows["approach_speed"] ** 2).sum())
+    if not rows.size:
+        return np.zeros(1 + len(CAUSES))
+    total = 0.5 * (rows["mass"] * rows["approach_speed"] ** 2).sum()
     if friction:
-        total += float((mass * rows["sliding_speed"] ** 2).sum()) / 7.0
-    lost = (by_cause(rows) / total).tolist()
-    return Shares(1.0 - sum(lost), *lost)
+        total += (rows["mass"] * rows["sliding_speed"] ** 2).sum() / 7.0
+    lost = by_cause(rows) / total
+    return np.append(1.0 - lost.sum(), lost)
 
 
 def by_cause(rows: Rows) -> Array:
@@ -97,9 +89,8 @@ class Run:
             wrong = on_walls & ~((least <= values) & (values <= most) | unknown)
             if wrong.any():
                 row = int(np.argmax(wrong))
-                limits = f"it must lie between {least:g} and {most:g}"
-                said = f"{name} of row {row} is {float(values[row])!r}"
-                raise ArgumentError("record", None, f"{said}: leave the row out; {limits}")
+                remedy = f"leave the row out; it must lie between {least:g} and {most:g}"
+                raise ArgumentError("record", None, f"{name} of row {row} is {float(values[row])!r}: {remedy}")
 
     @cached_property
     def on_walls(self) -> Record:
@@ -124,10 +115,10 @@ class Run:
     @cached_property
     def subject(self) -> str:
         """What the run is: the materials and the engine, as far as they are known."""
-        spheres, plates = ({pair[n].name for pair in self._materials} for n in range(2))
-        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(plates))}" if spheres else ""
+        spheres, walls = self._materials
+        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(walls))}" if spheres else "materials not recorded"
         engine = self.record.made.get("engine")
-        return ", ".join([pair] * bool(pair) + [f"in {engine}"] * bool(engine)) or "unknown beads"
+        return f"{pair}, in {engine}" if engine else pair
 
     @cached_property
     def walls(self) -> list[WallRow]:
@@ -147,19 +138,18 @@ class Run:
         return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
 
     def _name(self, plate: int, thickness: float, bodies: int) -> str:
-        """Name a wall; materials are told if there are several, else the run's subject has them."""
-        name = f"{plate}: {drawn(thickness, digits=4)}"
-        if bodies < 0:
-            return name
-        several = [len({pair[n] for pair in self._materials}) > 1 for n in range(2)]
-        sphere, wall = self.record.bodies[bodies].materials
-        return name + f" {wall.name}" * several[1] + f", {sphere.name}" * several[0]
+        """Name a wall, with the materials in which the walls of this run differ."""
+        sphere, wall = self.record.bodies[bodies].materials if bodies >= 0 else (None, None)
+        spheres, walls = self._materials
+        of = f" of {wall.name}" if wall and len(walls) > 1 else " thick" * math.isfinite(thickness)
+        beads = f", beads of {sphere.name}" if sphere and len(spheres) > 1 else ""
+        return f"wall {plate}, {drawn(thickness, digits=4)}{of}{beads}"
 
     @cached_property
-    def _materials(self) -> list[tuple[Material, Material]]:
-        """Materials of beads and walls that meet."""
-        used = np.unique(self.on_walls.which)
-        return [self.record.bodies[n].materials for n in used[used >= 0].tolist()]
+    def _materials(self) -> tuple[set[str], set[str]]:
+        """Names of the materials of beads, and of walls, that meet."""
+        pairs = [self.record.bodies[n].materials for n in set(self.on_walls.which.tolist()) - {-1}]
+        return {sphere.name for sphere, _ in pairs}, {wall.name for _, wall in pairs}
 
     @cached_property
     def map(self) -> EnergyMap | None:

@@ -1,23 +1,30 @@
 """The numbers of a run in words: two tables, for the text and the page."""
 
+import textwrap
+
 import numpy as np
 
 from contactlaw._readable import relative, rounded, scale_of
-from contactlaw.reporting.limits import exceeded, limits_lines
+from contactlaw.reporting.limits import exceeded
 from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
 
 Table = list[tuple[str, ...]]
 
 ENERGY = (
-    "Energy that contacts took from the beads, by where it went: into bending waves of the wall, "
-    "lost at the contact, into micro-slip and vibration (other), to friction. All contacts count."
+    "This is the energy that the walls took from the beads, by where it went: into bending waves of the wall, "
+    "into losses at the contact (plastic), into micro-slip and vibration (other), and into friction. All "
+    "contacts count, also those that are no free impacts."
 )
 CONSTANT = (
-    "The constant is the one COR with which these impacts take the same energy in all. With it, "
-    "95 of 100 beads rebound to a height within the next column of their own; with the plain mean "
-    "of the CORs the wall takes too much or too little energy by the last one. Another COR causes "
-    "other impacts: where beads bounce again and again, repeat with its record."
+    "Nine in ten impacts have a COR in the range of that column. "
+    "If each of these impacts had the constant COR, the walls would take the same energy in all, and for "
+    "95 % of the beads the rebound height would be wrong by less than the last column. Another COR causes "
+    "other impacts: where beads bounce again and again, simulate with the constant, and take the constant "
+    "of that run."
 )
+OUTSIDE = "These impacts are outside a limit of the model; their numbers deserve less trust."
+INSIDE = "All impacts on walls are inside every limit of the model."
+_WIDTH = 80  # of the text
 
 
 def counts(run: Run) -> str:
@@ -26,51 +33,61 @@ def counts(run: Run) -> str:
     names, beads = run.impacts.dtype.names or (), float(count)
     if "parcel" in names:
         beads = float((np.maximum(run.impacts["parcel"], 1.0) ** 3).sum())
-    stand = f", which stand for {beads:.6g} of true beads" if beads != count else ""
+    stand = f", which stand for {beads:.6g} of single beads" if beads != count else ""
     return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}{stand}, {run.subject}"
 
 
 def text(run: Run) -> str:
     """Write the summary for a text file."""
-    lines = [counts(run), *([run.left_out] if run.left_out else [])]
-    for table, note in ((impacts(run), CONSTANT), (energies(run), ENERGY)):
-        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-        lines += ["", *("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in table)]
-        lines += ["", note]
-    return "\n".join([*lines, "", *limits_lines(exceeded(run.impacts["flags"]))])
+    outside = exceeded(run.impacts["flags"])
+    lines = [*_wrapped(counts(run)), *_wrapped(run.left_out), ""]
+    lines += [*_columns(impacts(run)), "", *_wrapped(CONSTANT), ""]
+    lines += [*_columns(energies(run)), "", *_wrapped(ENERGY), "", OUTSIDE if outside else INSIDE]
+    return "\n".join(lines + [line for one in outside.items() for line in _wrapped("  {}: {}".format(*one))])
+
+
+def _wrapped(paragraph: str) -> list[str]:
+    return textwrap.wrap(paragraph, _WIDTH, subsequent_indent="  " * paragraph.startswith(" "))
+
+
+def _columns(table: Table) -> list[str]:
+    """Lines of a table whose heads have a line for each word."""
+    words = [name.split() for name in table[0]]
+    deep = max(map(len, words))
+    rows = [*zip(*([""] * (deep - len(one)) + one for one in words), strict=True), *table[1:]]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
 
 
 def impacts(run: Run) -> Table:
     """Impacts, their speeds and CORs, and one constant for each wall."""
-    head = ("wall", "impacts", "speed", "COR", "nine in ten", "constant", "rebound", "mean: energy")
+    head = ("wall", "impacts", "median speed [m/s]", "median COR", "nine in ten", "constant COR", "height error")
     return [head, *(_impacts(wall) for wall in run.walls)]
 
 
 def _impacts(wall: WallRow) -> tuple[str, ...]:
     best, rows = wall.best, wall.impacts
     if best is None:
-        return (wall.name, "0", *["-"] * 6)
+        return (wall.name, "0", *["-"] * 5)
     low, middle, high = np.quantile(rows["restitution"], [0.05, 0.5, 0.95])
     return (
         wall.name,
         f"{rows.size}",
-        f"{np.median(rows['approach_speed']):.3g} m/s",
+        f"{np.median(rows['approach_speed']):.3g}",
         f"{middle:.3f}",
-        f"{low:.3f}-{high:.3f}",
+        f"{low:.2f}-{high:.2f}",
         f"{best.restitution:.4f}",
         relative(best.rebound_error),
-        relative(best.mean_energy_error, "+z.1%"),
     )
 
 
 def energies(run: Run) -> Table:
     """Energy that each wall and each cause took, and the sums, in the unit that suits the whole."""
-    found: Table = [("wall", "contacts", *CAUSES, "in all", "share")]
     whole = by_cause(run.rows).sum() or 1.0
     unit, scale = scale_of(whole, "J")
+    table: Table = [("wall", *(f"{name} [{unit.replace('u', 'µ')}]" for name in (*CAUSES, "all")), "share")]
     for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
         parts = by_cause(rows)
         sizes = (rounded(part / scale, 3) for part in (*parts, parts.sum()))
-        shown = (f"{size} {unit.replace('u', 'µ')}" for size in sizes)
-        found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
-    return found
+        table.append((name, *sizes, f"{parts.sum() / whole:z.1%}"))
+    return table

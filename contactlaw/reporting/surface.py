@@ -138,22 +138,6 @@ def vtk(found: EnergyMap, colours: Array | None = None) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def ply(found: EnergyMap, colours: Array) -> bytes:
-    """Write a map as PLY text, with the colours of `vtk`, for viewers of meshes."""
-    n = len(found.corners)
-    corner = [f"property {kind}" for kind in ("double x", "double y", "double z")]
-    corner += [f"property uchar {name}" for name in ("red", "green", "blue")]
-    head = ["ply", "format ascii 1.0", "comment contactlaw: energy by wall [m, J]"]
-    head += [f"element vertex {3 * n}", *corner, f"element face {n}"]
-    head += ["property list uchar int vertex_indices", "property double energy_J"]
-    head += ["property double J_per_m2", "end_header"]
-    values = _rows(np.column_stack((found.energy, found.density)))
-    shades = np.repeat((255.0 * colours).round().astype(int), 3, axis=0).tolist()
-    points = (f"{p} {r} {g} {b}" for p, (r, g, b) in zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))
-    faces = (f"{face} {value}" for face, value in zip(_faces(n), values, strict=True))
-    return "\n".join([*head, *points, *faces, ""]).encode()
-
-
 def _rows(values: NDArray[np.generic]) -> list[str]:
     return [" ".join(f"{value:.9g}" for value in row) for row in values.tolist()]
 

@@ -18,17 +18,13 @@ from dem_demo.kit.drawing import panels, source
 from dem_demo.kit.run import Runs
 
 _BINS = 36
-_LOSSES = (
-    ("wave_energy", "bending wave in the plate", style.BLUE),
-    ("plastic_energy", "lost at the contact", style.ORANGE),
-)
 
 
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw the shell as a clock, under the law and with a constant COR."""
     figure = style.figure(
-        12.0,
-        7.5,
+        style.COLUMN,
+        10.6,
         "Where round the drum its shell dissipates energy",
         f"{source(runs)}; seen along the axis, {360 // _BINS} degrees per bar, "
         f"energy dissipated in {runs[0].time[-1] * 1e3:.0f} ms",
@@ -37,8 +33,9 @@ def draw(runs: Runs[Drum]) -> Figure:
     for axes, run in panels(figure, runs, projection="polar"):
         rows, bottom = run.contacts[run.contacts["plate"] == 0], np.zeros(_BINS)
         angle = np.arctan2(rows["x"], rows["z"]) % math.tau  # clockwise from the top
-        for column, text, colour in _LOSSES:
-            share = 1e6 * np.histogram(angle, _BINS, (0.0, math.tau), weights=rows[column])[0]
+        for name in ("wave", "plastic"):
+            share = 1e6 * np.histogram(angle, _BINS, (0.0, math.tau), weights=rows[f"{name}_energy"])[0]
+            text, colour = style.ENERGIES[name]
             middle = width * (np.arange(_BINS) + 0.5)
             axes.bar(middle, share, width, bottom, color=colour, label=text, edgecolor="white", linewidth=0.6)
             bottom += share

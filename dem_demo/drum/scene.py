@@ -30,7 +30,7 @@ class Drum(Bed):
     """Beads in a drum, which turns about the y axis and begins at y = 0."""
 
     NAME, FRAME_RATE, WALL, FLAT = "drum", 200.0, "drum", "at a seam of shell and end"
-    STACKED, FILM_RATE = False, 12.0
+    FILM_RATE = 12.0
     DRIVE = "torque", "mN m", 4, -1e3
     PAGE = {  # noqa: RUF012
         "heading": "Beads in a turning drum",

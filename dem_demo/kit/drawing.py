@@ -15,7 +15,7 @@ from dem_demo.kit.run import B, Run, Runs, S
 from dem_demo.kit.scene import FLYING
 
 MM = 1e3
-_WIDTH, _ROOM = 9.0, 0.75  # [inches]: width of a film, and height of a panel's title and labels
+_DRAWN, _ROOM = 0.78 * style.COLUMN, 0.75  # [inches]: width of a drawing, and height of its title and labels
 
 
 def source(runs: Runs[S]) -> str:
@@ -24,13 +24,10 @@ def source(runs: Runs[S]) -> str:
     return f"{scene.radius.size} beads of {scene.sphere_material.name} on {scene.sheet}"
 
 
-def panels(
-    figure: Figure, runs: Runs[B], *, stacked: bool = False, projection: str | None = None
-) -> list[tuple[Axes, Run[B]]]:
-    """Make a panel for each run, titled with the name of the run; all have the same scale."""
-    shape = (len(runs), 1) if stacked else (1, len(runs))
+def panels(figure: Figure, runs: Runs[B], *, projection: str | None = None) -> list[tuple[Axes, Run[B]]]:
+    """Make a panel for each run, one above the other, titled with its name; all have the same scale."""
     kind = {"projection": projection}
-    grid = figure.subplots(*shape, sharex=True, sharey=True, squeeze=False, subplot_kw=kind)
+    grid = figure.subplots(len(runs), 1, sharex=True, sharey=True, squeeze=False, subplot_kw=kind)
     found = list(zip(grid.flat, runs, strict=True))
     for axes, run in found:
         kind_of_run = "contactlaw," if run.making.constant_cor is None else "constant"
@@ -82,7 +79,7 @@ class Drawing:
 
 def drawings(figure: Figure, runs: Runs[B]) -> list[Drawing]:
     """Draw both runs, with a scale of the colours."""
-    shown, colours = panels(figure, runs, stacked=runs[0].scene.STACKED), restitution_range(runs[0])
+    shown, colours = panels(figure, runs), restitution_range(runs[0])
     found = [Drawing(axes, run, colours) for axes, run in shown]
     bar = figure.colorbar(found[0].beads, ax=[axes for axes, _ in shown], pad=0.02, fraction=0.03)
     bar.set_label("COR of the last impact")
@@ -104,13 +101,10 @@ def gif(runs: Runs[B]) -> bytes:
 
         return show, [clock, *(artist for drawing in drawn for artist in (drawing.walls, drawing.beads))]
 
-    size = _WIDTH, height(runs, 0.85 * _WIDTH, _ROOM)
-    return film.film(size, lay_out, runs[0].time.tolist(), runs[0].scene.FILM_RATE)
+    return film.film((style.COLUMN, height(runs)), lay_out, runs[0].time.tolist(), runs[0].scene.FILM_RATE)
 
 
-def height(runs: Runs[B], width: float, room: float) -> float:
-    """Height of all panels for their width, with room for the title of each [inches]."""
-    scene, count = runs[0].scene, len(runs)
-    left, right, bottom, top = scene.window
-    rows, wide = (count, width) if scene.STACKED else (1, width / count)
-    return rows * (room + wide * (top - bottom) / (right - left))
+def height(runs: Runs[B]) -> float:
+    """Height of all drawings, with room for the title of each [inches]."""
+    left, right, bottom, top = runs[0].scene.window
+    return len(runs) * (_ROOM + _DRAWN * (top - bottom) / (right - left))

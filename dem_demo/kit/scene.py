@@ -88,7 +88,6 @@ class Bed(Scene):
     """Beads on moving walls of sheet metal, in three dimensions."""
 
     FLAT: ClassVar[str]  # where impacts have no COR of their own: "at a rim or a wall"
-    STACKED: ClassVar[bool]  # whether pictures of two runs are one above the other
     FILM_RATE: ClassVar[float]  # frames per second of the film [1/s]
     DRIVE: ClassVar[tuple[str, str, int, float]] = "power", "mW", 6, 1e3  # of walls: column and factor of `Run.borne`
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import datetime
 import math
 import sys
 import traceback
@@ -96,23 +95,22 @@ def make(show: Show, runs: Runs[Any], text: str, folder: Path) -> None:
         (folder / f"{name}.png").write_bytes(pictures[name])
     film = show.film(runs)
     (folder / f"{runs[0].scene.NAME}.gif").write_bytes(film)
-    run = runs[0]
+    run, (what, how) = runs[0], title(runs[0])
     made, engine = run.record.made, run.record.made["engine"]
-    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     page = common.template(show.package, "page.html").render(
         run.scene.PAGE,
         title=f"{run.scene.PAGE['heading']}: what contactlaw gives a particle simulation",
-        facts=title(run),
+        facts=(what, f"{how}."),
         name=run.scene.NAME,
         film=f"data:image/gif;base64,{base64.b64encode(film).decode('ascii')}",
         measured=_columns(runs),
         impacts=of_any_run.Run(run.record),
         summary=tables,
-        figures=common.shown(modules.__getitem__, pictures),
+        figures=common.shown(modules, pictures),
         command=run.making.command,
         law=run.law,
         source=run.model.force_law.source,
-        made=common.made(now, {"contactlaw": VERSION, engine: made["version_engine"]}),
+        made=common.made({"contactlaw": VERSION, engine: made["version_engine"]}),
         **show.data(runs),
     )
     (folder / "index.html").write_text(page, encoding="utf-8")

@@ -1,3 +1,5 @@
+// All quantities are in metres and seconds; only the drawing functions use pixels.
+const still = matchMedia("(prefers-reduced-motion: reduce)").matches, MUTED = "#a9a9a9";
 const data = JSON.parse(document.getElementById("data").textContent);
 
 function unpack(text, fields) {
@@ -84,6 +86,32 @@ function drawRain(pen, width, tall) {
 }
 
 // One hit: motion of bead and plate, and contact force.
+// 1 - (2/pi) Si(s): how the answer of a thin infinite plate to a tap spreads, s = r^2/(4 spread t).
+const SPREAD = (() => {
+  const step = 0.05, table = [1];
+  const sinc = (s) => (s ? Math.sin(s) / s : 1);
+  for (let s = 0; s < 60; s += step)
+    table.push(table[table.length - 1] - (2 / Math.PI) * step * sinc(s + step / 2));
+  return (s) => (s < 60 ? table[Math.round(s / step)] : 0);
+})();
+
+function sampled(values, time) {
+  const place = Math.min(1, Math.max(0, time)) * (values.length - 1), n = Math.floor(place);
+  return n + 1 < values.length ? values[n] + (place - n) * (values[n + 1] - values[n]) : values[n];
+}
+
+// Displacement of the plate at a distance from the contact, at a time in contact times.
+function deflection(one, distance, time) {
+  const BINS = 24;
+  let sum = 0;
+  for (let k = 0; k < BINS && k < time * BINS; k++) {
+    const part = sampled(one.displacement, (k + 1) / BINS) - sampled(one.displacement, k / BINS);
+    const age = Math.max(1e-3, time - (k + 0.5) / BINS) * one.duration;
+    sum += part * SPREAD((distance * distance) / (4 * one.spread * age));
+  }
+  return sum;
+}
+
 const hits = data.hits;
 const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after touch; seconds
 let hit = hits[0], phase = still ? 0.5 : -BEFORE; // in contact times
@@ -92,8 +120,37 @@ const most = Math.max(...hits.map((one) =>
   Math.max(...one.compression.map((c, n) => (c + one.displacement[n]) / one.radius))));
 const EXAGGERATED = Math.max(1, Math.round(0.35 / most));
 
+// Bead and plate to scale, what moves EXAGGERATED times larger.
 function drawContact(pen, width, tall) {
-  drawHit(pen, width, tall, hit, phase, EXAGGERATED, colour(phase < 0 ? NaN : hit.model));
+  const scale = width / (11 * hit.radius), radius = hit.radius * scale, ground = 0.62 * tall;
+  const shift = (metres) => metres * scale * EXAGGERATED;
+  const depth = Math.min(hit.thickness * scale, 0.5 * tall);
+  const surfaceAt = (x) => ground + shift(deflection(hit, Math.abs(x - width / 2) / scale, phase));
+  pen.beginPath();
+  for (let x = -3; x <= width + 3; x += 3) pen.lineTo(x, surfaceAt(x));
+  for (let x = width + 3; x >= -3; x -= 3) pen.lineTo(x, surfaceAt(x) + depth);
+  pen.fillStyle = "#cfd8dc";
+  pen.fill();
+  let gap = 0;
+  if (phase < 0) gap = -phase * hit.duration * hit.speed;
+  if (phase > 1) gap = (phase - 1) * hit.duration * hit.speed * hit.model - hit.compression.at(-1);
+  const pressed = phase >= 0 && phase <= 1 ? sampled(hit.compression, phase) : 0;
+  const sunk = phase < 0 ? 0 : pressed + sampled(hit.displacement, phase);
+  pen.save();
+  if (phase >= 0 && phase <= 1) { // the bead is flattened at the contact
+    pen.beginPath();
+    pen.rect(0, 0, width, surfaceAt(width / 2));
+    pen.clip();
+  }
+  circle(pen, width / 2, ground - radius - shift(gap) + shift(sunk), radius);
+  pen.fillStyle = colour(phase < 0 ? NaN : hit.model);
+  pen.fill();
+  pen.restore();
+  pen.fillStyle = INK;
+  pen.textAlign = "left";
+  pen.textBaseline = "top";
+  pen.font = "14px " + FONT;
+  pen.fillText((phase * hit.duration * 1e6).toFixed(1) + " µs", 10, 10);
 }
 
 function drawForce(pen, width, tall) {

@@ -33,7 +33,7 @@ def data(runs: Runs[Shower]) -> Mapping[str, Any]:
         "sample": f" {shown} of the {every} beads are shown." if shown < every else "",
         "cor": f"{run.mean_cor:.2f}" if run.impacts.size else "",
         "turning": f"{picture.TURNING:g}" if run.scene.friction else "",
-        "marked": ", and ringed in the animation and in the figures",
+        "marked": " They are ringed in the animation and in the figures.",
     }
 
 

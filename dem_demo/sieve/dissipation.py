@@ -21,7 +21,7 @@ def draw(runs: Runs[Sieve]) -> Figure:
     maps = [_map(run) for run in runs]
     scale = density_scale([found.density for found in maps])
     figure = style.figure(
-        12.0, 5.9, _title(maps, runs[1].name), f"{source(runs)}; dissipated in {runs[0].time[-1] * 1e3:.0f} ms"
+        style.COLUMN, 9.4, _title(maps, runs[1].name), f"{source(runs)}; dissipated in {runs[0].time[-1] * 1e3:.0f} ms"
     )
     shown = panels(figure, runs)
     for (axes, run), found in zip(shown, maps, strict=True):

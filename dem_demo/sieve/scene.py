@@ -39,7 +39,7 @@ class Sieve(Bed):
     """A feed of two sizes on a deck that vibrates about z = 0, at 45 degrees to it."""
 
     NAME, FRAME_RATE, WALL, FLAT = "sieve", 500.0, "deck", "at a rim or a wall"
-    STACKED, FILM_RATE = True, 8.0
+    FILM_RATE = 8.0
     PAGE = {  # noqa: RUF012
         "heading": "Beads on a vibrating sieve",
         "lede": "The deck is a mesh from an STL file. Under the law the rebound of each impact "

@@ -13,12 +13,16 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main
+from contactlaw.cli.fit.figure import figure as fit_figure
 from contactlaw.cli.parts import rebounds as tables
+from contactlaw.cli.parts.figure import MOST_CURVES, Figure
 from contactlaw.engines.record import IMPACT
+from contactlaw.physical import flight
 from contactlaw.physical.kind import Kind
 
 BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
 FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
+GLASS = ["--sphere", "glass", "--plate", "carbon-steel-1020", "--radius", "2mm"]
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +78,7 @@ def test_tables_as_people_write_them(head, rows, table):
     found = tables.read(path)
     sizes = {} if "radius" in found.columns else {"radius": RADIUS}
     data = tables.completed(found, path, 7800.0, thickness=THICKNESS, **sizes)
-    assert data.radius == pytest.approx([RADIUS] * 2) and found.unused == ()
+    assert data.radius == pytest.approx([RADIUS] * 2)
     assert data.speed == pytest.approx([1.0, 2.0])
     assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
     assert data.contact_time == pytest.approx([np.nan, 7.5e-6], nan_ok=True)
@@ -109,7 +113,7 @@ def test_what_phyphox_exports(name, between, point, table):
     wanted = cl.Measurements.of(times, density=7800.0)
     for field in ("speed", "restitution", "restitution_error"):
         assert getattr(data, field) == pytest.approx(getattr(wanted, field), rel=1e-6)
-    assert data.restitution == pytest.approx([0.9, 0.9], abs=2e-3) and found.unused == () and len(found.lines) == 1
+    assert data.restitution == pytest.approx([0.9, 0.9], abs=2e-3) and len(found.lines) == 1
 
 
 def test_a_head_says_what_options_may_say(usual, table, capsys):
@@ -139,11 +143,11 @@ def test_a_head_says_what_options_may_say(usual, table, capsys):
         ),
         (["v,COR,diameter,radius", "1,0.5,1,1"], "columns of radius and of diameter"),
         (["speed,COR", "", "1,o.5"], "line 3, column 'COR': 'o.5' is no number"),
-        (["speed;COR", "1;0,5", "2;1,5"], "line 3: restitution: got 1.5 (element 1)"),
+        (["speed;COR", "1;0,5", "2;1,5"], "line 3: restitution: got 1.5; must lie"),
         (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
-        (["drop_cm,bounce_cm", "30,12", "12,30"], "line 3: bounce: got 0.3 (element 1); a bead that arrives at 1.5"),
+        (["drop_cm,bounce_cm", "30,12", "12,30"], "line 3: bounce: got 0.3; a bead that arrives at 1.5"),
         (["drop,bounce", "30,12"], "drop: got 30.0; must lie between 1e-05 and 10 metres; in cm"),
-        (["drop_mm,t1_ms,t2_ms", "300,400,400"], "line 2: t2: got 0.4 (element 0); a bead that arrives at 1.9"),
+        (["drop_mm,t1_ms,t2_ms", "300,400,400"], "line 2: t2: got 0.4; a bead that arrives at 1.9"),
         (["drop_cm,t1,t2", "30,400,300"], "t1: got 400.0; must lie between 0.001 and 5 seconds; in ms"),
         (["drop_cm,v,COR", "30,2.4,0.9"], "drop: give speeds or drops, not both"),
         (["bounce_cm", "30"], "drop: a bounce alone has no COR: add this, its speed"),
@@ -157,12 +161,12 @@ def test_a_head_says_what_options_may_say(usual, table, capsys):
         (["speed,COR", "1,", "2,n/a"], "none of its rows has a number in a column of what is"),
         (["speed,COR", "-1,0.5"], "speed: got -1.0"),
         (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
-        (["speed,COR", "1.0,0.5", "", "1,5,0.5"], "line 4 has 3 fields, '1,5,0.5', where the first"),
-        (["# in May", "speed;COR", "1;2"], ", line 3: restitution: got 2.0 (element 0)"),
+        (["speed,COR", "1.0,0.5", "", "1,5,0.5"], "line 4 fills 3 of 2 columns, '1,5,0.5'"),
+        (["# in May", "speed;COR", "1;2"], ": line 3: restitution: got 2.0"),
         (["speed,COR", "1,88.5%"], "is no number such as 1.5; units belong into the name of the"),
         (["speed,COR", "1,5,0,5"], "a decimal comma? Write numbers with a point"),
         (["speed;COR", "1;0.5;late"], "delete what is beyond the columns"),
-        (["speed,COR", "# ours", "1"], "line 3 has 1 field, '1', where the first line names 2"),
+        (["speed,COR", "# ours", "1"], "line 3 fills 1 of 2 columns, '1'"),
         (["speed,COR,radius_mm", "1,0.5,1"], "--radius: the table has its own"),
     ],
 )
@@ -175,7 +179,6 @@ def test_tables_that_are_refused(lines, words, table, capsys):
     [
         ([*BODIES, "--unknown", "thickness"], "--radius: has to be given"),
         ([*FIT, "--thickness", "1mm"], "--thickness: is unknown and given"),
-        ([*BODIES, "--radius", "1mm", "--unknown", "thickness,colour"], "--unknown: got 'colour'"),
         (
             [*FIT, "--prior", "plate_yield_strength=5GPa"],
             "--prior: got 5000000000.0; the error of plate_yield_strength must",
@@ -199,15 +202,17 @@ def test_a_prior_with_its_unit(usual, found, capsys):
     assert own.errors["thickness"] > 1.2 * found.errors["thickness"]
 
 
-def test_friction_from_a_table_with_angles(table, capsys, tmp_path):
-    """As `contactlaw oblique` has it: angles from the normal, and the speed of the bead."""
+def test_friction_from_a_table_with_angles(table, capsys, tmp_path, figures):
+    """As `contactlaw cor` has it: angles from the normal, and the speed of the bead."""
     rows = ("300,20,,5000", "300,60,0.95,", "300,70,0.96,2500")
     path = table("speed_cm/s,angle_deg,Tangential restitution,spin [rpm]", *rows)
     options = [*BODIES, "--radius", "1mm", "--thickness", "inf"]
     plot = tmp_path / "friction.png"
     assert main(["fit", path, *options, "--unknown", "friction", "--plot", str(plot)]) == 0
     assert plot.read_bytes().startswith(b"\x89PNG")
-    found = re.search(r"coefficient of friction  (\S+) \+- (\S+)\n", capsys.readouterr().out)
+    ((curve,), (points,)) = figures[0].curves, figures[0].points
+    assert figures[0].x == "angle" and points.x == pytest.approx([60.0, 70.0])
+    found = re.search(r"coefficient of friction  (\S+) \+- (\S+) ", capsys.readouterr().out)
     angle = [20.0, 60.0, 70.0]
     data = {"speed": 3.0, "angle": angle, "radius": 1e-3, "thickness": np.inf}
     data["tangential_restitution"] = [np.nan, 0.95, 0.96]
@@ -215,8 +220,13 @@ def test_friction_from_a_table_with_angles(table, capsys, tmp_path):
     own = cl.fit(STEEL, data, "friction")
     assert float(found[1]) == pytest.approx(own.values["friction"], rel=0.01)
     assert float(found[2]) == pytest.approx(own.errors["friction"], rel=0.05)
+    slope = np.radians(curve.x[60])
+    hit = cl.ImpactModel(STEEL).oblique(
+        3.0 * np.cos(slope), 3.0 * np.sin(slope), 1e-3, np.inf, own.values["friction"], method="solve"
+    )
+    assert curve.y[60] == pytest.approx(hit.tangential_restitution, rel=1e-4)
     wrong = [*options, "--unknown", "plate_density", "--friction", "-1"]
-    refused(["fit", path, *wrong], "--friction: got -1.0", capsys=capsys)
+    refused(["fit", path, *wrong], "--friction: got '-1'", capsys=capsys)
     path = table("normal speed,angle,beta", "3,60,0.1")
     wrong = ["fit", path, *options, "--unknown", "friction"]
     refused(wrong, "with angles the speed is that of the bead", capsys=capsys)
@@ -256,22 +266,26 @@ def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(tmp_path, capsys)
     assert "restitution of rebound 1, line 4 is above 1" in capsys.readouterr().err
 
 
-def test_a_picture(usual, tmp_path, capsys, monkeypatch):
-    from matplotlib.figure import Figure
+@pytest.fixture
+def figures(monkeypatch):
+    """Figures that are drawn."""
+    drawn, save = [], Figure.save
+    monkeypatch.setattr(Figure, "save", lambda self, path: (drawn.append(self), save(self, path)))
+    return drawn
 
-    drawn = []
-    save = Figure.savefig
-    monkeypatch.setattr(Figure, "savefig", lambda self, *a, **named: (drawn.append(self), save(self, *a, **named)))
+
+def test_a_picture(usual, tmp_path, capsys, monkeypatch, figures):
     path = tmp_path / "fit.png"
     unknown = ["--thickness", "1.2mm", "--unknown", "plate_yield_strength"]
     assert main(["fit", usual, *BODIES, "--radius", "1mm", *unknown, "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(b"\x89PNG")
-    ((above, below),) = [figure.axes for figure in drawn]
-    curve = max((line for line in above.lines), key=lambda line: len(line.get_xdata()))
-    table = cl.ImpactModel(STEEL, outside="solve")
-    middle = curve.get_xdata()[80]
-    assert curve.get_ydata()[80] == pytest.approx(table.solve(middle, RADIUS, THICKNESS).restitution, rel=0.01)
-    assert above.collections and below.collections  # bands
+    (figure,) = figures
+    (curve,), (points,) = figure.curves, figure.points
+    middle = curve.x.size // 2
+    model = cl.ImpactModel(STEEL).solve(curve.x[middle], RADIUS, THICKNESS)
+    assert curve.y[middle] == pytest.approx(model.restitution, rel=0.01)
+    assert (curve.low < curve.y).all() and (curve.y < curve.high).all() and points.x.size == points.error.size == 12
+    assert "Yield strength of the plate" in figure.title and "thickness 1.2 mm" in figure.about
     assert str(path) in capsys.readouterr().out
     path.write_text("before")
     monkeypatch.setattr(os, "fsync", full)
@@ -279,19 +293,33 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
     assert path.read_text() == "before" and f"cannot write {path}: No" in capsys.readouterr().err
 
 
+def test_of_several_quantities_the_one_with_the_most_values_is_drawn(table, tmp_path, figures):
+    """And each plate has its curve, up to the most that can be distinguished."""
+    rows = [f"{v},0.3,,{h}" for v in (1, 2) for h in range(1, 13)]
+    path = table("speed_m/s,COR,contact_time_us,thickness_mm", "1,0.3,20,1", *rows)
+    asked = ["fit", path, *BODIES, "--radius", "1mm", "--unknown", "plate_yield_strength"]
+    assert main([*asked, "--plot", str(tmp_path / "fit.png")]) == 0
+    (figure,) = figures
+    assert (figure.x, figure.y) == ("thickness", "restitution") and len(figure.curves) == 2
+    assert [curve.label for curve in figure.curves] == ["speed 1 m/s", "speed 2 m/s"]
+    assert "Measured, but not drawn: contact time (1 value)" in figure.remarks
+    path = table("speed_m/s,COR,thickness_mm", *(f"{v},0.3,{h}" for v in range(1, 15) for h in range(1, 13)))
+    assert main([*asked, "--plot", str(tmp_path / "fit.png")]) == 0
+    _, figure = figures
+    assert len(figure.curves) == MOST_CURVES and len(figure.points) == MOST_CURVES + 1
+    assert sum(points.x.size for points in figure.points) == 14 * 12
+
+
 def full(*_):
     raise OSError(ENOSPC, os.strerror(ENOSPC))
 
 
-def test_where_yield_begins_is_drawn(tmp_path):
-    from contactlaw.cli.fit.figure import curve_of, groups_of
-
+def test_where_yield_begins_is_drawn():
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))
-    found = cl.fit(pair, data, "thickness")
-    (group,) = groups_of(found)
+    (curve,) = fit_figure(cl.fit(pair, data, "thickness"), "").curves
     expected = cl.ImpactModel(pair).yield_speed(RADIUS, THICKNESS)
-    assert curve_of(found, group).yield_speed == pytest.approx(expected, rel=1e-3)
+    assert np.interp(0.0, np.log(curve.overload), curve.x) == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -345,9 +373,48 @@ def test_a_record_of_a_run_is_fitted(run, found, capsys):
     assert printed["sphere"] == STEEL.sphere.name and len(printed["flags"]) == 12
     walls = record.part(record.which == 0)
     assert cl.fit(STEEL, walls, "thickness").values == pytest.approx(printed["values"], rel=1e-9)
-    assert main(asked) == 0 and "\n     11    11 " in capsys.readouterr().out
+    assert main(asked) == 0 and "\n  11       8  +" in capsys.readouterr().out
+    half = [f"{path[:-3]}{n}.npy" for n in (1, 2)]
+    for name, part in zip(half, (walls.rows[:7], walls.rows[7:]), strict=True):
+        np.save(name, part)
+    asked = ["fit", *half, *BODIES, "--unknown", "thickness"]
+    assert main([*asked, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["values"] == pytest.approx(printed["values"], rel=1e-9)
+    asked = ["fit", path, "--plate", STEEL.plate.name, "--unknown", "thickness"]
     for words, said in (
         (["fit", path, "--unknown", "thickness"], "several pairs, bearing-steel-52100 on aluminium"),
         ([*asked, "--radius", "1mm"], "--radius: the record has its own"),
     ):
         refused(words, said, capsys=capsys)
+
+
+def test_times_between_bounces_and_their_error_are_no_contact_times(tmp_path):
+    path = tmp_path / "drops.csv"
+    path.write_text("drop_cm,t1_ms,t2_ms,time_error_ms\n30,380,300,1\n")
+    data = tables.completed(tables.read(path), path, 2500.0, radius=2e-3)
+    assert data.contact_time is None and data.restitution_error == pytest.approx([0.00287, 0.00578], rel=0.02)
+    path.write_text("speed_m/s,time_us,time_error_us\n1,9,0.5\n")
+    assert tables.completed(tables.read(path), path, 2500.0).contact_time_error == pytest.approx(5e-7)
+    path.write_text("speed_m/s,drop_cm,bounce_cm\n2.4,,18\n,30,17\n")
+    assert tables.completed(tables.read(path), path, 2500.0, radius=2e-3).speed.size == 2
+
+
+@pytest.mark.filterwarnings("ignore:the air changes")
+def test_heights_in_place_of_speeds_and_cors(capsys):
+    fell, rose = (flight.of_height(z, 2e-3, cl.material("glass").density) for z in (0.3, 0.12))
+    assert main(["find", "thickness", *GLASS, "--drop", "30cm", "--bounce", "12cm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["speed"] == pytest.approx(float(fell.down))
+    assert found["restitution"] == pytest.approx(float(rose.up / fell.down))
+    noted = ["--drop", "30cm", "--bounce", "12cm", "--unknown", "thickness", "--json"]
+    assert main(["fit", *GLASS, *noted]) == 0
+    fitted = json.loads(capsys.readouterr().out)["values"]["thickness"]
+    assert fitted == pytest.approx(found["thickness"], rel=1e-3)
+    assert main(["cor", *GLASS, "--thickness", "3mm", "--drop", "30cm", "--json", "--no-band"]) == 0
+    assert json.loads(capsys.readouterr().out)["speed"] == pytest.approx(float(fell.down))
+    refused(["cor", *GLASS[:-1], "1mm,2mm", "--thickness", "3mm", "--drop", "1cm"], "--drop: takes one", capsys=capsys)
+    refused(["fit", *GLASS, "--unknown", "thickness"], "--drop, --bounce: give these without", capsys=capsys)
+    refused(["cor", *GLASS, "--thickness", "3mm", "--drop", "30"], "--drop: got '30'", capsys=capsys)
+    refused(["fit", *GLASS, "--unknown", "thickness", "--bounce", "9cm"], "--drop: a bounce alone", capsys=capsys)
+    small = [*GLASS[:-1], "10um", "--thickness", "3mm", "--drop", "30cm"]
+    refused(["cor", *small], "--radius: got '10um'; such a bead has fallen", capsys=capsys)

@@ -1,10 +1,12 @@
 """Materials of one's own on the command line, and lengths that are likelier millimetres."""
 
 import json
+import math
+import re
 
-import numpy as np
 import pytest
 from command_line import refused
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw.cli import main
@@ -30,8 +32,10 @@ source = {hardness = "measured"}
 
 [soft]
 like = "pmma"
-loss_factor = "handbook"
+loss_factor = [0.011, 1e3]
+uncertainty = {loss_factor = 0.98}
 """
+PAGE = (ROOT / "docs/materials.md").read_text("utf-8")
 IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".split()
 
 
@@ -48,18 +52,13 @@ def test_numbers_make_the_material_that_python_makes(text, more):
 
 def test_a_name_and_what_differs():
     """What is replaced has no known error any more, and a hardness is the strength."""
-    soft = material_of("plate", "pmma yield=70MPa loss_factor=handbook", {})
-    low, high = 0.002, 0.06  # the extremes of both handbooks
+    soft = material_of("plate", "pmma yield=70MPa", {})
     assert soft.yield_strength == 70e6 and soft.density == cl.material("pmma").density
     assert soft.uncertainty["youngs_modulus"] == 0.11 and "yield_strength" not in soft.uncertainty
-    middle, error = soft.loss_factor[0], soft.uncertainty["loss_factor"]
-    assert middle == pytest.approx((low * high) ** 0.5)
-    assert middle * np.exp([-(3**0.5) * error, 3**0.5 * error]) == pytest.approx([low, high])
-    band = cl.ImpactModel(cl.Pair(soft, "glass")).uncertainty(0.3, 3e-3, 20e-3).restitution
-    largest = max(band.causes, key=band.causes.get)
-    assert largest == "loss factor of the bead" and band.high - band.low > 0.02
     hard = material_of("plate", "steel-s235 hardness=140HV", {})
     assert hard.strength == hard.hardness / 3.0 and not hard.uncertainty.keys() - {"youngs_modulus"}
+    lighter, stronger = (material_of("plate", f"steel-s235 {text}", {}) for text in ("rho=7800", "yield=300MPa"))
+    assert (lighter.specified_minimum, stronger.specified_minimum, hard.specified_minimum) == (True, False, False)
 
 
 def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
@@ -71,15 +70,31 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     )
     assert mine["hard-304"].density == cl.material("304").density
     assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
-    assert mine["soft"].loss_factor == material_of("sphere", "pmma loss_factor=handbook", {}).loss_factor
+    band = cl.ImpactModel(cl.Pair(mine["soft"], "glass")).uncertainty(0.3, 3e-3, 20e-3).restitution
+    assert max(band.causes, key=band.causes.get) == "loss factor of the bead" and band.high - band.low > 0.02
     assert main(["cor", "--materials", str(path), "--sphere", "Delrin", *IMPACT]) == 0
     row = json.loads(capsys.readouterr().out)
     model = cl.ImpactModel(cl.Pair(mine["my-pom"], "steel-dc01"))
     assert row["restitution"] == pytest.approx(model.restitution(2.0, 1e-3, 1e-3), abs=1e-6)
     assert (row["sphere"], row["radius"]) == ("my-pom", 1e-3)
     assert main(["materials", "--materials", str(path)]) == 0
-    _, *rows = capsys.readouterr().out.splitlines()
-    assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"], ["soft", "2.700"]]
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [row[:2] for row in rows[2:5]] == [["hard-304", "193"], ["my-pom", "2.8"], ["soft", "2.7"]]
+
+
+@pytest.mark.parametrize(
+    ("like", "low", "high"),
+    [("pmma", 0.002, 0.06), *((name, 0.003, 0.1) for name in ("hdpe", "polypropylene", "polystyrene"))],
+)
+def test_the_lines_of_handbooks_are_those_of_their_extremes(like, low, high, tmp_path):
+    """In the logarithm, as if every value between the extremes were as likely."""
+    rows = re.findall(r"^\| ([a-z, ]+) \| `(loss_factor = .*?)`, `(uncertainty = .*?)` \|$", PAGE, re.MULTILINE)
+    (lines,) = [lines for names, *lines in rows if like in names.split(", ")]
+    path = tmp_path / "mine.toml"
+    path.write_text("\n".join(["[mine]", f'like = "{like}"', *lines]))
+    mine = cl.read_materials(path)["mine"]
+    assert mine.loss_factor == (pytest.approx(math.sqrt(low * high), rel=0.02), 1e3)
+    assert mine.uncertainty["loss_factor"] == pytest.approx(math.log(high / low) / math.sqrt(12.0), rel=0.02)
 
 
 def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):
@@ -102,7 +117,7 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
         ("E=2GPa E=3GPa nu=0.35 rho=1410", "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice"),
         ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
         ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
-        ("pom loss_factor=handbook", "no handbook has that of 'pom', but of hdpe, pmma"),
+        ("pmma loss_factor=handbook", "loss_factor has a frequency, too: write loss_factor = [0.03, 1e4]"),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
@@ -125,6 +140,9 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ('["delrin"]', '["pom-1", "POM_1"]', r"pom\]: leave out 'POM_1', a name of \[my-pom\]"),
         ("hard-304", "My-POM", r"\[My-POM\]: leave out 'My-POM', a name of \[my-pom\]"),
         ('["delrin"]', '"delrin"', r"\[my-pom\]: aliases must be a list of names, got 'delrin'"),
+        ("{yield_strength = 0.1}", "{yield_strength = inf}", "leave it out, and write specified_minimum = true"),
+        ("{yield_strength = 0.1}", "{yield_strength = -1.0}", r"write yield_strength = 9.3e\+07 and uncertainty = {"),
+        ("[0.011, 1e3]", '"handbook"', r"write loss_factor = \[0.03, 1e4\]"),
     ],
 )
 def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):

@@ -12,7 +12,7 @@ from rains import write_rain
 
 import contactlaw as cl
 from contactlaw import cli as cli_of_contactlaw
-from contactlaw.cli.constant.records import Recorded, _npy, combined, completed, read
+from contactlaw.cli.constant.records import Recorded, combined, completed, read
 from contactlaw.engines.record import IMPACT
 
 
@@ -90,6 +90,28 @@ def test_a_record_of_an_engine(tmp_path):
     assert found.weights.tolist() == [8.0, 27.0] and found.mass.tolist() == [1.0, 2.0]
 
 
+def test_files_of_several_ranks_are_one_run(tmp_path, capsys):
+    """Rows of two ranks, one of which has a parcel, beside one file with all of them."""
+    rows = recorded(tmp_path / "all.npy", [0, 0, 2, 0])
+    rows["time"], rows["parcel"] = np.arange(4), [1.0, 1.0, 1.0, 2.0]
+    rows["mass"] *= rows["parcel"] ** 3
+    np.save(tmp_path / "all.npy", rows)
+    for rank in range(2):
+        np.save(tmp_path / f"hits.{rank}.npy", rows[rank::2])
+    pair = ["--sphere", "gamma-alumina", "--plate", "glass", "--csv"]
+    answers = []
+    for names in (["all.npy"], ["hits.0.npy", "hits.1.npy"]):
+        assert cli_of_contactlaw.main(["constant", *(str(tmp_path / name) for name in names), *pair]) == 0
+        said = capsys.readouterr()
+        assert "Of 4 contacts, 25 % left over the edge of a wall; their COR" in said.err
+        answers.append(said.out)
+    assert answers[0] == answers[1]
+    assert read(tmp_path / "all.npy")[0].weights.tolist() == [1.0, 1.0, 8.0]
+    (tmp_path / "a.csv").write_text("speed_m/s,radius_mm\n1,1\n")
+    assert cli_of_contactlaw.main(["constant", str(tmp_path / "a.csv"), str(tmp_path / "all.npy"), *pair]) == 1
+    assert f"{tmp_path / 'a.csv'}: no HDF5 file" in capsys.readouterr().err
+
+
 def recorded(path, kinds):
     """An engine's record, a row for each kind, in a file of numpy or of text."""
     rows = np.zeros(len(kinds), IMPACT)
@@ -107,9 +129,9 @@ def recorded(path, kinds):
 def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     recorded(tmp_path / name, [0, 2, 0, 4, 2, 0])
     assert one(tmp_path / name).speed.tolist() == [1.0, 3.0, 6.0]
-    words = "3 of 6 rows are no impacts and left out: 2 over edge, 1 resting"
+    words = "Of 6 contacts, 33 % left over the edge of a wall and 17 % stayed as under their weight; their COR"
     pair = ["--sphere", "gamma-alumina", "--plate", "glass"]
-    command = ["constant", *pair, "--record", str(tmp_path / name)]
+    command = ["constant", *pair, str(tmp_path / name)]
     assert cli_of_contactlaw.main(command) == 0
     assert words in capsys.readouterr().err
     recorded(tmp_path / name, [0, 0])
@@ -117,7 +139,7 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     assert capsys.readouterr().err == ""
     recorded(tmp_path / name, [1, 1])
     assert cli_of_contactlaw.main(command) == 1
-    words = "it has no impact on a plate: 2 of 2 rows are no impacts and left out: 2 sliding on"
+    words = "it has no impact on a plate: Of 2 contacts, 100 % slid on from another wall; their COR"
     assert words in capsys.readouterr().err
 
 
@@ -125,11 +147,12 @@ def test_beads_of_two_materials_are_not_taken_for_one(tmp_path, capsys):
     rows = recorded(tmp_path / "a.npy", [0] * 5)
     rows["mass"][3:] *= cl.material("glass").density / cl.material("gamma-alumina").density
     np.save(tmp_path / "a.npy", rows)
-    for sphere, others in (("glass", "3 of 879"), ("gamma-alumina", "2 of 2500")):
-        command = ["constant", "--sphere", sphere, "--plate", "glass", "--record"]
+    for sphere, others in (("glass", (3, 879)), ("gamma-alumina", (2, 2500))):
+        command = ["constant", "--sphere", sphere, "--plate", "glass"]
         assert cli_of_contactlaw.main([*command, str(tmp_path / "a.npy")]) == 1
         said = capsys.readouterr().err
-        assert f"a.npy: {others[0]} of 5 impacts are" in said and f"{others} kg/m3: save" in said
+        count, density = others
+        assert f"a.npy: {count} of 5 impacts are" in said and f"from {density} to {density} kg/m3: save" in said
 
 
 def test_a_column_called_kind_in_another_table(tmp_path):
@@ -144,6 +167,8 @@ def test_a_column_called_kind_in_another_table(tmp_path):
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
         ("a.csv", "speed,plate\n1,-1\n", "it has no impact on a plate"),
+        ("a.csv", "speed,plate\n1,0.5\n", "plate: got 0.5; expected whole numbers"),
+        ("a.csv", "speed,plate\n1,nan\n", "plate: got nan; expected whole numbers"),
         ("a.csv", "speed_m/s\n1\nfast\n", "line 3, column 'speed_m/s': 'fast' is no number"),
         ("a.csv", "speed_m/s\n1\n-2\n", r"speed: got -2.0 \(element 1\); must lie between"),
         ("a.csv", "speed_m/s\n1\nnan\n", "speed: got nan"),
@@ -224,7 +249,7 @@ def test_rows_of_a_rain_that_are_no_impacts(rain, tmp_path):
     found = one(tmp_path / "rain.h5")
     assert found.speed.tolist() == [2.0, 3.0]
     assert found.thickness.tolist() == [math.inf, 0.5e-3]
-    assert found.left_out == "1 of 3 rows are no impacts and left out: 1 sliding on"
+    assert found.left_out.startswith("Of 3 contacts, 33 % slid on from another wall;")
 
 
 def absent(file, name):
@@ -334,7 +359,7 @@ def test_a_damaged_rain_is_refused_in_words(damage, place, message, rain, tmp_pa
     path.write_bytes(rain)
     with h5py.File(path, "r+") as file:
         damage(file, place)
-    commands = [["constant", "--csv", "--record"], ["report", "--out", str(tmp_path / "out")]]
+    commands = [["constant", "--csv"], ["report", "--out", str(tmp_path / "out")]]
     if "got" in message or "hertzian" in message:  # a report takes any number and any law's name
         commands.pop()
     for command in commands:
@@ -379,10 +404,11 @@ def test_flipped_bits_of_a_column(place, rain, tmp_path):
         (np.array([object()]), "a damaged file of np.save, or one of objects"),
         (np.zeros(3), r"an array of shape \(3,\) and type float64, expected rows with named"),
         (np.zeros((2, 2), IMPACT), "expected rows with named columns"),
-        (np.zeros(2, [("speed", "U4")]), "column speed holds values of type <U4"),
-        (np.zeros(2, [("speed", "f8", 3)]), r"column speed holds values of type \('<f8', \(3,\)\)"),
-        (np.array([(1.0, 0.5)], [("speed", "f8"), ("plate", "f8")]), "plate: got 0.5; expected"),
-        (np.array([(1.0, np.nan)], [("speed", "f8"), ("plate", "f8")]), "plate: got nan; expected"),
+        (np.zeros(2, [("approach_speed", "f8")]), "its rows have no column time"),
+        (np.zeros(2, [("time", "f8"), ("approach_speed", "U4")]), "approach_speed holds values of type <U4"),
+        (np.zeros(2, [("time", "f8"), ("approach_speed", "f8", 3)]), r"holds values of type \('<f8', \(3,\)\)"),
+        (np.array([(1.0, 0.5)], [("time", "f8"), ("plate", "f8")]), "plate of row 0 is 0.5, expected a whole"),
+        (np.array([(1.0, np.nan)], [("time", "f8"), ("plate", "f8")]), "plate of row 0 is nan, expected a whole"),
     ],
 )
 def test_arrays_that_are_no_record(rows, message, tmp_path):
@@ -404,16 +430,16 @@ def test_a_short_array_that_asks_for_much_memory(tmp_path):
 
 
 @pytest.mark.parametrize("head", [b"((((((", b"{'descr': '<f8', "])
-def test_a_damaged_head_of_an_array_is_refused_in_words(head):
-    content = b"\x93NUMPY\x01\x00\x40\x00" + head.ljust(64)
+def test_a_damaged_head_of_an_array_is_refused_in_words(head, tmp_path):
+    (tmp_path / "a.npy").write_bytes(b"\x93NUMPY\x01\x00\x40\x00" + head.ljust(64))
     with pytest.raises(ValueError, match="damaged file of np.save"):
-        _npy(content)
+        read(tmp_path / "a.npy")
 
 
 ASKED = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--radius", "1mm"]
 ASKED += ["--thickness", "1mm", "--csv"]
 GOOD = {
-    "a.csv": (["constant", *ASKED, "--record"], b"v,weight,plate\n1,1,0\n2.5,3,1\n"),
+    "a.csv": (["constant", *ASKED], b"v,weight,plate\n1,1,0\n2.5,3,1\n"),
     "a.toml": (
         ["cor", *ASKED, "--speed", "1", "--materials"],
         b"# harmless here\n[a]\nlike = 'glass'\nhardness = '60 HV'  # and here\n",

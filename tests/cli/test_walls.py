@@ -41,21 +41,26 @@ def test_what_swings_is_that_of_the_model(option, wall, capsys):
     model = cl.ImpactModel(cl.Pair("glass", "steel-s235"))
     exact = model.solve(2.0, 1e-3, wall([0.5e-3, 1e-3])).restitution
     assert [float(row["restitution"]) for row in found] == pytest.approx(exact.tolist(), abs=1e-6)
-    main(["history", *BARE.replace("0.5mm,", "").split()[1:], *option.split(), "--samples", "3"])
+    main(["cor", "--history", *BARE.replace("0.5mm,", "").split()[1:], *option.split(), "--samples", "3"])
     assert "steel-s235 (" in capsys.readouterr().out
 
 
 def test_liners_are_found_and_tables_know_foundations(capsys):
     pair = "--sphere glass --plate aluminium-6061-t6 --radius 1mm"
-    (found,) = rows(capsys, f"thickness {pair} --speed 2 --cor 0.55 --on steel-s235:0.5mm --csv")
+    (found,) = rows(capsys, f"find thickness {pair} --speed 2 --cor 0.55 --on steel-s235:0.5mm --csv")
     model = cl.ImpactModel(cl.Pair("glass", "aluminium-6061-t6"))
     exact = model.thickness(0.55, 2.0, 1e-3, layers=[("aluminium-6061-t6", None), ("steel-s235", 5e-4)])
     assert float(found["thickness_m"]) == exact.value and found["plate"].endswith(" on steel-s235:0.5mm")
-    main(f"speed-table {pair} --thickness 1mm --foundation 1e12N/m3 --csv".split())
+    words = f"constant {pair} --thickness 1mm --foundation 1e12N/m3 --speed 0.1,10"
+    main(f"{words} --table".split())
     said, _, first, *_ = capsys.readouterr().out.splitlines()
     assert "(foundation 1e+12 N/m3)" in said
     exact = model.solve(0.1, 1e-3, cl.Foundation(1e-3, 1e12)).restitution
     assert float(first.partition(",")[2]) == pytest.approx(exact, abs=1e-6)
+    (wall,) = rows(capsys, f"{words} --csv")
+    best = model.constant([0.1, 10.0], 1e-3, cl.Foundation(1e-3, 1e12))
+    assert float(wall["restitution"]) == pytest.approx(best.restitution, rel=1e-12)
+    assert wall["plate"] == "aluminium-6061-t6 (foundation 1e+12 N/m3)"
 
 
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ def test_the_record_gives_a_constant(which, name, folder, capsys):
     assert set(found.thickness) == {run.scene.thickness}
     assert (found.pair, found.law) == (run.model.pair, run.law)
     capsys.readouterr()
-    assert cli_of_contactlaw.main(["constant", "--record", str(record), "--csv"]) == 0
+    assert cli_of_contactlaw.main(["constant", str(record), "--csv"]) == 0
     (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
     one = cl.ImpactModel(found.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
     assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)

@@ -15,9 +15,13 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 
 import unrendered  # noqa: E402
 from demos import DRUM, names, runs_of  # noqa: E402
+from matplotlib.colors import to_hex  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
+from contactlaw.reporting.figures import energy as of_report  # noqa: E402
+from contactlaw.reporting.run import Run  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.drum import dissipation  # noqa: E402
 from dem_demo.drum import scene as scenes  # noqa: E402
@@ -42,6 +46,28 @@ def test_each_panel_names_its_run(module, runs):
     assert len(named) == 2 and named[0].startswith("contactlaw") and named[1].startswith("constant")
 
 
+def test_an_energy_has_one_colour_in_report_demo_and_page(runs, tmp_path, page):
+    rows, seen = runs[0].record.rows.copy(), {}
+    rows["plastic_energy"] = rows["other_energy"] = rows["friction_energy"] = rows["wave_energy"]
+    run = dataclasses.replace(runs[0], record=dataclasses.replace(runs[0].record, rows=rows))
+    for figure in (of_report.draw(Run(run.record)), energy.draw([run]), dissipation.draw([run])):
+        for patch, text in zip(figure.legends[0].legend_handles, figure.legends[0].get_texts(), strict=True):
+            if isinstance(patch, Patch):
+                seen.setdefault(text.get_text(), []).append(to_hex(patch.get_facecolor()))
+    cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6")))
+    page.open(tmp_path / "page.html", 1280).value("(asked.angle = 40, show())")
+    look = "[...document.querySelectorAll('{}')].map((e) => getComputedStyle(e).{}Color)"
+    words = page.value("[...document.querySelectorAll('#shares li')].map((e) => e.textContent)")
+    names, bar = (page.value(look.format(*of)) for of in (("#shares li", "borderLeft"), ("#bar i", "background")))
+    assert names == bar and len(bar) == 5
+    for text, colour in zip(words, names, strict=True):
+        name = re.sub(r" [\d.]+ %", "", text)
+        seen[name].append(to_hex([int(part) / 255 for part in re.findall(r"\d+", colour)]))
+    assert [len(colours) for name, colours in sorted(seen.items()) if name != "bead on bead"] == [4, 3, 3, 4, 3]
+    assert all(len(set(colours)) == 1 for colours in seen.values())
+    assert len({colours[0] for colours in seen.values()}) == len(seen)
+
+
 def test_what_is_no_impact_is_left_out_and_said(runs):
     rows = runs[0].record.rows.copy()
     rows["kind"], count = 0, rows.size
@@ -49,7 +75,7 @@ def test_what_is_no_impact_is_left_out_and_said(runs):
     run = dataclasses.replace(runs[0], record=dataclasses.replace(runs[0].record, rows=rows))
     assert run.impacts.size == count - 1
     text = summary([run, runs[1]])
-    assert f"1 of {count} rows are no impacts and left out: 1 over edge" in text
+    assert f"Of {count} contacts, {100 / count:.2g} % left over the edge of a wall" in text
     assert re.search(rf"^impacts on the drum +{count - 1} +\d+$", text, re.MULTILINE)
 
 

@@ -81,9 +81,9 @@ def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures, kept):
     assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
     assert 0 < thin.sum() < thin.size
     (meaning,) = cl.explain(cl.Validity.THIN_PLATE)
-    assert f"{thin.sum()} thin plate" in (tmp_path / "summary.txt").read_text()
+    assert f"thin plate, {thin.sum()} impacts:" in (tmp_path / "summary.txt").read_text()
     for file in ("summary.txt", "index.html"):
-        assert meaning in (tmp_path / file).read_text()
+        assert meaning in " ".join((tmp_path / file).read_text().split())
 
 
 def test_each_collision_has_the_cor_of_the_model(run):
@@ -144,9 +144,9 @@ def test_summary_is_that_of_any_run_with_such_a_record(rain, run):
     assert text.endswith(tables.text(Run(cl.read_record(rain / "rain.h5"))) + "\n")
     for n in range(3):
         mine = run.record.rows[run.record.rows["plate"] == n]
-        assert re.search(rf"^{n}: .* +{mine.size} +{np.median(mine['approach_speed']):.3g} m/s", text, re.M)
-        assert sum(shares(mine, mine["mass"], False)) == pytest.approx(1.0, abs=1e-5)
-    assert "half-space" in text
+        assert re.search(rf"^wall {n}, .* +{mine.size} +{np.median(mine['approach_speed']):.3g} ", text, re.M)
+        assert shares(mine, False).sum() == pytest.approx(1.0, abs=1e-5)
+    assert "half-space" in text and max(map(len, text.splitlines()[2:])) <= 80
 
 
 def test_beads_fly_on_parabolas(run):
@@ -210,7 +210,7 @@ def test_friction_spins_beads_and_takes_energy(oblique):
         here = rows["plate"] == n
         lost = [rows[f"{name}_energy"][here].sum() / before[here].sum() for name in names]
         kept = after[here].sum() / before[here].sum()
-        assert shares(rows[here], mass[here], True) == pytest.approx((kept, *lost), abs=1e-5)
+        assert shares(rows[here], True).tolist() == pytest.approx([kept, *lost], abs=1e-5)
 
 
 def test_the_account_closes(oblique):
@@ -259,7 +259,7 @@ def test_a_rain_that_never_lands(more, tmp_path, empty_pictures, capfd):
     few = ["rain", "--law", "myc", *"--beads 2 --speed 0.5,0.6 --duration 0.01".split(), *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert cl.read_record(tmp_path / "rain.h5").rows.size == 0
-    assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
+    assert "All impacts on walls are inside" in (tmp_path / "summary.txt").read_text()
     said, errors = capfd.readouterr()
     assert "Written to" in said and errors == ""
 
@@ -282,7 +282,7 @@ def test_no_label_runs_into_the_title(request, which):
 def test_figures_are_pictures(rain, name):
     picture = imread(rain / name)
     height, width, _ = picture.shape
-    assert width > 1200
+    assert width > 800  # two points for each of a phone's
     assert height > 600
     colours = np.unique(picture[::7, ::7, :3].reshape(-1, 3), axis=0)
     assert len(colours) > 10  # not blank

@@ -10,7 +10,7 @@ from scipy import stats
 
 import contactlaw as cl
 from contactlaw.fitting.notes import chance
-from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.predictions import Predictor, impacts
 from contactlaw.fitting.unknowns import Setting, parameters
 from contactlaw.physical.law import law_of
 
@@ -77,7 +77,7 @@ def test_chances_of_trends_are_those_of_noise(stated):
     data = rebounds(STEEL, without=("thickness",))
     data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
     moved = parameters(STEEL, data, "thickness", {})
-    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved)
     fitted = predictor.predicted(np.array([1.2e-3]))
     slopes = predictor.derivatives(np.array([1.2e-3]), fitted)
     z, random, found = slopes / (0.01 * fitted[:, None]), np.random.default_rng(5), []
@@ -102,7 +102,7 @@ def test_foils_are_refused_before_they_are_integrated():
     """A product of thickness and density was sought down to 0.45 um, with lambda up to 4e96."""
     sizes = np.array([1e-3]), np.array([4.53e-7])
     with pytest.raises(ValueError, match="R/H is 2208"):
-        impacts(Setting(ALUMINA, *sizes), law_of(ALUMINA, "fem"), np.array([400.0]))
+        impacts(Setting(ALUMINA, np.array([400.0]), *sizes), law_of(ALUMINA, "fem"))
 
 
 def test_a_restitution_above_one_is_named_by_its_rebound():

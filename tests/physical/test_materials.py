@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 
 import contactlaw
+from contactlaw._errors import ArgumentError
+from contactlaw.answers.varied import with_number
 from contactlaw.physical.materials import Material, material, materials, warn_of_softened
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
@@ -116,7 +118,7 @@ def test_every_number_has_its_own_source(name: str) -> None:
     sourced = set(table["source"])  # type: ignore[call-overload]
     assert needed | {"hardness"} & set(table) <= sourced <= {*NUMBERS, "loss_factor"}
     assert ({*FLOW} & set(table) != set()) <= ("of the same fit" in source)
-    others = {"grade", "kind", "aliases", "source", "like", "uncertainty", "loss_factor"}
+    others = {"grade", "kind", "aliases", "source", "like", "uncertainty", "loss_factor", "specified_minimum"}
     assert set(table) <= {*NUMBERS, *FLOW, *others}
     assert "{" not in source, "a reference key was not expanded"
     for number, own in table["source"].items():  # type: ignore[attr-defined]
@@ -152,22 +154,18 @@ def test_entry_is_physically_plausible(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", materials())
-def test_every_error_has_a_reason_and_that_of_a_minimum_is_not_known(name: str) -> None:
+def test_every_error_has_a_reason_and_a_minimum_has_none(name: str) -> None:
     table, entry = raw_catalogue()[name], material(name)
     own: dict[str, tuple[float, str]] = table.get("uncertainty", {})  # type: ignore[assignment]
     for number, (error, reason) in own.items():
-        assert -2.5 < error < 0.5 and entry.uncertainty[number] == error
+        assert 0.0 < error < 0.5 and entry.uncertainty[number] == error
         assert len(reason) > 20 or reason == "{steels}" or reason == "{aluminiums}"
-        assert (
-            f"standard error of it {100 * error:g} %" if error > 0 else f"up to {-100 * error:g} % more: "
-        ) in entry.source
-        if error < 0:  # up to the largest of the strengths that the reason states
-            stated = [float(one) for one in re.findall(r"([\d.]+) MPa", reason)]
-            most = 1e6 * (sum(stated) if "added" in reason else max(stated))
-            assert (1.0 - error) * getattr(entry, number) == pytest.approx(most, rel=2e-3)
+        assert f"standard error of it {100 * error:g} %" in entry.source
     for number, text in table["source"].items():  # type: ignore[attr-defined]
         assert (number == "yield_strength" and "minimum" in text) == ("{bias}" in text)
-        assert "{bias}" not in text or not 0.0 <= entry.uncertainty[number] < math.inf
+        if number == "yield_strength":
+            assert entry.specified_minimum == ("minimum" in text)
+            assert not (entry.specified_minimum and number in entry.uncertainty)
         ends = re.search(r"midpoint of ([\d.]+)(?: to |-)([\d.]+) (GPa|MPa|kg/m3)", text, re.I)
         if ends is None:
             continue
@@ -180,8 +178,44 @@ def test_every_error_has_a_reason_and_that_of_a_minimum_is_not_known(name: str) 
 def test_an_error_is_that_of_the_metal_it_is_like() -> None:
     ball = material("stainless-steel-304-ball")
     assert ball.uncertainty == {"youngs_modulus": 0.03, "hardness": 0.1}
-    assert material("ductile-iron-80-55-06").uncertainty["yield_strength"] == math.inf
-    assert material("stainless-steel-304-2b").uncertainty == {"youngs_modulus": 0.03, "yield_strength": -2.26}
+    assert material("stainless-steel-304-2b").uncertainty == {"youngs_modulus": 0.03}
+    assert material("stainless-steel-304-2b").specified_minimum and not ball.specified_minimum
+
+
+def test_a_strength_that_is_replaced_is_no_specified_minimum_any_more() -> None:
+    sheet = material("steel-s235")
+    assert sheet.specified_minimum and with_number(sheet, "density", 7.9e3).specified_minimum
+    assert not with_number(sheet, "yield_strength", 3e8).specified_minimum
+    assert not dataclasses.replace(sheet, yield_strength=None, hardness=1.4e9).specified_minimum
+
+
+@pytest.mark.parametrize(
+    ("wrong", "line"),
+    [
+        ({"uncertainty": {"yield_strength": math.inf}}, "leave it out, and write specified_minimum = true"),
+        ({"uncertainty": {"yield_strength": "minimum"}}, "leave it out, and write specified_minimum = true"),
+        (
+            {"uncertainty": {"yield_strength": -0.42}},
+            "for 2.35e+08 to 3.34e+08 Pa write yield_strength = 2.84e+08 and uncertainty = {yield_strength = 0.1} (",
+        ),
+        ({"uncertainty": {"yield_strength": 1.1}}, "from 0 to 1, as 0.1 for 10 % ("),
+        ({"uncertainty": {"density": -0.1}}, "from 0 to 1, as 0.1 for 10 % ("),
+        ({"uncertainty": {"density": math.inf}}, "from 0 to 1, as 0.1 for 10 % ("),
+        ({"loss_factor": "handbook"}, "write loss_factor = [0.03, 1e4] with your numbers"),
+        ({"specified_minimum": 235e6}, "must be True or False"),
+    ],
+)
+def test_old_words_for_errors_are_refused_with_what_to_write(wrong: dict[str, object], line: str) -> None:
+    with pytest.raises(ArgumentError, match=re.escape(line)):
+        dataclasses.replace(material("steel-s235"), **wrong)  # type: ignore[arg-type]
+
+
+def test_the_error_to_write_is_that_of_a_strength_even_between_the_ends() -> None:
+    with pytest.raises(ArgumentError) as refusal:
+        dataclasses.replace(material("steel-s235"), uncertainty={"yield_strength": -2.0})
+    middle, error = (float(one) for one in re.findall(r"yield_strength = ([\d.e+]+)", str(refusal.value)))
+    assert middle * (1.0 + error * math.sqrt(3.0)) == pytest.approx(3.0 * 235e6, rel=0.01)
+    assert middle * (1.0 - error * math.sqrt(3.0)) == pytest.approx(235e6, rel=0.01)
 
 
 @pytest.mark.parametrize("name", materials())

@@ -3,6 +3,7 @@
 import dataclasses
 import os
 
+import h5py
 import numpy as np
 import pytest
 from pymunk_room import make_bead, make_plate, make_space, steps
@@ -113,7 +114,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
             own = next(one for one in text.splitlines() if one.startswith(wall))
             assert own.removeprefix(wall).split()[0] == str(count)
     capsys.readouterr()
-    assert main(["constant", "--record", path, "--csv"]) == 0
+    assert main(["constant", path, "--csv"]) == 0
     head, *rows = (line.split(",") for line in capsys.readouterr().out.splitlines())
     found = {tuple(row[head.index(name)] for name in ("sphere", "plate")): row for row in rows}
     rows = run[1].collisions()
@@ -124,12 +125,12 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
         weight = rows["approach_speed"][own] ** 2 * rows["radius"][own] ** 3
         best = np.sqrt(np.average(rows["restitution"][own] ** 2, weights=weight))
         assert float(row[head.index("restitution")]) == pytest.approx(best, rel=1e-6)
-    assert main(["constant", "--record", path, "--lammps"]) == 1
+    assert main(["constant", path, "--lammps"]) == 1
     assert "has impacts of several pairs" in capsys.readouterr().err
     chosen = ["--sphere", "glass", "--plate", "glass"]
-    assert main(["constant", "--record", path, "--lammps", *chosen]) == 0
-    assert main(["constant", "--record", path, "--sphere", "PMMA"]) == 1
-    assert "--sphere: got 'PMMA'; the record has gamma-alumina, glass" in capsys.readouterr().err
+    assert main(["constant", path, "--lammps", *chosen]) == 0
+    assert main(["constant", path, "--sphere", "PMMA"]) == 1
+    assert "--sphere: got 'PMMA'; the record has gamma-alumina on glass, " in capsys.readouterr().err
 
 
 def test_several_files_of_a_run_are_one(run, tmp_path):
@@ -195,13 +196,24 @@ def test_two_beads_share_a_plate_from_a_tenth_of_motion_on(share, plates, shared
 
 def test_every_field_of_a_material_is_kept(tmp_path):
     more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
-    more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}}
+    more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}, "specified_minimum": True}
     sphere = dataclasses.replace(cl.material("gamma-alumina"), **more)
     plate = cl.Material("steel", 207e9, 0.3, 7850, kind="metal", hardness="62 HRC", hardening=0.1)
     assert None not in dataclasses.astuple(sphere)
     bodies = [cl.Bodies(cl.Pair(sphere, plate), "fem")]
     cl.Record(np.zeros(1, IMPACT), bodies).save(tmp_path / "run.h5")
     assert list(cl.read_record(tmp_path / "run.h5").bodies) == bodies
+
+
+def test_errors_of_minima_that_0_3_stored_are_not_stated(tmp_path):
+    path = tmp_path / "run.h5"
+    cl.Record(np.zeros(1, IMPACT), [cl.Bodies(cl.Pair("glass", "steel-s235"), "fem")]).save(path)
+    with h5py.File(path, "r+") as file:
+        plate = file["bodies/0/plate"].attrs
+        del plate["specified_minimum"]
+        plate["uncertainty"] = '{"youngs_modulus": 0.03, "yield_strength": -0.42, "hardness": Infinity}'
+    found = cl.read_record(path).bodies[0].pair.plate
+    assert found.uncertainty == {"youngs_modulus": 0.03} and not found.specified_minimum
 
 
 def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):

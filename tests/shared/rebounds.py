@@ -16,7 +16,7 @@ def rebounds(pair, law="fem", kinds=KINDS[:1], noise=0.0, seed=0, speed=None, wi
     """What would be measured of a bead of 1 mm on a plate of 1.2 mm."""
     v = np.geomspace(0.2, 8.0, 12) if speed is None else np.asarray(speed, dtype=float)
     size = np.ones_like(v)
-    hit = impacts(Setting(pair, RADIUS * size, THICKNESS * size), law_of(pair, law), v)
+    hit = impacts(Setting(pair, v, RADIUS * size, THICKNESS * size), law_of(pair, law))
     random = np.random.default_rng(seed)
     sizes = {"radius": RADIUS, "thickness": THICKNESS}
     data = {"speed": v} | {name: size for name, size in sizes.items() if name not in without}

@@ -54,7 +54,7 @@ def measured(pair: cl.Pair, law: str, unknown: tuple[str, ...]) -> Data:
     random = np.random.default_rng(1)
     speed = np.geomspace(0.1, 8.0, POINTS) * (1.0 if law == "fem" else 4.0)
     size = np.full(POINTS, 1e-3)
-    hit = impacts(Setting(pair, size, size), law_of(pair, law), speed)
+    hit = impacts(Setting(pair, speed, size, size), law_of(pair, law))
     data: Data = {"speed": speed}
     data |= {name: 1e-3 for name in ("radius", "thickness") if name not in unknown}
     for kind in ("restitution", "contact_time", "peak_force")[: len(unknown)]:

@@ -17,7 +17,7 @@ import contactlaw as cl
 from contactlaw import style
 from contactlaw.answers.solver import solved
 from contactlaw.cli.compare.figure import curve as model_curve
-from contactlaw.cli.compare.figure import points
+from contactlaw.cli.parts.figure import Curve, Points, draw_curve, draw_points
 from contactlaw.engines.pymunk import attach
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges
@@ -331,9 +331,11 @@ def fig27_measured() -> chart.Drawn:
         first = {name: values[0].item() for name, values in at.items()}
         speed, thickness = np.geomspace(0.3, 10.0, 60), np.geomspace(5e-3, 0.1, 120)
         others = {name: size for name, size in source.errors.items() if name != "speed_error"}
-        model_curve(left, speed, model, first | {"speed": speed}, others, BLUE)
-        model_curve(right, 1e3 * thickness, model, first | {"thickness": thickness}, source.errors, BLUE)
-        points(left, at["speed"], cor, error, ORANGE)
+        over = ("speed", speed, left, 1.0, others), ("thickness", thickness, right, 1e-3, source.errors)
+        for name, x, axes, size, errors in over:
+            values = model_curve(model, first | {name: x}, errors)
+            draw_curve(axes, Curve(x, values["y"], "model", values["low"], values["high"]), BLUE, size, 1.0)
+        draw_points(left, Points(at["speed"], cor, "measured", error), ORANGE, 1.0, 1.0)
         if unsure := source.errors.get("speed_error"):
             left.plot(at["speed"] * np.exp([-unsure, unsure]), [cor[0], cor[0]], color=INK)
         least, most = (cor[0] + sign * error[0] for sign in (-1.0, 1.0))

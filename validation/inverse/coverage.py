@@ -22,7 +22,7 @@ from tqdm import tqdm
 import contactlaw as cl
 from contactlaw.fitting import errors
 from contactlaw.fitting.measurements import KINDS, NORMAL
-from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.unknowns import UNKNOWNS, parameters
 from contactlaw.physical.law import law_of
 from validation.fem.census import LISTED
@@ -129,16 +129,15 @@ def _model_error(
 ) -> dict[str, Array]:
     data = cl.Measurements(speed=one.speed, radius=one.radius, thickness=one.thickness, **exact)
     moved = parameters(one.pair, data, "density", {})
-    values = Values.of(data)
-    predictor = Predictor(one.pair, law_of(one.pair, law), data, moved, values)
+    predictor = Predictor(one.pair, law_of(one.pair, law), data, moved)
     at = np.array([one.pair.sphere.density])
-    covariance = errors.model_covariance(predictor, at, predictor.impacts(at))
+    covariance = errors.model_covariance(predictor, at, predictor.impacts(predictor.setting(at)))
     if covariance is None:
         return {}
     correlation = covariance.correlation[np.ix_(covariance.cell, covariance.cell)]
     drawn = covariance.size * random.multivariate_normal(np.zeros(len(correlation)), correlation, method="cholesky")
     names = list(KINDS)
-    return {name: drawn[values.kind == names.index(name)] for name in exact}
+    return {name: drawn[predictor.values.kind == names.index(name)] for name in exact}
 
 
 def outcomes(question: tuple[str, ...], sets: int, seed: int, law: str = "fem") -> Iterator[list[Outcome]]:

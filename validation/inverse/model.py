@@ -31,8 +31,8 @@ def rebounds(one: Any, law: str) -> Rebound:
     """
     speed = np.atleast_1d(one.speed)
     size = np.ones_like(speed)
-    at = Setting(one.pair, one.radius * size, one.thickness * size)
-    return impacts(at, law_of(one.pair, law), speed)
+    at = Setting(one.pair, speed, one.radius * size, one.thickness * size)
+    return impacts(at, law_of(one.pair, law))
 
 
 def true(one: Any, name: str) -> float:

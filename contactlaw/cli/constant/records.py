@@ -1,8 +1,7 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
 import os
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +18,7 @@ from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import SPEED
 from contactlaw.record import hdf5
-from contactlaw.record.file import HDF5, Record, read_record, saved
+from contactlaw.record.file import HDF5, Record, read_record
 
 
 class Recorded(NamedTuple):
@@ -29,8 +28,8 @@ class Recorded(NamedTuple):
     radius: Any = None  # of the bead [m]
     thickness: Any = None  # of the plate [m]
     weights: Any = None  # relative frequencies
-    plate: Integers | None = None  # number of the plate that is hit
-    mass: Array | None = None  # of the bead [kg], in an engine's record
+    plate: Any = None  # number of the plate that is hit
+    mass: Any = None  # of the bead [kg], in an engine's record
     body: Any = False  # whether the bead is a part of a rigid body; then the mass is that at the contact
     pair: Pair | None = None
     law: str | None = None
@@ -38,7 +37,7 @@ class Recorded(NamedTuple):
 
 
 _SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
-_OF_ROWS = "radius", "thickness", "mass"
+_OF_ENGINE = {"speed": "approach_speed"} | {name: name for name in ("plate", "kind", "radius", "thickness", "mass")}
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
     **columns.SIZES,
@@ -50,37 +49,28 @@ _COLUMNS = {
 def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
     """Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
 
-    The files are records of one run (``.h5``); or else one file: rows of an engine, as ``np.save``
-    writes them (``.npy``), or text with names and units in the first line, as in
+    The files are records of one run (``.h5``), or rows of an engine as ``np.save`` writes them
+    (``.npy``); or else one text with names and units in the first line, as in
     ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness, weight and plate are
     optional.
     """
     first = Path(paths[0])
-    if len(paths) > 1 or first.suffix.lower() in HDF5:
-        found = _by_pair(read_record(*paths))
-    else:
-        reader = _npy if first.suffix.lower() == ".npy" else _text
-        with wording.reading(first):
-            found = [reader(content_of(first, pipe=reader is _text))]
+    is_text = len(paths) == 1 and first.suffix.lower() not in (*HDF5, ".npy")
+    record = None if is_text else read_record(*paths)
     with wording.reading(first):
+        found = [_text(content_of(first, pipe=True))] if record is None else _by_pair(record)
         for one in found:
-            _check(one)
+            if one.speed.size == 0:
+                raise ValueError(f"it has no impact on a plate{': ' * bool(one.left_out)}{one.left_out}")
+            sizes = {name: getattr(one, name) for name in ("speed", "radius", "thickness", "weights")}
+            check(**{name: values for name, values in sizes.items() if values is not None})
     return found
-
-
-def _check(found: Recorded) -> None:
-    if found.speed.size == 0:
-        why = f": {found.left_out}" if found.left_out else ""
-        raise ValueError(f"it has no impact on a plate{why}")
-    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness", "weights")}
-    check(**{name: values for name, values in sizes.items() if values is not None})
 
 
 def combined(speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None) -> Recorded:
     """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once."""
-    sizes = {"radius": radii, "thickness": thicknesses}
-    grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
-    r, h, v = (part.ravel() for part in grid)
+    sizes = _known("radius", radii), _known("thickness", thicknesses)
+    r, h, v = (part.ravel() for part in np.meshgrid(*sizes, speeds, indexing="ij"))
     return Recorded(v, r, h, np.ones(v.size))
 
 
@@ -89,13 +79,13 @@ def completed(found: Recorded, radii: Sequence[float] | None, thicknesses: Seque
 
     One value is for all; thicknesses may be one for each plate if the record has their numbers.
     """
-    one = np.zeros(found.speed.size, dtype=np.int64)
-    plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate
+    zeros = np.zeros(found.speed.size, dtype=np.int64)
+    plate = zeros if found.plate is None or len(thicknesses or ()) == 1 else found.plate
     return found._replace(
-        radius=_sized("radius", found.radius, radii, one),
+        radius=_sized("radius", found.radius, radii, zeros),
         thickness=_sized("thickness", found.thickness, thicknesses, plate),
         mass=found.mass if np.any(found.body) else None,  # else it is that of solid spheres
-        weights=np.ones(one.size) if found.weights is None else found.weights,
+        weights=zeros + 1.0 if found.weights is None else found.weights,
     )
 
 
@@ -106,16 +96,14 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
     density = found.mass / sphere_mass(1.0, found.radius)
     others = density[~(np.isclose(density, sphere.density, rtol=_SAME) | found.body)]
     if others.size:
-        counts = Counter(f"{one:.4g}" for one in others.tolist())
-        listed = ", ".join(f"{n} of {one} kg/m3" for one, n in counts.most_common(5))
         raise ValueError(
-            f"{len(others)} of {len(density)} impacts are of beads of other material than "
-            f"{sphere.name!r} of {sphere.density:g} kg/m3: {listed}: save those of each material "
-            "in a file of its own, and name it with --sphere"
+            f"{others.size} of {density.size} impacts are of beads of other material than {sphere.name!r} of "
+            f"{sphere.density:g} kg/m3, with densities from {others.min():.4g} to {others.max():.4g} kg/m3: save "
+            "those of each material in a file of its own, and name it with --sphere"
         )
 
 
-def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
+def _known(name: str, values: Sequence[float] | None) -> Sequence[float]:
     if values is None:
         raise ArgumentError(name, None, "has to be given, no record says it")
     return values
@@ -124,14 +112,13 @@ def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
 def _sized(name: str, recorded: Array | None, values: Sequence[float] | None, which: Integers) -> Array:
     """Size of each impact's bead or plate: the record's own, or the given one of number `which`."""
     if recorded is None:
-        sizes = np.array(_given(name, values))
+        sizes = np.array(_known(name, values))
         if sizes.size != which.max() + 1:
-            raise ArgumentError(
-                name,
-                None,
-                f"got {sizes.size} values for {which.max() + 1} in the record: give one "
-                "for all, or thicknesses for the numbers in a column plate",
+            reason = (
+                f"got {sizes.size} values for {which.max() + 1} in the record: give one for all, or thicknesses "
+                "for the numbers in a column plate"
             )
+            raise ArgumentError(name, None, reason)
         return sizes[which]
     if values is not None:
         raise ArgumentError(name, None, "the record has its own: leave this one out")
@@ -140,61 +127,44 @@ def _sized(name: str, recorded: Array | None, values: Sequence[float] | None, wh
 
 def _by_pair(record: Record) -> list[Recorded]:
     """Impacts on plates of each pair of materials; of one that is unknown last."""
-    on_plates = record.part(record.rows["plate"] >= 0)
-    impacts, found = on_plates.part(on_plates.impact), []
-    for n in sorted(set(impacts.which.tolist()), key=lambda n: (n < 0, n)) or [-1]:
-        rows = impacts.rows[impacts.which == n]
-        known = {name: rows[name] for name in _OF_ROWS if name in (rows.dtype.names or ())}
-        if "parcel" in (rows.dtype.names or ()):  # a row stands for all beads of a parcel
+    found = []
+    for n in sorted({*record.which.tolist()}, key=lambda n: (n < 0, n)):
+        rows = record.rows[record.which == n]
+        names = rows.dtype.names or ()
+        known = {field: rows[name] for field, name in _OF_ENGINE.items() if name in names}
+        if "parcel" in names:  # a row stands for all beads of a parcel
             known["weights"] = np.maximum(rows["parcel"], 1.0) ** 3
             known["mass"] = rows["mass"] / known["weights"]
-        if "kind" in (rows.dtype.names or ()):
-            known["body"] = rows["kind"] == Kind.OF_BODY
-        pair, law = impacts.bodies[n] if n >= 0 else (None, None)
-        found.append(
-            Recorded(
-                rows["approach_speed"],
-                plate=rows["plate"],
-                pair=pair,
-                law=law or None,
-                left_out=on_plates.left_out,
-                **known,
-            )
-        )
-    return found
+        pair, law = record.bodies[n] if n >= 0 else (None, "")
+        found.append(_on_plates(known)._replace(pair=pair, law=law or None))
+    return [one for one in found if one.speed.size] or found[:1] or [Recorded(np.empty(0))]
 
 
-def _npy(content: bytes) -> Recorded:
-    rows = saved(content)
-    names = rows.dtype.names or ()
-
-    def numbers(wanted: list[int]) -> Array:
-        for n in wanted:
-            if rows[names[n]].ndim != 1 or rows[names[n]].dtype.kind not in "iuf":
-                raise ValueError(f"column {names[n]} holds values of type {rows.dtype[n]}, expected numbers")
-        return np.column_stack([rows[names[n]] for n in wanted]).astype(np.float64)
-
-    return _columns(names, numbers)
+def _on_plates(rows: dict[str, Array]) -> Recorded:
+    """Impacts among some rows; without a column plate all are on plates."""
+    zeros = np.zeros(rows["speed"].size)
+    on_plate = rows.get("plate", zeros) >= 0
+    known: dict[str, Any] = {name: values[on_plate] for name, values in ({"kind": zeros} | rows).items()}
+    kind = known.pop("kind")
+    impact, left_out = only_impacts(kind)
+    known["body"] = kind == Kind.OF_BODY
+    return Recorded(**{name: values[impact] for name, values in known.items()}, left_out=left_out)
 
 
 def _text(content: bytes) -> Recorded:
+    """Pick the columns of a text that are known by their names, and give them SI units."""
     try:
-        names, rows, delimiter = columns.split_table(content)
+        heads, rows, delimiter = columns.split_table(content)
     except ValueError as error:
         raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
-    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, names, wanted)[1])
-
-
-def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
-    """Pick the columns that are known by their names, and give them SI units."""
     # Only in an engine's record does a column kind say what is an impact, and mass what of.
     more = ("kind", "mass") if "sliding_speed" in heads else ()
     found = columns.locate(heads, _COLUMNS | {one: TextColumn((one,), None) for one in more})
     if "speed" not in found:
         raise ValueError(f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s")
-    rows = numbers([one.place for one in found.values()])
+    _, numbers = columns.numbers(rows, delimiter, heads, [one.place for one in found.values()])
     picked: dict[str, Any] = {
-        field: column / one.per_unit for (field, one), column in zip(found.items(), rows.T, strict=True)
+        field: column / one.per_unit for (field, one), column in zip(found.items(), numbers.T, strict=True)
     }
     columns.halve_diameters(picked)
     if "plate" in picked:
@@ -202,12 +172,5 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
         if not whole.all():  # NaN, too
             raise ArgumentError("plate", plate[~whole][0], "expected whole numbers")
-        on_plates = plate >= 0
-        picked = {field: values[on_plates] for field, values in picked.items()}
-        picked["plate"] = picked["plate"].astype(np.int64)
-    if "kind" not in picked:
-        return Recorded(**picked)
-    impact, left_out = only_impacts(picked["kind"])
-    picked["body"] = picked.pop("kind") == Kind.OF_BODY
-    picked = {field: values[impact] for field, values in picked.items()}
-    return Recorded(**picked, left_out=left_out)
+        picked["plate"] = plate.astype(np.int64)
+    return _on_plates(picked)

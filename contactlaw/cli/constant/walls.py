@@ -1,91 +1,94 @@
 """One COR for each wall of a machine, one per thickness, as text or CSV."""
 
-import csv
+import math
+import textwrap
 from collections import Counter
-from collections.abc import Iterator
-from typing import Any, NamedTuple, TextIO
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw._escaped import cell
-from contactlaw._readable import relative
+from contactlaw._readable import in_unit
 from contactlaw.answers.constant import Constant, Keep
 from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.impacts import aligned, explained
+from contactlaw.cli.parts.table import Column, Table, wrapped
 from contactlaw.model import ImpactModel
 
 _MOST = 100  # walls of different thickness; in an engine, each takes a type of its own
+_COLUMNS = (
+    Column("plates", title="plates", shown=""),
+    Column("thickness", "m", "thickness", "mm", 1e3, digits="g"),
+    Column("impacts", title="impacts", digits=".0f"),
+    Column("keep"),
+    Column("restitution", title="COR", digits=".4f"),
+    Column("spread"),
+    Column("energy_error", title="energy error", shown="%", scale=100.0, digits="z.2f"),
+    Column("rebound_error", title="height error", shown="%", scale=100.0, digits=".3g"),
+    Column("mean"),
+    Column("mean_energy_error"),
+)
 
 
 class Wall(NamedTuple):
-    """A wall, its impacts with speeds [m/s], radii [m] and weights [-], and one COR for all."""
+    """A wall, and one COR for all impacts on it."""
 
+    plates: str  # numbers of its plates in the record, "" if it has none
     thickness: float
-    speed: Array
-    radius: Array
-    weights: Array
     best: Constant
 
+    @property
+    def name(self) -> str:
+        """Name of the wall in the comments of an engine's lines."""
+        name = "half-space" if math.isinf(self.thickness) else f"plate of {in_unit(self.thickness, 'm')}"
+        return f"{name}, in the record {self.plates}" if self.plates else name
 
-def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
+
+def walls(model: ImpactModel, recorded: Recorded, keep: Keep, plate: Callable[[float], Any]) -> list[Wall]:
     """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
-    plates = np.unique(recorded.thickness)
-    if plates.size > _MOST:
-        reason = f"{plates.size} different ones, {_MOST} is the most: round them to those of walls"
+    thicknesses = np.unique(recorded.thickness)
+    if thicknesses.size > _MOST:
+        reason = f"{thicknesses.size} different ones, {_MOST} is the most: round them to those of walls"
         raise ArgumentError("thickness", None, reason)
     found = []
-    for plate in plates:
-        on_it = recorded.thickness == plate
-        v, r, _, w = (column[on_it] for column in recorded[:4])
-        mass = None if recorded.mass is None else recorded.mass[on_it]
-        with wording.naming_impact(v, r, plate):
-            found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w, mass)))
+    for thickness in thicknesses.tolist():
+        on_it = recorded.thickness == thickness
+        v, r, w = (column[on_it] for column in (recorded.speed, recorded.radius, recorded.weights))
+        mass, plates = (None if column is None else column[on_it] for column in (recorded.mass, recorded.plate))
+        numbers = "" if plates is None else ", ".join(map(str, np.unique(plates).tolist()))
+        with wording.naming_impact(v, r, thickness):
+            best = model.constant(v, r, plate(thickness), keep, w, mass)
+        found.append(Wall(textwrap.shorten(numbers, 12, placeholder=" ..."), thickness, best))
     return found
 
 
-def meaning(keep: Keep) -> str:
-    """Explain the columns beside a constant."""
-    return (
-        f"COR keeps the {keep} that the wall takes in all. energy: relative error of the "
-        "dissipated energy with it, and with the plain mean of the CORs. rebound: 95 of 100 "
-        "impacts rebound to a height that is within this share of their own."
-    )
-
-
-def text(found: list[Wall], keep: Keep) -> Iterator[str]:
-    """Lines for a terminal: a row per wall with its COR and errors, and what these mean."""
+def table(found: list[Wall], keep: Keep, asked: dict[str, Any]) -> Table:
+    """Rows of the walls with their CORs and errors."""
     best = [wall.best for wall in found]
-    yield from aligned(
-        [
-            ["thickness", "[mm]", *(f"{1e3 * wall.thickness:g}" for wall in found)],
-            ["impacts", "[-]", *(f"{one.impacts}" for one in best)],
-            ["COR", "[-]", *(f"{one.restitution:.4f}" for one in best)],
-            ["spread", "[-]", *(f"{one.spread:.4f}" for one in best)],
-            ["energy", "[%]", *(relative(one.energy_error, "z.2%")[:-1] for one in best)],
-            ["rebound", "[%]", *(relative(one.rebound_error)[:-1] for one in best)],
-            ["mean", "[-]", *(f"{one.mean:.4f}" for one in best)],
-            ["energy", "[%]", *(relative(one.mean_energy_error, "z.2%")[:-1] for one in best)],
-            ["flags", "", *(", ".join(str(flag.name) for flag in one.flags) for one in best)],
-        ]
+    values: dict[str, Any] = {column.name: [getattr(one, column.name, keep) for one in best] for column in _COLUMNS}
+    values["plates"], values["thickness"], _ = zip(*found, strict=True)
+    return Table(
+        [column for column in _COLUMNS if column.name != "plates" or any(values["plates"])],
+        values,
+        asked,
+        np.array([sum(one.flags) for one in best]),
+        sum((Counter(one.flags) for one in best), Counter()),
+        sum(one.impacts for one in best),
     )
-    yield ""
-    yield meaning(keep)
-    flags = sum((Counter(one.flags) for one in best), Counter())
-    yield from explained(flags, sum(one.impacts for one in best))
 
 
-def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any], head: bool = True) -> None:
-    """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
-    writer = csv.writer(out, lineterminator="\n")
-    errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")
-    numbers = ("restitution", "spread", *errors)
-    if head:
-        writer.writerow(["thickness_m", "impacts", "keep", *numbers, *asked, "flags"])
-    for wall in found:
-        flags = "|".join(f"{flag.name}:{count}" for flag, count in wall.best.flags.items())
-        values = (getattr(wall.best, name) for name in numbers)
-        said = map(cell, asked.values())
-        writer.writerow([wall.thickness, wall.best.impacts, keep, *values, *said, flags])
+def meaning(keep: Keep) -> str:
+    """Say what a constant keeps."""
+    keeps = {"energy": "takes the same energy", "momentum": "gets the same momentum"}[keep]
+    return f"COR: with it the wall {keeps} in total as with the COR of each impact."
+
+
+def explained(found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines for a terminal below the table: what its columns mean."""
+    yield from wrapped(meaning(keep))
+    yield "energy error: relative error of the energy that the wall takes in total."
+    yield "height error: for 95 % of beads the rebound height is wrong by less than this."
+    errors = sorted(wall.best.mean_energy_error for wall in found)
+    ends = dict.fromkeys(f"{100.0 * error:z.2f}" for error in (errors[0], errors[-1]))
+    yield from wrapped(f"With the plain mean of the CORs the energy error would be {' to '.join(ends)} %.")

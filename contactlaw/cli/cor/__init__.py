@@ -1,146 +1,120 @@
-"""Coefficients of restitution, and what gives one.
-
-``contactlaw cor``: coefficient of restitution and more, of one impact or many.
-``contactlaw thickness``: all thicknesses of the plate that give a coefficient of restitution.
-``contactlaw speed``: all impact speeds that give a coefficient of restitution.
-"""
+"""``contactlaw cor``: coefficient of restitution and more, of one impact or many."""
 
 import argparse
-import functools
-import json
-import math
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from contactlaw import quantities
-from contactlaw._arrays import Array
+from contactlaw._errors import ArgumentError
+from contactlaw._readable import in_unit, scale_of
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import inverse
-from contactlaw.cli.parts import bands, chosen, impacts, layout, options, wording
-from contactlaw.cli.parts import old_figure as figure
+from contactlaw.cli.cor import figures, files, tables
+from contactlaw.cli.parts import bands, chosen, impacts, options, wording
+from contactlaw.cli.parts.table import Table, flag_names, in_words, wrapped
 from contactlaw.model import ImpactModel
-from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
+
+_OF_BAND = "sphere_error", "plate_error", *tables.ERRORS, "causes"
+_EXCLUDED = dict.fromkeys(tables.BANDLESS, _OF_BAND) | {"angle": (*_OF_BAND, "history")}
+_NEEDED = {"angle": "friction", "friction": "angle", "samples": "history"}
 
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "coefficient of restitution and more, of one impact or many"
     command = options.command(commands, "cor", about, _run)
-    options.add_impact(command, quantities.values)
-    options.add_mass(command)
-    options.add_wall(command)
-    options.add_errors(command, _SIZES)
-    command.add_argument("--no-band", action="store_true", help="leave out the 68 %% range, which takes longest")
-    add = command.add_mutually_exclusive_group().add_argument
-    add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
-    add("--json", action="store_true", help="print all fields in SI units, a list for several impacts; inf is null")
-    add(
+    command.usage = "%(prog)s --sphere NAME --plate NAME --radius R --thickness H\n  --speed V [options]"
+    group = command.add_argument_group("impact")
+    options.add_pair(group)
+    options.add_sizes(group, quantities.values)
+    options.add_speed(group, quantities.values, "approach speed: normal to the plate, or with --angle that of the bead")
+    options.add_mass(group)
+    what = "angle between path and normal of the plate [deg], below 90; with --friction (default: straight)"
+    options.add_quantity(group, "--angle", quantities.ANGLE, what, quantities.values, metavar="A")
+    what = "coefficient of friction between bead and plate; with --angle"
+    options.add_quantity(group, "--friction", quantities.FRICTION, what, quantities.values, metavar="MU")
+    options.add_law(group)
+    group.add_argument("--solve", action="store_true", help="integrate the equation in place of using its table")
+    options.add_wall(command.add_argument_group("walls"))
+    group = command.add_argument_group("errors")
+    options.add_errors(group, [name.removesuffix("_error") for name in tables.ERRORS])
+    group.add_argument("--causes", action="store_true", help="say how much each error widens the 68 %% range")
+    group.add_argument("--no-band", action="store_true", help="leave out the 68 %% range, which takes longest")
+    group = command.add_argument_group("output")
+    form = options.add_forms(group)
+    form.add_argument(
         "--plot",
         metavar="FILE",
-        help="draw the COR into FILE (PNG, SVG, PDF). A list of speeds, thicknesses or radii is the "
-        "axis, or without a list all speeds up to the given one. A second list makes curves; two "
-        "lists of more than 8 values make a map",
+        help="draw the COR, with --angle the tangential restitution, into FILE (PNG, SVG, PDF). One list is the axis, "
+        "a second one of at most 8 values makes the curves. Without a list the axis has the speeds up to --speed",
     )
+    form.add_argument("--out", metavar="FILE", help="write all fields into FILE: .csv, or .h5 with the lists as axes")
+    group.add_argument("--history", action="store_true", help="give the force over time of one impact, as CSV")
+    group.add_argument("--samples", type=int, metavar="N", help="rows of --history (default: 256)")
     command.epilog = f"{options.UNITS} {options.LISTS}"
-    inverse.add(commands)
-
-
-_SIZES = "speed", "radius", "thickness"
-
-
-def _errors(arguments: argparse.Namespace) -> dict[str, float] | None:
-    """Errors of speed and sizes; None if there is to be no band."""
-    remembers = (arguments.cylinder, arguments.bowl, arguments.foundation) != (None, None, None)
-    if arguments.no_band or remembers:  # errors of plates that swing are not known
-        return None
-    return {f"{name}_error": getattr(arguments, f"{name}_error") for name in _SIZES}
 
 
 def _run(arguments: argparse.Namespace) -> None:
+    _check(arguments)
     chosen.check_quantities(arguments)
+    model = chosen.model(arguments)
     if arguments.plot is not None:
         with chosen.plot_file(arguments):
-            _plot_cor(arguments)
-        return
-    values = arguments.speed, arguments.radius, arguments.thickness
-    model, errors = chosen.model(arguments), _errors(arguments)
-    mass, plate = arguments.mass, model.pair.given[1]
-    wall = functools.partial(chosen.wall, arguments, plate)
-    found = impacts.tabulate(model, *values, solve=arguments.solve, mass=mass, wall=wall)
-    found.asked["plate"] = chosen.plate_in_words(arguments, plate.name)
-    known = None
-    if errors is not None:
-        speed, radius, thickness = sizes = [found.columns[name] for name in _SIZES]
-        with wording.naming_impact(*sizes, mass=mass):
-            known = model.uncertainty(speed, radius, wall(thickness), **errors, mass=mass)
-    found, columns = bands.with_bands(found, known)
-    if arguments.csv:
-        impacts.write_csv(found, sys.stdout, columns)
-    elif arguments.json:
-        rows = impacts.records(found)
-        print(json.dumps(rows if len(rows) > 1 else rows[0], indent=2))
+            figures.figure(arguments, model).save(arguments.plot)
+    elif arguments.out is not None:
+        with wording.writing("out", arguments.out):
+            wording.check_suffix("out", arguments.out, files.SUFFIXES)
+            table, _ = tables.table(arguments, model)
+            axes = {"time": table.values["time"]} if arguments.history else tables.axes(arguments)
+            files.save(table, axes, model.outside, arguments.out)
+        print(f"{arguments.out}: {len(table)} rows", *wrapped(in_words(table.asked)), *table.remarks(), sep="\n")
     else:
-        first = ""
-        if known is not None and errors is not None:
-            (why, stated), ask = bands.assumed(model.pair), known
-            if why:
-                plate_given = chosen.wall(arguments, stated.given[1], thickness)
-                guess = ImpactModel(stated, law=arguments.law)
-                ask = guess.uncertainty(speed, radius, plate_given, **errors, mass=mass)
-            first = bands.measure_first(ask.restitution, why)
-        if len(found) == 1:
-            _print_one(found, known, model.pair, first)
-            return
-        print(*impacts.text(found, columns), sep="\n")
-        if known:
-            print(*bands.explained(known.restitution, model.pair, first), sep="\n")
+        _print(arguments, model)
 
 
-def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair, first: str) -> None:
-    print(f"{'asked':21s} {impacts.in_words(found.asked)}")
-    for name, unit in impacts.units().items():
-        value, band = found.columns[name][0], getattr(known, name, None)
-        if name == "yield_speed" and value == math.inf:
-            print(f"{name:21s} none within the table")
-        else:
-            shown = f"{name:21s} {value:.6g}", unit, band and bands.in_brackets(band)
-            print(" ".join(filter(None, shown)))
-    if known:
-        band = known.restitution
-        said = f"{bands.meaning(band)}{bands.left_out(band, pair)}; half the width by cause"
-        print(f"{'in brackets':21s} {said}")
-    if first:
-        print(f"{'measure this first':21s} {first}")
-    flags = int(found.flags[0])
-    print(f"{'flags':21s} {', '.join(impacts.flag_names(flags)) or 'none: inside every limit'}")
-    for words in explain(flags):
-        print(f"{'':21s} {words}")
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse options that do not go together, and name the one to leave out or to add."""
+    used = {name for name, value in vars(arguments).items() if value not in (None, False, 0.0, [])}
+    for name, other in _NEEDED.items():
+        if name in used and other not in used:
+            raise ArgumentError(name, None, f"needs --{other}, too")
+    for name, others in _EXCLUDED.items():
+        for other in others:
+            if {name, other} <= used:
+                raise ArgumentError(other, None, f"does not go with --{name}: leave out one of them".replace("_", "-"))
 
 
-def _plot_cor(arguments: argparse.Namespace) -> None:
-    model, errors, mass = chosen.model(arguments), _errors(arguments), arguments.mass
-    wall = functools.partial(chosen.wall, arguments, model.pair.given[1])
-    given = {name: getattr(arguments, name) for name in ("speed", "thickness", "radius")}
-    if not any(map(layout.can_be_axis, given.values())):
-        given["speed"] = (0.1 * arguments.speed[0], arguments.speed[0])
+def _print(arguments: argparse.Namespace, model: ImpactModel) -> None:
+    table, known = tables.table(arguments, model)
+    is_text = arguments.form == "text" and not arguments.history
+    if is_text and len(table) == 1 and arguments.angle is None:
+        print(*_fields(table, known), sep="\n")
+    else:
+        table.write(sys.stdout, arguments.form if is_text or arguments.form == "json" else "csv")
+    if is_text and known:
+        assumed = ImpactModel(bands.assumed(model.pair), law=arguments.law)
+        first = known if assumed.pair == model.pair else tables.uncertainty(arguments, assumed, table)
+        meaning = f"68 %: {bands.meaning(known.restitution, model.pair)}."
+        print("", *wrapped(f"{meaning} {bands.measure_first(first.restitution, model.pair)}"), sep="\n")
+        if arguments.causes:
+            print("", *wrapped(bands.causes(known.restitution)), sep="\n")
 
-    def ask(grid: dict[str, Array]) -> layout.Answers:
-        impact = grid["speed"], grid["radius"], wall(grid["thickness"])
-        with wording.naming_impact(grid["speed"], grid["radius"], grid["thickness"], mass=mass):
-            hit = (model.solve if arguments.solve else model.lookup)(*impact, mass=mass)
-            known = None
-            if errors is not None:
-                known = model.uncertainty(*impact, **errors, mass=mass).restitution
-        cor, flags, overload = map(np.asarray, (hit.restitution, hit.flags, hit.overload))
-        if known is None or np.isinf(known.low).all():
-            return layout.Answers(cor, flags, overload, cor, cor)
-        low, high = (np.where(np.isfinite(end), end, cor) for end in (known.low, known.high))
-        return layout.Answers(cor, flags, overload, low, high, bands.in_caption(known))
 
-    plate = chosen.plate_in_words(arguments, model.pair.plate.name)
-    about = f"{model.pair.sphere.name} on {plate}, law {arguments.law}"
-    subject = figure.Subject("COR", "coefficient of restitution [-]", about)
-    figure.save(arguments.plot, subject, given, ask)
+def _fields(table: Table, known: Uncertainty | None) -> Iterator[str]:
+    """Lines of one impact, field by field."""
+    yield from wrapped(in_words(table.asked))
+    for name, unit in impacts.UNITS.items():
+        value, band = table.values[name].item(), getattr(known, name, None)
+        shown = "none within the table" if name == "yield_speed" and value == np.inf else in_unit(value, unit).strip()
+        if band and np.isfinite(band.low).all():
+            scale = scale_of(value, unit)[1]
+            low, high = (f"{np.ravel(end).item() / scale:.3g}" for end in (band.low, band.high))
+            shown = f"{shown:20s}  68 %: {low} to {high}"
+        yield f"{name:20s}  {shown}"
+    flags = 0 if table.flags is None else int(table.flags.flat[0])
+    lines = [", ".join(flag_names(flags)) or "none: inside every limit", *explain(flags)]
+    for title, text in zip(["flags", *[""] * len(lines)], lines, strict=False):
+        yield from wrapped(f"{title:20s}  {text}", " " * 22)

@@ -14,14 +14,17 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.fit import figure, printed
-from contactlaw.cli.parts import chosen, options, rebounds, wording
-from contactlaw.cli.parts.impacts import in_words
+from contactlaw.cli.parts import chosen, measured, options, own, rebounds, wording
 from contactlaw.cli.parts.options import reader_of
+from contactlaw.cli.parts.table import in_words
 from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import HDF5, read_record
+
+_RECORDS = (*HDF5, ".npy")
 
 
 def add(commands: Any) -> None:
@@ -30,59 +33,53 @@ def add(commands: Any) -> None:
     command = options.command(commands, "fit", about, _run)
     add = command.add_argument
     add(
-        "data",
+        "files",
         metavar="FILE",
-        nargs="?",
-        help="record of a run (.h5), or CSV with a row per rebound. Columns: speed_m/s; at least one "
-        "of COR, contact_time_us, peak_force_N, tangential_restitution, rotational_restitution, "
-        "spin_rad/s; optionally radius_mm, thickness_mm and standard errors, as COR_error. The last "
-        "three measurements need angle_deg from the normal too (the speed is then that of the "
-        "bead), or sliding_speed_m/s (the speed is then the normal one). Or a row per drop: drop_cm, "
-        "with bounce_cm or the times between its bounces, t1_ms, t2_ms, ..., or what phyphox exports of it. Its head "
-        "may have materials, sizes and their errors, as lines of TOML behind # (default: --drop and --bounce)",
+        nargs="*",
+        help="a table of rebounds or drops (CSV), an export of phyphox, or the record of a run (.h5, .npy), which "
+        "may be in several files. Columns of a table, a row for each rebound: speed_m/s; at least one of COR, "
+        "contact_time_us, peak_force_N, tangential_restitution, rotational_restitution, spin_rad/s; optionally "
+        "radius_mm, thickness_mm and standard errors such as COR_error. The last three quantities need angle_deg "
+        "from the normal, beside the speed of the bead, or sliding_speed_m/s, beside the normal speed. Or a row "
+        "for each drop: drop_cm, with bounce_cm or with t1_ms, t2_ms, ..., the times between bounces. Lines of "
+        "TOML behind # above the table may state materials, sizes and their errors (default: --drop and --bounce)",
     )
     options.add_drop(command, quantities.values, "of a bead, or of all in FILE")
-    what = "height of the bounce of each drop [m], or with a unit, without FILE"
+    what = "height of the bounce of each drop [m], without FILE"
     options.add_quantity(command, "--bounce", quantities.HEIGHT, what, quantities.values, metavar="Z")
-    options.add_pair(command, " (default: that of FILE)")
-    options.add_radius(command, "all beads", quantities.value)
-    what = "thickness of all plates [m], or with a unit; inf: a half-space"
-    options.add_quantity(command, "--thickness", LENGTH, what, metavar="H")
     what = "coefficient of friction of all rebounds at angles, unless it is an --unknown"
     options.add_quantity(command, "--friction", quantities.FRICTION, what, metavar="MU")
-    add(
-        "--unknown",
-        required=True,
-        metavar="NAME",
-        type=_names,
-        help=f"what to find, up to three: {', '.join(UNKNOWNS)}",
-    )
+    what = f"quantity to find, or up to three: {', '.join(UNKNOWNS)}"
+    add("--unknown", required=True, metavar="NAME", type=_unknowns, help=what)
     add(
         "--prior",
         action="append",
         default=[],
         metavar="NAME=ERROR",
         type=_prior,
-        help="standard error of one of these quantities that is given, as density=20kg/m3; may be "
-        "repeated (default: known quantities are exact)",
+        help="standard error of a stated value of one of these quantities, such as density=20kg/m3; may be "
+        "repeated (default: stated values are exact)",
     )
-    options.add_name_of_law(command)
-    add = command.add_mutually_exclusive_group().add_argument
-    add("--json", action="store_true", help="print the whole fit in SI units")
-    add("--plot", metavar="FILE", help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")
-    command.epilog = options.UNITS
+    measured.add_options(command).add_argument("--json", action="store_true", help="print the whole fit in SI units")
 
 
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(name.strip().replace("-", "_") for name in text.split(","))
+def _unknowns(text: str) -> tuple[str, ...]:
+    return tuple(map(_named, text.split(",")))
+
+
+def _named(text: str) -> str:
+    name = text.strip().replace("-", "_")
+    if name not in UNKNOWNS:
+        raise argparse.ArgumentTypeError(own.unknown(name, UNKNOWNS))
+    return name
 
 
 def _prior(text: str) -> tuple[str, float]:
     """Read the name of a quantity and its standard error, in a unit of that quantity."""
     name, _, size = text.partition("=")
-    name = name.strip().replace("-", "_")
-    if name not in UNKNOWNS or not size:
-        raise argparse.ArgumentTypeError(f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}")
+    if not size:
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected NAME=ERROR, such as density=20kg/m3")
+    name = _named(name)
     kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH, "": quantities.FRICTION}
     error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
     return name, error
@@ -90,36 +87,40 @@ def _prior(text: str) -> tuple[str, float]:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    priors = dict(arguments.prior)
-    if (arguments.data is None) == (arguments.bounce is None):
-        raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
-    if arguments.data is None:
-        pair = chosen.pair(arguments)
-        names = "radius", "thickness", "friction", "drop", "bounce"
-        noted = {name: size for name, size in vars(arguments).items() if name in names and size is not None}
-        noted["line"] = np.arange(1, len(arguments.bounce) + 1)
-        data = Measurements.of(noted, density=pair.sphere.density)
-    elif Path(arguments.data).suffix.lower() in (*HDF5, ".npy"):
-        data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
-        pair = chosen.pair(arguments, known)
-    else:
-        data, pair, head = chosen.of_file(arguments)
-        priors = _errors(head, data) | priors
-    asked: dict[str, Any] = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
-    for name in ("radius", "thickness"):
-        if (size := getattr(arguments, name)) is not None:
-            asked[f"{name}_m"] = size
+    data, pair, priors = _data(arguments)
+    bodies = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = fit(pair, data, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
-            title = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}"
-            figure.save_fit(found, title, arguments.plot)
+            figure.figure(found, in_words(bodies)).save(arguments.plot)
         if arguments.json:
-            numbers = {name: None if size == math.inf else size for name, size in asked.items()}
-            print(json.dumps(numbers | printed.record(found), indent=2))
+            sizes = {f"{name}_m": getattr(arguments, name) for name in ("radius", "thickness")}
+            stated = {name: None if size == math.inf else size for name, size in sizes.items() if size is not None}
+            print(json.dumps(bodies | stated | printed.record(found), indent=2, default=np.ndarray.tolist))
         else:
-            print(in_words(asked), *printed.text(found), "", sep="\n")
-            print(*printed.rows(found), sep="\n")
+            print(in_words(bodies), *printed.text(found), "", sep="\n")
+            print("Measured minus fitted values, in % of the fitted ones:", *printed.rows(found).text(), sep="\n")
+
+
+def _data(arguments: argparse.Namespace) -> tuple[Measurements, Pair, dict[str, float]]:
+    """Read what was measured, and the pair and the priors that go with it."""
+    files, priors = arguments.files, dict(arguments.prior)
+    if bool(files) == (arguments.bounce is not None):
+        raise ArgumentError("drop, bounce", None, "give these without FILE, or FILE")
+    if not files:
+        pair = chosen.pair(arguments)
+        names = "radius", "thickness", "friction", "drop", "bounce"
+        sizes = {name: getattr(arguments, name) for name in names if getattr(arguments, name) is not None}
+        line = np.arange(1, len(arguments.bounce) + 1)
+        return Measurements.of(sizes | {"line": line}, density=pair.sphere.density), pair, priors
+    if Path(files[0]).suffix.lower() in _RECORDS:
+        data, known = _recorded(arguments, {*arguments.unknown} - {*priors})
+        return data, chosen.pair(arguments, known), priors
+    if len(files) > 1:
+        what = f"only the files of one record ({', '.join(_RECORDS)}) are put together"
+        raise ValueError(f"{files[1]}: {what}: give one table, with all rows")
+    data, pair, head = chosen.of_file(arguments, files[0])
+    return data, pair, _errors(head, data) | priors
 
 
 def _errors(head: rebounds.Conditions, data: Measurements) -> dict[str, float]:
@@ -136,26 +137,20 @@ def _errors(head: rebounds.Conditions, data: Measurements) -> dict[str, float]:
 
 def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[Measurements, Pair | None]:
     """Impacts on walls of the record of a run, and their pair; one of several has to be named."""
-    record = read_record(arguments.data)
+    record, first = read_record(*arguments.files), arguments.files[0]
     if arguments.drop is not None:
         raise ArgumentError("drop", None, "the record has its own speeds: leave this one out")
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
     pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
     if len(pairs) > 1:
-        given = {role: getattr(arguments, role) for role in ("sphere", "plate")}
-        named = [
-            n
-            for n, pair in pairs.items()
-            if all(name in (None, getattr(pair, role).name) for role, name in given.items())
-        ]
+        wanted = arguments.sphere, arguments.plate
+        named = [n for n, pair in pairs.items() if all(map(_is_of, wanted, (pair.sphere, pair.plate)))]
         if len(named) != 1:
-            names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs.values())
-            reason = f"has impacts of several pairs, {names}: choose one by --sphere and --plate"
-            raise ValueError(f"{arguments.data}: {reason}")
-        rows, pairs = record.rows.copy(), {0: pairs[named[0]]}
-        rows["plate"][record.which != named[0]] = -1  # left in their places, since rows are named
-        record = replace(record, rows=rows)
-    with wording.reading(arguments.data):
+            names = ", ".join(f"{pair.sphere.name} on {pair.plate.name}" for pair in pairs.values())
+            raise ValueError(f"{first}: has impacts of several pairs, {names}: choose one by --sphere and --plate")
+        pairs = {0: pairs[named[0]]}
+        record.rows["plate"][record.which != named[0]] = -1  # left in their places, since rows are named
+    with wording.reading(first):
         data = Measurements.of(record, unknown)
     for size in ("radius", "thickness"):
         if (value := getattr(arguments, size)) is not None:
@@ -163,3 +158,7 @@ def _recorded(arguments: argparse.Namespace, unknown: Collection[str]) -> tuple[
                 raise ArgumentError(size, None, "the record has its own: leave this one out")
             data = replace(data, **{size: value})
     return data, next(iter(pairs.values()), None)
+
+
+def _is_of(name: str | None, body: Material) -> bool:
+    return name in (None, body.name)

@@ -6,30 +6,37 @@ from typing import Any
 import numpy as np
 
 from contactlaw._readable import percent, rounded, scale_of, with_error
-from contactlaw.cli.parts.impacts import aligned, flag_names
+from contactlaw.cli.parts.impacts import COLUMNS
+from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
 from contactlaw.fitting import Fit
+from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.validity import Validity
+
+_IN_JSON = (
+    *("values", "errors", "statistical_errors", "correlation", "alternatives"),
+    *("residuals", "rows", "scatter", "notes", "law"),
+)
 
 
 def text(found: Fit) -> Iterator[str]:
     """Lines for a terminal: each value with its error and the error's parts, residuals, notes."""
-    width = max(len(UNKNOWNS[name].title) for name in found.unknown)
-    for name in found.unknown:
-        _, size = scale_of(max(abs(found.values[name]), found.errors[name]), UNKNOWNS[name].unit)
-        data, model = found.statistical_errors[name] / size, found.model_errors[name] / size
-        yield f"{UNKNOWNS[name].title:{width}s}  {_number(found, name)}"
-        by_law = rounded(model) if np.isfinite(model) else "nothing known"
-        yield f"{'':{width}s}  of it {rounded(data)} from the data, {by_law} from the model"
+    cells = {
+        "unknown": [UNKNOWNS[name].title for name in found.unknown],
+        "value": [_number(found, name) for name in found.unknown],
+        "error from data": [_size(found.statistical_errors[name], name) for name in found.unknown],
+        "error from law": [_size(found.model_errors[name], name) for name in found.unknown],
+    }
+    yield from Table([Column(name, title=name, shown="") for name in cells], cells).text()
     for n, name in enumerate(found.unknown):
         for m in range(n):
-            yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
+            yield f"The errors of {found.unknown[m]} and {name} have the correlation {found.correlation[n, m]:.2f}."
     for kind, off in found.residuals.items():
-        what, many = kind.replace("_", " "), "s" * (off.size > 1)
-        share = percent(found.scatter[kind])
-        yield f"{what}: {off.size} value{many}, {share} off the fit (rms)"
-    if found.notes:
-        yield ""
-    yield from found.notes
+        values = f"{off.size} value{'s' * (off.size > 1)}"
+        yield f"{KINDS[kind].title}: {values}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
+    for note in found.notes:
+        if note.partition(",")[0] not in Validity.__members__:  # the table of the rebounds explains flags
+            yield from wrapped(f"- {note}", "  ")
 
 
 def values_in_words(found: Fit) -> list[str]:
@@ -41,41 +48,36 @@ def _number(found: Fit, name: str) -> str:
     return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit).rstrip()
 
 
-def rows(found: Fit) -> Iterator[str]:
-    """Lines for a terminal: a row per rebound, with its line of the file."""
-    kinds = list(found.residuals)
-    cells: dict[str, list[str]] = {kind: ["-"] * len(found.data) for kind in kinds}
-    for kind in kinds:
-        for row, off in zip(found.rows[kind].tolist(), found.residuals[kind].tolist(), strict=True):
-            cells[kind][row] = f"{100.0 * off:+z.2f}"
-    slides = found.data.sliding_speed
-    angle = [] if slides is None else np.degrees(np.arctan2(slides, found.data.speed)).tolist()
-    yield from aligned(
-        [
-            ["rebound", "", *(str(n) for n in range(len(found.data)))],
-            ["line", "", *(f"{n:.0f}" for n in np.asarray(found.data.line).tolist())],
-            ["speed", "[m/s]", *(f"{v:.4g}" for v in np.asarray(found.data.speed).tolist())],
-            *([["angle", "[deg]", *(f"{a:.4g}" for a in angle)]] if angle else []),
-            *([kind.replace("_", " "), "[% off]", *cells[kind]] for kind in kinds),
-            ["flags", "", *(", ".join(flag_names(flags)) for flags in found.flags.tolist())],
-        ]
-    )
+def _size(error: float, name: str) -> str:
+    unit, size = scale_of(error, UNKNOWNS[name].unit)
+    return f"{rounded(error / size)} {unit}".rstrip() if np.isfinite(error) else "not known"
+
+
+def rows(found: Fit) -> Table:
+    """Table of the rebounds: sizes, and by how much each measured value differs from the fit."""
+    data, count = found.data, len(found.data)
+    sizes = {"speed": np.asarray(data.speed), "radius": found.radius, "thickness": found.thickness}
+    lines = np.asarray(data.line)
+    number = "line" if np.unique(lines).size == count else "rebound"
+    columns = [Column(number, title=number, digits=".0f")]
+    columns += [column for column in COLUMNS if column.name in sizes.keys() - {*found.unknown}]
+    values: dict[str, Any] = sizes | {"rebound": np.arange(count), "line": lines}
+    if data.is_oblique:
+        columns.append(Column("angle", "deg", "angle", "deg", is_input=True))
+        normal, sliding = sizes["speed"], np.asarray(data.sliding_speed)
+        values |= {"speed": np.hypot(normal, sliding), "angle": np.degrees(np.arctan2(sliding, normal))}
+    for kind, off in found.residuals.items():
+        values[kind] = np.full(count, np.nan)
+        values[kind][found.rows[kind]] = off
+        title = KINDS[kind].title.removesuffix(" restitution").split()[-1]
+        columns.append(Column(kind, "", title, "%", 100.0, digits="+z.2f"))
+    return Table(columns, values, flags=found.flags)
 
 
 def record(found: Fit) -> dict[str, Any]:
-    """All of a fit for JSON, in SI units."""
-    return {
-        "values": found.values,
-        "errors": found.errors,
-        "statistical_errors": found.statistical_errors,
-        "model_errors": {k: e if e < np.inf else None for k, e in found.model_errors.items()},
+    """All of a fit for JSON, in SI units; arrays become lists."""
+    return {name: getattr(found, name) for name in _IN_JSON} | {
+        "model_errors": {name: error if error < np.inf else None for name, error in found.model_errors.items()},
         "units": {name: UNKNOWNS[name].unit for name in found.unknown},
-        "correlation": found.correlation.tolist(),
-        "alternatives": list(found.alternatives),
-        "residuals": {kind: off.tolist() for kind, off in found.residuals.items()},
-        "rows": {kind: row.tolist() for kind, row in found.rows.items()},
-        "scatter": found.scatter,
-        "flags": [flag_names(flags) for flags in found.flags.tolist()],
-        "notes": list(found.notes),
-        "law": found.law,
+        "flags": [flag_names(flags) for flags in found.flags],
     }

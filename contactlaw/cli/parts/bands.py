@@ -1,150 +1,111 @@
-"""Bands of ``contactlaw cor``: how far a real impact may be from its COR, and why."""
+"""Bands of the COR in words: how far a real impact may be from the answer, and why."""
 
 import dataclasses
 import math
-import textwrap
-from collections.abc import Iterator
 
 import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Band, Uncertainty
-from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+from contactlaw.cli.parts.table import Column, Table
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
-_OF_LAW = "two of three impacts by finite elements (no errors of the materials are known)"
-_OF_ALL = "two of three impacts, as far as errors are known"
-_ASSUMED = 0.1  # relative error of a strength whose own is not known
+_ASSUMED = 0.1  # relative error of a strength whose own is not stated
 _TELLS = 0.75  # share of a cause in all others from which without it the band is narrower by a fifth
-WIDTH = 110  # of a line of text
+_STRENGTHS = "yield_strength", "hardness"
+_HERE = "two in three real impacts lie here"
 
 
-def with_bands(table: ImpactTable, bands: Uncertainty | None) -> tuple[ImpactTable, tuple[Column, ...]]:
-    """Table and columns with the ends of each band after its value; without bands, as they are."""
-    columns, values = [], {}
-    for column in COLUMNS:
+def with_bands(table: Table, bands: Uncertainty | None) -> Table:
+    """Add the ends of each band after its value; without bands, leave the table as it is."""
+    columns, values = [], dict(table.values)
+    for column in table.columns:
         columns.append(column)
-        values[column.name] = table.columns[column.name]
         band: Band | None = getattr(bands, column.name, None)
         if band:
             low, high = f"{column.name}_low", f"{column.name}_high"
             shown = "68 %" if column.name == "restitution" else ""
-            columns += [Column(low, column.unit, shown, to=high), Column(high, column.unit)]
+            columns += [Column(low, column.unit, shown, to=high, digits=".3f"), Column(high, column.unit)]
             for name, end in ((low, band.low), (high, band.high)):
                 values[name] = np.where(np.isfinite(end), end, np.nan)
-    return dataclasses.replace(table, columns=values), tuple(columns)
+    return dataclasses.replace(table, columns=columns, values=values)
 
 
-def unknown(band: Band) -> str:
-    """Say which errors that matter are not known; empty if all are."""
-    names = [name for name, size in band.causes.items() if np.isinf(size).any()]
-    minimum = "is a specified minimum, and nobody knows how far the real one exceeds it"
-    law = "how far the law is from finite elements is not known"
-    said = (law if name == "model" else f"the {name} {minimum}" for name in names)
-    return f"no {'range' if 'model' in names else 'upper end'}: {'; '.join(said)}" if names else ""
+def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
+    """Say what is in a band, and what may move real impacts out of it; ends without a full stop.
+
+    The subject is a clause of the things that are in the band.
+    """
+    bodies = {"bead": pair.given[0], "plate": pair.given[1]}
+    strong = {role: body for role, body in bodies.items() if body.strength is not None}
+    unstated = [role for role, body in strong.items() if not _has_error(body)]
+    if not np.isfinite(band.low).any():
+        subject = "no range, because the error of this law is not known"
+    elif len(unstated) == 2:
+        subject += ", if the strengths are right; their errors are not stated"
+    elif unstated:
+        subject += f", if the {unstated[0]}'s strength is right; its error is not stated"
+    elif [*band.causes] == ["model"]:
+        subject += ", if the materials are right; their errors are not stated"
+    sentences = [subject]
+    for role in unstated:
+        if bodies[role].specified_minimum:
+            sentences.append(f"The {role}'s strength is a specified minimum: the real COR may be higher")
+    for role, body in bodies.items():
+        if body.is_polymer and not body.loss_factor:
+            sentences.append(f"The {role} is a polymer without a loss factor: the real COR may be lower")
+    return ". ".join(sentences)
 
 
-def in_brackets(band: Band) -> str:
-    """Band of one impact, with its causes, as text after its value."""
-    low, high = (np.ravel(end).item() for end in (band.low, band.high))
-    if np.isinf([low, high]).all():
-        return "(no range)"
-    ends = (
-        f"{low:.3g} or more"
-        if np.isinf(high)
-        else f"{high:.3g} or less"
-        if np.isinf(low)
-        else f"{low:.3g} to {high:.3g}"
-    )
-    return f"({ends}; {_causes(band)})"
+def _has_error(body: Material) -> bool:
+    return not body.uncertainty.keys().isdisjoint(_STRENGTHS)
 
 
-def assumed(pair: Pair) -> tuple[dict[str, str], Pair]:
-    """Say which strengths have no known error, and why; and the pair with one of 10 % in its place."""
-    why, bodies = dict[str, str](), list[Material]()
-    for role, body in zip(("bead", "plate"), pair.given, strict=True):
-        name = "hardness" if body.yield_strength is None else "yield_strength"
-        error = body.uncertainty.get(name)
-        if body.strength is not None and (error is None or error == math.inf):
-            remark = "a specified minimum" if error else "its error is not known"
-            why |= {f"{name.replace('_', ' ')} of {of}": remark for of in (f"the {role}", "both bodies")}
+def assumed(pair: Pair) -> Pair:
+    """Give each strength without a stated error one of 10 %."""
+    bodies = []
+    for body in pair.given:
+        if body.strength is not None and not _has_error(body):
+            name = _STRENGTHS[body.yield_strength is None]
             body = dataclasses.replace(body, uncertainty={**body.uncertainty, name: _ASSUMED})
         bodies.append(body)
-    return why, Pair(*bodies)
+    return Pair(*bodies)
 
 
-def measure_first(band: Band, assumed: dict[str, str]) -> str:
+def measure_first(band: Band, pair: Pair) -> str:
     """Name the input whose measurement narrows the band most, and by how much: rms of several impacts.
 
-    Causes that are `assumed` have an error of 10 %, since theirs is not known.
+    The band is that of the pair with `assumed` errors. Without such an input the answer is empty.
     """
     sizes = {cause: float(np.sqrt(np.mean(np.square(size)))) for cause, size in band.causes.items()}
-    rest = sizes.pop("model")
-    cause, size = max(sizes.items(), key=lambda one: one[1], default=("", 0.0))
-    rest = math.hypot(rest, *(one for name, one in sizes.items() if name != cause))
+    rest = sizes.pop("model", 0.0)
+    cause, size = max(sizes.items(), key=lambda pair: pair[1], default=("", 0.0))
+    rest = math.hypot(rest, *(other for name, other in sizes.items() if name != cause))
     if not size > _TELLS * rest:
         return ""
-    what = "the " + cause.replace("yield strength", "yield strength or hardness")
-    why = (
-        f": {assumed[cause]}, and each 10 % of it is {size:.2g} of COR"
-        if cause in assumed
-        else f", {size:.2g} of half the width"
-    )
-    guessed = [f"the {name}" for name in sizes.keys() & assumed if name != cause]
-    return f"{what}{why}; all else is {rest:.2g}{', with 10 % for ' * bool(guessed)}{' and '.join(guessed)}"
+    name, _, owner = cause.partition(" of ")
+    body = pair.given[owner == "the plate"]
+    is_strength = name.replace(" ", "_") in _STRENGTHS
+    owner = {"": "the ", "both bodies": "the material's "}.get(owner, f"{owner}'s ")
+    subject = f"Measure {owner}{'hardness' if is_strength else name}"
+    if is_strength and not _has_error(body):
+        return f"{subject} first: 10 % of it changes the COR by {size:.2g}."
+    return f"{subject} better: its error changes the COR by {size:.2g}."
 
 
-def explained(band: Band, pair: Pair, first: str) -> Iterator[str]:
-    """Lines below a table with the meaning of the band of the COR, and its causes."""
-    yield ""
-    said = [f"68 %: the COR is in this range in {meaning(band)}{left_out(band, pair)}."]
-    if meaning(band) is _OF_ALL and np.isfinite(band.low).any():
-        said.append(f"Half its width by cause: {_causes(band)}.")
-    yield from textwrap.wrap(" ".join([*said, *[f"Measure this first: {first}."] * bool(first)]), WIDTH)
-
-
-def left_out(band: Band, pair: Pair) -> str:
-    """Name what is not in the band and often matters most, unknown errors and viscosity, and ranges."""
-    roles = {"the bead": pair.sphere, "the plate": pair.plate}
-    known = {"yield_strength", "hardness"}
-    names = [role for role, body in roles.items() if body.strength is not None and not body.uncertainty.keys() & known]
-    parts = list(filter(None, [unknown(band)]))
-    if ranges := [role for role, body in roles.items() if min(body.uncertainty.values(), default=0.0) < 0.0]:
-        parts.append(f"strength of {' and '.join(ranges)} from the specified minimum to the most that is known")
-    if names and meaning(band) is _OF_ALL:
-        subject = "strength" if len(names) == 1 else "strengths"
-        parts.append(f"errors of the {subject} of {' and '.join(names)} are not")
-    if any(body.is_polymer and not body.loss_factor for body in roles.values()):
-        parts.append("what a polymer loses by viscosity is not in it")
-    return f" ({'; '.join(parts)})" if parts else ""
-
-
-def meaning(band: Band) -> str:
-    """Say which impacts are in a band."""
-    return _OF_LAW if [*band.causes] == ["model"] and not unknown(band) else _OF_ALL
-
-
-def in_caption(band: Band) -> str:
-    """Say which impacts are in a band, and which of several causes makes it widest."""
-    cause = max(band.causes, key=lambda name: np.max(band.causes[name]), default="")
-    if why := unknown(band):
-        return f"{meaning(band)}; {why}"
-    return meaning(band) + (f", mostly by the {cause}" if len(band.causes) > 1 else "")
-
-
-def _causes(band: Band) -> str:
-    """Causes with the half widths that they alone make, the largest ones first."""
-    known = {name: size for name, size in band.causes.items() if np.isfinite(size).all()}
-    sizes = {name: np.asarray(size) for name, size in known.items()}
+def causes(band: Band) -> str:
+    """Name the largest causes of a band of the COR, with the half widths that they alone make."""
+    sizes = {name: np.asarray(size) for name, size in band.causes.items() if np.isfinite(size).all()}
     most = max((size.max() for size in sizes.values()), default=0.0)
     largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
-    counted = (name for name in largest if sizes[name].max() >= _LEAST * most)
-    return ", ".join(f"{name} {_range(sizes[name])}" for name in counted)
+    named = (name for name in largest if sizes[name].max() >= _LEAST * most)
+    parts = (f"{'law' if name == 'model' else name} {_range(sizes[name])}" for name in named)
+    return f"Half the width of the COR's range by cause: {', '.join(parts)}."
 
 
 def _range(sizes: Array) -> str:
-    known = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # not what integration errs by
-    least, most = (f"{size:.2g}" for size in (known.min(), known.max()))
+    sizes = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # smaller ones are errors of integration
+    least, most = (f"{size:.2g}" for size in (sizes.min(), sizes.max()))
     return most if least == most else f"{least} to {most}"

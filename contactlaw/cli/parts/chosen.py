@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import own, plots, rebounds, wording
+from contactlaw.cli.parts import figure, impacts, own, rebounds, wording
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
@@ -54,14 +54,14 @@ def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
 
 
-def of_file(arguments: argparse.Namespace) -> tuple[Measurements, Pair, rebounds.Conditions]:
+def of_file(arguments: argparse.Namespace, path: str) -> tuple[Measurements, Pair, rebounds.Conditions]:
     """Read a table of rebounds; options come before what the head of the file says."""
-    read = rebounds.checked(arguments.data)
-    with wording.reading(arguments.data):
-        known = rebounds.conditions(read, arguments.materials)
+    table = rebounds.read(path)
+    with wording.reading(path):
+        known = rebounds.conditions(table, arguments.materials)
     bodies = pair(arguments, SimpleNamespace(**known.bodies))
     options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
-    return rebounds.completed(read, arguments.data, bodies.sphere.density, **known.values | options), bodies, known
+    return rebounds.completed(table, path, bodies.sphere.density, **known.values | options), bodies, known
 
 
 def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:
@@ -109,6 +109,12 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
     return words
 
 
+def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
+    """Repeat what the user asked: names of materials, wall and law, and sizes in SI units."""
+    names = impacts.asked(model, **sizes)
+    return names | {"plate": plate_in_words(arguments, names["plate"])}
+
+
 def check_quantities(arguments: argparse.Namespace) -> None:
     """Refuse values beyond their limits one by one, so that the message can name the value.
 
@@ -118,10 +124,14 @@ def check_quantities(arguments: argparse.Namespace) -> None:
         drops = arguments.drop
         fallen = rebounds_of({"drop": drops, "radius": bead_radius(arguments)}, density(arguments))["speed"].tolist()
         arguments.speed = tuple(fallen) if isinstance(drops, tuple) else fallen[0]
-    for name in ("speed", "radius", "thickness", "friction"):
-        given = getattr(arguments, name, None)
-        for value in () if given is None else np.atleast_1d(given).tolist():
-            scalars(**{name: value})
+    for name in ("speed", "radius", "thickness", "friction", "mass"):
+        sizes = getattr(arguments, name, None)
+        for size in () if sizes is None else np.atleast_1d(sizes).tolist():
+            scalars(**{name: size})
+    for name in ("cylinder", "bowl"):
+        size = getattr(arguments, name, None)
+        if size is not None and abs(size) <= np.max(arguments.radius):
+            raise ArgumentError(name, size, "must be larger than the bead's radius; negative if beads hit from outside")
 
 
 def bead_radius(arguments: argparse.Namespace) -> float:
@@ -143,6 +153,6 @@ def density(arguments: argparse.Namespace) -> float:
 def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     with wording.writing("plot", arguments.plot):
-        wording.check_suffix("path", arguments.plot, plots.SUFFIXES)
+        wording.check_suffix("path", arguments.plot, figure.SUFFIXES)
         yield
     print(arguments.plot)

@@ -17,6 +17,9 @@ _UNIT = re.compile(r"\d\s*([^\W\d]|%)")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 _SPEED = "speed", "approach_speed", "normal_speed", "impact_speed"
 SPEEDS = (*_SPEED, *(name.replace("speed", "velocity") for name in _SPEED), "v")
+_TOO_MANY = "delete what is beyond the columns, or name it in the first line"
+_DECIMAL_COMMA = "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns"
+_TOO_FEW = "leave the cell of what was not measured empty, but keep what separates the cells"
 _MISSING = ("", "n/a", "n.a.", "na", "nan", "none", "-")  # cells of what was not measured
 
 
@@ -91,12 +94,12 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
     found: dict[str, Located] = {}
     for n, head in enumerate(names):
         for field, column in columns.items():
-            unit = _unit(head, column)
-            if unit is None:
+            per_unit = _per_unit(head, column)
+            if per_unit is None:
                 continue
             if field in found:
                 raise ValueError(f"two columns of {field}, {names[found[field].place]!r} and {head!r}")
-            found[field] = Located(n, _per_unit(head, unit, column.quantity))
+            found[field] = Located(n, per_unit)
     return found
 
 
@@ -117,73 +120,90 @@ def nearest(head: str, columns: Mapping[str, TextColumn]) -> str:
     ", did you mean velocity for 'Velocty [mm/s]'?"
     """
     names = [name for column in columns.values() for name in column.names if len(name) > 2]
-    match = _BRACKET.fullmatch(head)
-    bare = re.sub(r"\s+", "_", (match["name"] if match else head).strip().lower())
-    for trial in (bare, bare.rpartition("_")[0]):  # a unit may follow an underscore
+    name, _ = _name_and_unit(head)
+    for trial in (name, name.rpartition("_")[0]):  # a unit may follow an underscore
         for near in difflib.get_close_matches(trial, names, n=1, cutoff=0.7):
             return f", did you mean {near} for {head!r}?"
     return ""
 
 
-def _unit(head: str, column: TextColumn) -> str | None:
-    """Take the unit of a column's head, "" if it has none; None for another column's head."""
-    bare = head.strip().lower().translate(_MICRO)
+def _name_and_unit(head: str) -> tuple[str, str]:
+    """Name in lower case with underscores, and the unit that follows it in brackets, or ""."""
+    bare = re.sub(r"\s+", "_", head.strip().lower().translate(_MICRO))
     match = _BRACKET.fullmatch(bare)
-    name, unit = (match["name"], match["unit"].strip()) if match else (bare, "")
-    if re.sub(r"\s+", "_", name.strip()) in column.names:
-        return unit
-    name, _, unit = re.sub(r"\s+", "_", bare).rpartition("_")
-    units = column.quantity.units if column.quantity else {}
-    return unit if name in column.names and unit in map(str.lower, units) else None
+    return (match["name"], match["unit"].strip("_")) if match else (bare, "")
 
 
-def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
+def _per_unit(head: str, column: TextColumn) -> float | None:
+    """Count a column's units in one SI unit; None for the head of another column."""
+    quantity, (name, unit) = column.quantity, _name_and_unit(head)
+    units = {text.lower(): size for text, size in quantity.units.items()} if quantity else {}
+    if name not in column.names:
+        name, _, unit = name.rpartition("_")
+        if name not in column.names or unit not in units:
+            return None
     if quantity is None or not unit:
         return 1.0
-    sizes = {name.lower(): size for name, size in quantity.units.items()}
-    if unit not in sizes:
+    if unit not in units:
         raise ValueError(f"column {head!r}: {unit!r} is no unit of {quantity.name}; take {', '.join(quantity.units)}")
-    return float(1 / sizes[unit])
+    return float(1 / units[unit])
 
 
 def numbers(
-    rows: Sequence[str], delimiter: str, names: Sequence[str], wanted: list[int], gaps: bool = False
+    rows: Sequence[str], delimiter: str, names: Sequence[str], wanted: Sequence[int], wrong: list[str] | None = None
 ) -> tuple[list[int], Array]:
     """Read some columns of a table's rows: the line of the file of each row with data, its numbers.
 
-    If the delimiter is no comma, numbers may have decimal commas. With `gaps` cells may be empty or
-    ``n/a``, which is NaN.
+    If the delimiter is no comma, numbers may have decimal commas. With a list `wrong`, cells may be
+    empty or ``n/a``, which is NaN. Rows with too few cells, or with a cell that is no number, are
+    then left out, and the list gets a sentence about each.
+
+    Raises
+    ------
+    ValueError
+        Of a row with more cells than there are names: a decimal comma may have moved its numbers
+        into other columns. Without the list, of the other wrong rows, too.
 
     Examples
     --------
-    >>> numbers(["1;2,5", ";;", "3;n/a"], ";", ["a", "b"], [1], gaps=True)
+    >>> wrong = []
+    >>> numbers(["1;2,5", ";;", "3;n/a", "4;much"], ";", ["a", "b"], [1], wrong)
     ([2, 4], array([[2.5],
            [nan]]))
+    >>> wrong
+    ["line 5, column 'b': 'much' is no number such as 1.5"]
     """
     lines, table = [], list[list[float]]()
     for line, row in enumerate(rows, start=2):
         fields = _fields(row, delimiter)
+        count = f"line {line} fills {len(fields)} of {len(names)} columns, {row[:80]!r}"
+        if len(fields) > len(names):
+            comma = delimiter == "," and "." not in row and re.search(r"\d,\d", row)
+            raise ValueError(f"{count}: {_DECIMAL_COMMA if comma else _TOO_MANY}")
         if not fields:
             continue
-        _check_fields(line, row, fields, delimiter, len(names), max(wanted, default=-1) + 1)
-        cells = [*fields, *[""] * (len(names) - len(fields))]
-        lines.append(line)
-        table.append([])
-        for n in wanted:
-            try:
-                table[-1].append(_number(cells[n].strip(), delimiter, gaps))
-            except ValueError:
-                where = f"line {line}, column {names[n]!r}: {cells[n].strip()!r}"
-                hint = "; units belong into the name of the column" * bool(_UNIT.search(cells[n]))
-                raise ValueError(f"{where} is no number such as 1.5{hint}") from None
+        try:
+            if len(fields) < max(wanted, default=-1) + 1 > row.count(delimiter) + 1:
+                raise ValueError(f"{count}: {_TOO_FEW}")
+            fields += [""] * (len(names) - len(fields))
+            table.append([_number(fields[n].strip(), delimiter, wrong is not None, names[n], line) for n in wanted])
+            lines.append(line)
+        except ValueError as error:
+            if wrong is None:
+                raise
+            wrong.append(str(error))
     return lines, np.array(table, dtype=np.float64).reshape(len(lines), len(wanted))
 
 
-def _number(text: str, delimiter: str, gaps: bool) -> float:
+def _number(text: str, delimiter: str, gaps: bool, name: str, line: int) -> float:
     if gaps and text.lower() in _MISSING:
         return math.nan
     decimal_comma = delimiter != "," and "." not in text
-    return float(text.replace(",", ".") if decimal_comma else text)
+    try:
+        return float(text.replace(",", ".") if decimal_comma else text)
+    except ValueError:
+        hint = "; units belong into the name of the column" * bool(_UNIT.search(text))
+        raise ValueError(f"line {line}, column {name!r}: {text!r} is no number such as 1.5{hint}") from None
 
 
 def _fields(row: str, delimiter: str) -> list[str]:
@@ -195,31 +215,3 @@ def _fields(row: str, delimiter: str) -> list[str]:
     while found and not found[-1].strip():
         found.pop()
     return found
-
-
-def _check_fields(line: int, row: str, fields: list[str], delimiter: str, count: int, least: int) -> None:
-    """Refuse rows with more fields than the first line: numbers might be in the wrong column.
-
-    Rows with fewer than the `least` number of fields, which ends with the last wanted column, are
-    refused too, unless they have the delimiters up to there.
-    """
-    more, fewer = len(fields) > count, len(fields) < least > row.count(delimiter) + 1
-    if more or fewer:
-        why = _why(row, delimiter, more)
-        raise ValueError(
-            f"line {line} has {_counted(len(fields), 'field')}, {row[:80]!r}, where the first "
-            f"line names {_counted(count, 'column')}: {why}"
-        )
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"
-
-
-def _why(row: str, delimiter: str, more: bool) -> str:
-    """Likely cause and remedy for a row with too many or too few fields."""
-    if more and delimiter == "," and "." not in row and re.search(r"\d,\d", row):
-        return "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns"
-    if more:
-        return "delete what is beyond the columns, or name it in the first line"
-    return "leave the cell of what was not measured empty, but keep what separates the cells"

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 SUFFIXES = ".png", ".svg", ".pdf"
 MOST_CURVES = 8  # more could not be distinguished
-_WIDE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
+_MOST_INSIDE = 5  # names of curves that have room among these
+WIDE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
 
 
 class Axis(NamedTuple):
@@ -93,27 +94,30 @@ class Figure:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a whole file, in the format that its suffix names; matplotlib is loaded here."""
-        x = np.concatenate([part.x[np.isfinite(part.x)] for part in (*self.curves, *self.points)])
-        y = np.concatenate([part.y for part in (*self.curves, *self.points)])
-        labels = [part.label for part in (*self.curves, *self.points) if part.label]
+        parts: list[Curve | Points] = [*self.curves, *self.points]
+        x = np.concatenate([part.x[np.isfinite(part.x)] for part in parts])
+        y = np.concatenate([part.y for part in parts])
+        labels = [part.label for part in parts if part.label]
         with style.applied():
             figure = style.figure(9.0, 6.0, self.title, ". ".join([self.about, *self._remarks()]))
             axes = figure.subplots()
             (x_label, x_size), (y_label, y_size) = AXES[self.x].scaled(x.max()), AXES[self.y].scaled(y.max())
             axes.set(xlabel=x_label, ylabel=y_label)
             for n, curve in enumerate(self.curves):
-                _curve(axes, curve, self._colour(n), x_size, y_size)
+                draw_curve(axes, curve, self._colour(n), x_size, y_size)
             for points in self.points:
                 colour = style.ORANGE if points.curve is None else self._colour(points.curve)
-                _points(axes, points, colour, x_size, y_size)
+                draw_points(axes, points, colour, x_size, y_size)
             least, largest = x.min() / x_size, x.max() / x_size
-            if AXES[self.x].may_be_logarithmic and largest >= _WIDE * least:
+            if AXES[self.x].may_be_logarithmic and largest >= WIDE * least:
                 axes.set(xscale="log")
                 width = math.log10(largest / least)
                 style.decades(axes.xaxis, (1.0,) if width > 4.0 else (1.0, 2.0, 5.0))
             if self.curves:
                 axes.set_xlim(least, largest)
-            if len(labels) > 1:
+            if len(labels) > _MOST_INSIDE:
+                figure.legend(loc="outside right center")
+            elif len(labels) > 1:
                 axes.legend(loc="best")
             content = io.BytesIO()
             figure.savefig(content, format=PurePath(path).suffix[1:].lower())
@@ -133,15 +137,16 @@ class Figure:
             remarks.append("Triangle: a body begins to yield")
         if any(one.x[-1] == math.inf for one in self.curves):
             remarks.append("Thin line: half-space")
-        for parts, mark in ((self.curves, "Dashed"), (self.points, "Hollow")):
+        marks = dict[str, list[str]]()
+        for parts, mark in ((self.curves, "dashed"), (self.points, "hollow")):
             flags = [np.bitwise_or.reduce(part.flags) for part in parts if part.flags is not None and part.flags.size]
             exceeded = int(np.bitwise_or.reduce(flags or [0])) & Validity.ACCURACY
             if exceeded:
-                remarks.append(f"{mark}: {'; or '.join(limits_in_words(exceeded))}")
-        return remarks
+                marks.setdefault("; or ".join(limits_in_words(exceeded)), []).append(mark)
+        return [*remarks, *(f"{' and '.join(names).capitalize()}: {words}" for words, names in marks.items())]
 
 
-def _curve(axes: Axes, curve: Curve, colour: Any, x_size: float, y_size: float) -> None:
+def draw_curve(axes: Axes, curve: Curve, colour: Any, x_size: float, y_size: float) -> None:
     """Draw a curve with its band, dashed beyond limits of the model, and the yield point."""
     finite = np.isfinite(curve.x)
     x, y = curve.x[finite] / x_size, curve.y[finite] / y_size
@@ -166,7 +171,7 @@ def _curve(axes: Axes, curve: Curve, colour: Any, x_size: float, y_size: float) 
             axes.plot(*at, "v", color=colour, markersize=10, markeredgecolor="white", zorder=3)
 
 
-def _points(axes: Axes, points: Points, colour: Any, x_size: float, y_size: float) -> None:
+def draw_points(axes: Axes, points: Points, colour: Any, x_size: float, y_size: float) -> None:
     """Draw points with their standard errors; those beyond a limit of the model are hollow."""
     flags = np.zeros(points.x.size, dtype=int) if points.flags is None else points.flags
     inside, label = (flags & Validity.ACCURACY) == 0, points.label or None

@@ -1,4 +1,7 @@
-"""Options that subcommands share, with their help."""
+"""Options that subcommands share, with their help.
+
+`command` is a parser, or one of its groups.
+"""
 
 import argparse
 from collections.abc import Callable, Iterable
@@ -6,7 +9,7 @@ from typing import Any
 
 from contactlaw import laws, quantities
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.wording import OWN
+from contactlaw.cli.parts.wording import OWN, Written
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
 from contactlaw.quantities import ANGLE, HEIGHT, LENGTH, MASS, SHARE, SPEED, STIFFNESS, Quantity
@@ -16,8 +19,8 @@ Run = Callable[[argparse.Namespace], None]
 
 UNITS = "Quantities are numbers in SI units, or carry one of their own: 0.9mm, 500um, 50nm, 36km/h."
 LISTS = (
-    "Several are a list, 1,5,10, or a range start:stop:count, 0.1:10:50, with logarithmic steps "
-    "0.1:10:50log; every combination of speeds, radii and thicknesses is an impact."
+    "Several values are a list, 1,5,10, or a range start:stop:count, 0.1:10:50, or 0.1:10:50log for "
+    "logarithmic steps. Every combination of the values is an impact."
 )
 
 
@@ -40,15 +43,6 @@ def _described(commands: Any, name: str, about: str) -> argparse.ArgumentParser:
     return made
 
 
-def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
-    """Add the options of commands about impacts; `read` reads one value or several."""
-    add_pair(command)
-    add_sizes(command, read)
-    add_speed(command, read)
-    add_law(command)
-    command.add_argument("--solve", action="store_true", help="integrate the equation instead of using its table")
-
-
 def add_quantity(
     command: Any, option: str, quantity: Quantity, what: str, read: Reader = quantities.value, **more: Any
 ) -> None:
@@ -56,72 +50,67 @@ def add_quantity(
     command.add_argument(option, type=reader_of(read, quantity), help=what, **more)
 
 
-def add_mass(command: argparse.ArgumentParser) -> None:
+def add_mass(command: Any) -> None:
     """Add the option of the mass of beads that are no solid spheres."""
-    what = "mass of a hollow or coated bead, or of a clump [kg], or with a unit"
-    add_quantity(command, "--mass", MASS, f"{what} (default: that of a solid sphere)", metavar="M")
+    what = "mass of the bead if it is hollow, coated or a clump [kg] (default: that of a solid sphere)"
+    add_quantity(command, "--mass", MASS, what, metavar="M")
 
 
-def add_speed(command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed") -> None:
+def add_speed(command: Any, read: Reader, what: str = "normal approach speed") -> None:
     """Add the options of the impact speed."""
     group = command.add_mutually_exclusive_group(required=True)
-    add_quantity(group, "--speed", SPEED, f"{what} [m/s], or with a unit", read, metavar="V")
+    add_quantity(group, "--speed", SPEED, f"{what} [m/s]", read, metavar="V")
     add_drop(group, read)
 
 
-def add_drop(
-    command: Any, read: Reader, then: str = "in place of --speed: that on arrival, less what the air takes"
-) -> None:
+def add_drop(command: Any, read: Reader, then: str = "in place of --speed; the air slows the bead") -> None:
     """Add the option of the height of a drop."""
-    add_quantity(
-        command, "--drop", HEIGHT, f"height of a fall from rest [m], or with a unit, {then}", read, metavar="Z"
-    )
+    add_quantity(command, "--drop", HEIGHT, f"height of a fall from rest [m], {then}", read, metavar="Z")
 
 
-def add_wall(command: argparse.ArgumentParser) -> None:
-    """Add the options of walls that are no bare flat sheet."""
+def add_wall(command: Any) -> None:
+    """Add the options of walls other than a bare flat sheet."""
     add_layers(command)
-    one = command.add_mutually_exclusive_group()
-    where = "[m], or with a unit; negative where beads hit from outside (default: flat)"
-    add_quantity(one, "--cylinder", LENGTH, f"radius of a wall that is a cylinder {where}", metavar="A")
-    add_quantity(one, "--bowl", LENGTH, f"radius of a wall that is a sphere {where}", metavar="A")
-    what = "stiffness of what the plate lies on, pressure per deflection [N/m3], or in N/mm3"
-    add_quantity(one, "--foundation", STIFFNESS, f"{what} (default: none)", metavar="K")
+    shape = command.add_mutually_exclusive_group()
+    where = "[m], negative if beads hit it from outside (default: flat)"
+    add_quantity(shape, "--cylinder", LENGTH, f"radius of a cylindrical wall {where}", metavar="A")
+    add_quantity(shape, "--bowl", LENGTH, f"radius of a spherical wall {where}", metavar="A")
+    what = "stiffness of the bed below the plate, pressure per deflection [N/m3] (default: no bed)"
+    add_quantity(shape, "--foundation", STIFFNESS, what, metavar="K")
 
 
-def add_layers(command: argparse.ArgumentParser) -> None:
+def add_layers(command: Any) -> None:
     """Add the option of layers below the plate."""
     command.add_argument(
         "--on",
         metavar="NAME:H",
         action="append",
         default=[],
-        help="material and thickness of the layer to which the plate is bonded from below, as "
-        "steel-s235:3mm; material and thickness of the plate are then those of the layer that beads touch; may be "
-        "repeated, downwards (default: none)",
+        help="material and thickness of a layer bonded below the plate, as steel-s235:3mm; "
+        "repeat it for more layers, from top to bottom (default: none)",
     )
 
 
 OF_RECORD = " (default: that of the record)"
 
 
-def add_pair(command: argparse.ArgumentParser, otherwise: str = "", action: str = "store") -> None:
+def add_pair(command: Any, otherwise: str = "", action: str = "store") -> None:
     """Add the options of materials, required unless their help says what holds `otherwise`."""
-    given: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
+    settings: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
     bead = f"material of the bead: a name that `contactlaw materials` lists, or numbers, {OWN}{otherwise}"
-    command.add_argument("--sphere", help=bead, **given)
-    command.add_argument("--plate", help=f"material of the plate{otherwise}", **given)
+    command.add_argument("--sphere", help=bead, **settings)
+    command.add_argument("--plate", help=f"material of the plate, in the same way{otherwise}", **settings)
     add_materials(command)
 
 
-def add_materials(command: argparse.ArgumentParser) -> None:
+def add_materials(command: Any) -> None:
     """Add the option of a file of materials."""
     command.add_argument(
         "--materials",
         metavar="FILE",
         type=_materials,
         default={},
-        help="file of your own materials, TOML in the format of the catalogue (default: none)",
+        help="TOML file of your own materials, in the format of the catalogue (default: none)",
     )
 
 
@@ -129,47 +118,57 @@ def _materials(path: str) -> dict[str, Material]:
     try:
         return read_materials(path)
     except (OSError, ValueError) as error:
-        raise argparse.ArgumentTypeError(wording.sentence(error, ())) from None
+        raise argparse.ArgumentTypeError(wording.sentence(error, {})) from None
 
 
-def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True, unknown: str = "") -> None:
+def add_sizes(command: Any, read: Reader, required: bool = True, unknown: str = "") -> None:
     """Add the options of sizes, but for an unknown one; if not required, a record may have them."""
     known = "" if required else OF_RECORD
     add_radius(command, "the bead", read, required, known)
     if unknown != "thickness":
-        what = f"thickness of the plate [m], or with a unit; inf: a half-space{known}"
+        what = f"thickness of the plate [m]; inf is a half-space{known}"
         add_quantity(command, "--thickness", LENGTH, what, read, required=required, metavar="H")
 
 
-def add_radius(
-    command: argparse.ArgumentParser, of: str, read: Reader, required: bool = False, known: str = ""
-) -> None:
+def add_radius(command: Any, of: str, read: Reader, required: bool = False, known: str = "") -> None:
     """Add the options of a bead's size."""
 
-    def half(text: str) -> Any:
-        found = reader_of(read, LENGTH)(text)
-        return tuple(0.5 * one for one in found) if isinstance(found, tuple) else 0.5 * found
+    def halved(text: str) -> Any:
+        sizes = reader_of(read, LENGTH)(text)
+        return tuple(map(_half, sizes)) if isinstance(sizes, tuple) else _half(sizes)
 
     group = command.add_mutually_exclusive_group(required=required)
-    add_quantity(group, "--radius", LENGTH, f"radius of {of} [m], or with a unit{known}", read, metavar="R")
-    group.add_argument(
-        "--diameter", dest="radius", metavar="D", type=half, help=f"diameter of {of}, in place of --radius"
-    )
+    add_quantity(group, "--radius", LENGTH, f"radius of {of} [m]{known}", read, metavar="R")
+    what = f"diameter of {of}, in place of --radius"
+    group.add_argument("--diameter", dest="radius", metavar="D", type=halved, help=what)
 
 
-def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
+def _half(size: float) -> float:
+    return Written(0.5 * size, f"{size.text}/2") if isinstance(size, Written) else 0.5 * size
+
+
+def add_forms(command: Any) -> Any:
+    """Add the options of CSV and JSON, as `form`; return their group, for other forms of output."""
+    group = command.add_mutually_exclusive_group()
+    for form in ("csv", "json"):
+        what = f"print all fields as {form.upper()}, in SI units with every digit"
+        group.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
+    return group
+
+
+def add_errors(command: Any, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
     for name in sizes:
-        what = f"relative standard error of the {name}, as 5%% (default: 0)"
+        what = f"relative standard error of the {name}, such as 5%% (default: 0)"
         add_quantity(command, f"--{name}-error", SHARE, what, metavar="SHARE", default=0.0)
-    for role in ("sphere", "plate"):
+    for role, body in (("sphere", "bead"), ("plate", "plate")):
         command.add_argument(
             f"--{role}-error",
             metavar="NUMBER=SHARE",
             type=_error,
             default=[],
             action="append",
-            help=f"relative standard error of a property of the {role}'s material, as yield_strength=15%%; "
+            help=f"relative standard error of a property of the {body}, such as yield_strength=15%%; "
             "may be repeated (default: those of the catalogue)",
         )
 
@@ -179,11 +178,11 @@ def _error(text: str) -> tuple[str, float]:
     try:
         return name, quantities.value(share, SHARE)
     except ValueError as error:
-        wanted = "expected a number of a material and its error, as yield_strength=15%"
+        wanted = "expected a property and its error, such as yield_strength=15%"
         raise argparse.ArgumentTypeError(f"{wanted}: {error}") from None
 
 
-def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+def add_name_of_law(command: Any, default: str | None = laws.DEFAULT) -> None:
     """Add the option of the law."""
     stated = default or f"that of the record, or {laws.DEFAULT}"
     command.add_argument(
@@ -191,35 +190,37 @@ def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws
     )
 
 
-def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+def add_law(command: Any, default: str | None = laws.DEFAULT) -> None:
     """Add the options of the law and of the behaviour outside its table."""
     add_name_of_law(command, default)
     command.add_argument(
         "--outside",
         default="raise",
         choices=["raise", "solve", "clamp"],
-        help="what to do with impacts outside the table: refuse them, integrate the equation, or take "
-        "the value at the table's border (default: %(default)s)",
+        help="impacts outside the table: refuse them, integrate the equation, or take the value at the "
+        "border of the table (default: %(default)s)",
     )
 
 
 def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
     """Reader of an option from a reader of quantities, with errors that argparse reports."""
 
-    def one(text: str) -> Any:
+    def number(text: str) -> Any:
         pointed = quantities.decimal_comma(text)
         if pointed.lstrip().startswith("0.") and quantity is not ANGLE:
-            said = f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
+            doubt = f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
             if quantity in (LENGTH, HEIGHT, SPEED, SHARE):  # none of these may be 0
-                raise argparse.ArgumentTypeError(said)
-            wording.print_warning(said)
+                raise argparse.ArgumentTypeError(doubt)
+            wording.print_warning(doubt)
         try:
-            found = read(text, quantity)
+            sizes = read(text, quantity)
         except ValueError as error:
             raise argparse.ArgumentTypeError(str(error)) from None
-        size = unlikely(found) if quantity is LENGTH and "m" not in text else None  # no unit
+        size = unlikely(sizes) if quantity is LENGTH and "m" not in text else None  # no unit
         if size is not None:
             wording.print_warning(f"{size:g} is {size:g} m; {size:g}mm?")
-        return found
+        if ":" in text:  # the values of a range are not written one by one
+            return sizes
+        return tuple(map(Written, sizes, text.split(","))) if isinstance(sizes, tuple) else Written(sizes, text)
 
-    return one
+    return number

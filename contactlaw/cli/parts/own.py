@@ -3,17 +3,17 @@
 import dataclasses
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
-from contactlaw.physical.materials import SHORT, Material, UnknownMaterialError, find, number_of
+from contactlaw.physical.materials import SHORT, WRITE_LOSS, Material, UnknownMaterialError, find, number_of
 
 _NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
 
 
-_TEXTS = "kind", "name", "loss_factor"
+_TEXTS = "kind", "name"
 _FIELDS = SHORT | {name: name for name in ("hardness", *_TEXTS)}
 
 # Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
@@ -26,6 +26,19 @@ _LIKELY = {
 }
 
 
+def unknown(name: str, known: Iterable[str]) -> str:
+    """Say that a name is not among those known, and which of them is like it.
+
+    Examples
+    --------
+    >>> unknown("thicknes", ["radius", "thickness"])
+    "unknown 'thicknes'; did you mean thickness? known: radius, thickness"
+    """
+    names = [*known]
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"
+
+
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
     """Material of an option: a name of the catalogue or of the user's own, numbers, or a name and what differs."""
     try:
@@ -34,10 +47,10 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
         given: dict[str, object] = {}
         first = re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;")
         for key, word in _NUMBER.findall(text):
+            if key == "loss_factor":
+                raise ValueError(f"loss_factor has a frequency, too: {WRITE_LOSS}")
             if key not in _FIELDS:
-                near = difflib.get_close_matches(key, _FIELDS, n=1)
-                hint = f"did you mean {near[0]}? " if near else ""
-                raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_FIELDS)}")
+                raise ValueError(unknown(key, _FIELDS))
             field = _FIELDS[key]
             if field in given:
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
@@ -54,12 +67,14 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
-        raise ArgumentError(option, None, wording.sentence(error, ())) from error
+        raise ArgumentError(option, None, wording.sentence(error, {})) from error
 
 
 def changed(body: Material, given: dict[str, Any]) -> Material:
     """Body with other numbers, whose errors are those given; a hardness replaces its yield strength."""
     if "hardness" in given and body.hardening is None:
         given = {"yield_strength": None} | given
+    if "yield_strength" in given:
+        given = {"specified_minimum": False} | given
     errors = {key: error for key, error in body.uncertainty.items() if key not in given}
     return dataclasses.replace(body, **given | {"uncertainty": errors | given.get("uncertainty", {})})

@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlaw._arrays import Integers
 from contactlaw._escaped import cell, line
+from contactlaw._readable import in_unit
 from contactlaw.physical.validity import Validity, count_flags, explain
 
 WIDTH = 80  # of a line on a terminal
@@ -27,7 +28,7 @@ class Column(NamedTuple):
     shown: str = "-"  # unit on a terminal, without brackets
     scale: float = 1.0  # number of these units in one SI unit
     to: str = ""  # another column, up to which this one is the lower end of a range on a terminal
-    digits: str = ".4g"  # format of the numbers on a terminal
+    digits: str = ""  # format of the numbers on a terminal; ".4g", of a range ".3g"
     is_input: bool = False  # on a terminal the title has an input that is the same in all rows
 
     @property
@@ -56,26 +57,43 @@ class Table:
         return len(self.values[self.columns[0].name])
 
     def text(self) -> Iterator[str]:
-        """Lines for a terminal: what was asked, names, units, rows, and the meaning of the flags."""
+        """Lines for a terminal: what was asked, names, units, rows, and the meaning of the flags.
+
+        The last columns are left out if they do not fit into the width of a terminal.
+        """
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
         named = (f"{column.title} {self._alike(column)}" for column in alike)
-        title = ", ".join([*[in_words(self.asked)] * bool(self.asked), *named])
+        title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
             yield from wrapped(title)
-        cells = [[c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike]
-        flags = [] if self.flags is None else self.flags.tolist()
-        letters = dict(zip(count_flags(np.array(flags, dtype=int)), string.ascii_lowercase, strict=False))
-        if letters:
-            marks = ("".join(mark for flag, mark in letters.items() if row & flag) for row in flags)
-            cells.append(["flags", "", *marks])
-        yield from aligned(cells)
-        counts, total = self.counts or count_flags(np.array(flags, dtype=int)), self.total or len(self)
-        if letters:
-            yield ""
-        for flag, mark in letters.items():
+        cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
+        letters = self._letters()
+        marks = ["".join(mark for flag, (mark, _) in letters.items() if row & flag) for row in self._row_flags()]
+        last = [["flags", "", *marks]] * any(marks)
+        left_out = list[str]()
+        while max(map(len, aligned([*cells.values(), *last]))) > WIDTH and len(cells) > 1:
+            left_out.insert(0, cells.popitem()[0])
+        yield from aligned([*cells.values(), *last])
+        remarks = [*self.remarks()]
+        if left_out:
+            remarks += wrapped(f"CSV has more columns than fit here: {', '.join(left_out)}.")
+        yield from [""] * bool(remarks) + remarks
+
+    def remarks(self) -> Iterator[str]:
+        """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
+        for flag, (mark, count) in self._letters().items():
             (words,) = explain(flag)
-            yield from wrapped(f"{mark}: {flag.name}, {counts[flag]} of {total}: {words}", "   ")
+            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ")
+
+    def _letters(self) -> dict[Validity, tuple[str, int]]:
+        """Letter of each flag, and its number of impacts."""
+        counts = self.counts or count_flags(np.array(self._row_flags(), dtype=int))
+        return {flag: (mark, counts[flag]) for mark, flag in zip(string.ascii_lowercase, counts, strict=False)}
+
+    def _row_flags(self) -> list[int]:
+        flags: list[int] = [0] * len(self) if self.flags is None else self.flags.tolist()
+        return flags
 
     def write_csv(self, out: TextIO, head: bool = True) -> None:
         """Write rows with every digit, below a line of names with SI units."""
@@ -112,13 +130,12 @@ class Table:
         """Values of each row by name, None for one that is not known, and the names of its flags."""
         names = [column.name for column in self.columns]
         values = zip(*(np.asarray(self.values[name]).tolist() for name in names), strict=True)
-        flags = [0] * len(self) if self.flags is None else self.flags.tolist()
-        for row, flag in zip(values, flags, strict=True):
+        for row, flag in zip(values, self._row_flags(), strict=True):
             known = (None if isinstance(value, float) and math.isnan(value) else value for value in row)
             yield dict(zip(names, known, strict=True)), flag_names(flag)
 
     def _alike(self, column: Column) -> str:
-        value = next(self._cells(column))
+        value = next(self._cells(column._replace(digits="")))
         return value if value == "inf" or column.shown == "-" else f"{value} {column.shown}"
 
     def _cells(self, column: Column) -> Iterator[str]:
@@ -126,16 +143,18 @@ class Table:
         if values.dtype.kind not in "iuf":
             return map(str, values.tolist())
         if not column.to:
-            return ("-" if math.isnan(value) else f"{value:{column.digits}}" for value in values * column.scale)
+            return (
+                "-" if math.isnan(value) else f"{value:{column.digits or '.4g'}}" for value in values * column.scale
+            )
         ends = zip(values * column.scale, self.values[column.to] * column.scale, strict=True)
-        return (_range(low, high) for low, high in ends)
+        return (_range(low, high, column.digits or ".3g") for low, high in ends)
 
 
-def _range(low: float, high: float) -> str:
+def _range(low: float, high: float, digits: str) -> str:
     """Write a range, one end of which may be NaN: not known."""
     if math.isnan(low):
-        return "-" if math.isnan(high) else f"<{high:.3g}"
-    return f">{low:.3g}" if math.isnan(high) else f"{low:.3g}-{high:.3g}"
+        return "-" if math.isnan(high) else f"<{high:{digits}}"
+    return f">{low:{digits}}" if math.isnan(high) else f"{low:{digits}}-{high:{digits}}"
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -153,7 +172,7 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
     for column in columns:
         width, is_text = max(map(len, column)), column[1] == ""  # a column of texts has no unit
         padded.append([text.ljust(width) if is_text else text.rjust(width) for text in column])
-    yield from ("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+    yield from filter(None, ("  ".join(row).rstrip() for row in zip(*padded, strict=True)))  # units may be missing
 
 
 def wrapped(text: str, indent: str = "") -> list[str]:
@@ -167,17 +186,17 @@ def in_words(asked: Mapping[str, Any]) -> str:
     Examples
     --------
     >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
-    'glass on pom, law fem, radius 0.001 m'
+    'glass on pom, law fem, radius 1 mm'
     """
     sphere, plate, law, *sizes = asked.items()
     words = (f"{name.replace('_', ' ')} {size}" for name, size in (_sized(*size) for size in sizes))
     return line(", ".join([f"{sphere[1]} on {plate[1]}, law {law[1]}", *words]))
 
 
-def _sized(name: str, size: Any) -> tuple[str, str]:
-    """Name and size of an argument; its unit follows an underscore in its key."""
+def _sized(name: str, size: float) -> tuple[str, str]:
+    """Name and size of an argument; its SI unit follows an underscore in its key."""
     bare, _, unit = name.rpartition("_")
-    return bare, f"{size:g} {unit}"
+    return bare, in_unit(size, unit)
 
 
 def flag_names(flags: int) -> list[str]:

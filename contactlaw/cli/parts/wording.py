@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import PurePath
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,26 +26,43 @@ _OTHER_NAMES = {
     "path": "plot",
     "priors": "prior",
     "restitution": "cor",
+    "stiffness": "foundation",
 }  # arguments whose options have other names
-
+_NEAREST = 4  # names that are suggested in place of an unknown one
 
 OWN = '"E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'  # a material on the command line
 
 
-def sentence(error: Exception, options: Container[str]) -> str:
+class Written(float):
+    """A number as the user wrote it, with its unit."""
+
+    text: str
+
+    def __new__(cls, size: float, text: str) -> Written:
+        """Keep the text beside the number."""
+        number = super().__new__(cls, size)
+        number.text = text.strip()
+        return number
+
+
+def sentence(error: Exception, options: Mapping[str, Any]) -> str:
     """Write the message of an error with options in place of arguments.
 
-    Arguments that are not among the `options` of the command keep their names.
+    Arguments that are not among the `options` of the command keep their names. A value that is
+    `Written` is repeated as the user wrote it.
 
     Examples
     --------
-    >>> sentence(ArgumentError("constant_cor", 1.2, "must be 0 to 1"), {"constant_cor"})
-    '--constant-cor: got 1.2; must be 0 to 1'
+    >>> error = ArgumentError("speed_error", -0.01, "must be 0 to 1")
+    >>> sentence(error, {"speed_error": Written(-0.01, "-1%")})
+    "--speed-error: got '-1%'; must be 0 to 1"
     """
     match error:
         case UnknownMaterialError():
+            near = f"did you mean {' or '.join(map(repr, error.near[:_NEAREST]))}? " if error.near else ""
             return (
-                f"{error.what} `contactlaw materials` lists all; one of your own is --materials FILE, or --sphere {OWN}"
+                f"unknown material {error.name!r}: {near}`contactlaw materials` lists all; one of your own "
+                f"is --materials FILE, or --sphere {OWN}"
             )
         case NoYieldStrengthError():
             return f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the other may yield"
@@ -55,15 +73,24 @@ def sentence(error: Exception, options: Container[str]) -> str:
         case ArgumentError():
             names = [_OTHER_NAMES.get(name, name) for name in error.name.split(", ")]
             if all(name in options for name in names):
+                error = _as_written(error, options[names[0]])
                 return f"--{', --'.join(names)}: ".replace("_", "-") + error.complaint
     return str(error)
+
+
+def _as_written(error: ArgumentError, sizes: Any) -> ArgumentError:
+    """Put the user's words for the refused one of some sizes into an error."""
+    for size in sizes if isinstance(sizes, tuple) else (sizes,):
+        if isinstance(size, Written) and repr(size) == repr(error.value):
+            return ArgumentError(error.name, size.text, error.reason)
+    return error
 
 
 def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str]) -> None:
     """Refuse a file whose suffix names none of some formats."""
     if PurePath(path).suffix.lower() not in suffixes:
         *others, last = suffixes
-        raise ArgumentError(name, os.fspath(path), f"must end in {', '.join(others)} or {last}")
+        raise ArgumentError(name, os.fspath(path), f"must end in {', '.join(others)}{' or ' * bool(others)}{last}")
 
 
 @contextmanager

@@ -1,53 +1,61 @@
 """What each wall takes from the beads, and where the energy goes.
 
-Left: energy that all contacts took. Right: shares of what the impacts brought. A thin wall's
-bending wave carries energy away for good; on a thick one plastic flow at the contact takes it.
+A thin wall's bending wave carries energy away for good; on a thick wall the losses at the contact
+prevail.
 """
 
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import style
+from contactlaw._arrays import Array
 from contactlaw._readable import drawn, scale_of
-from contactlaw.reporting.charts import PARTS, across
-from contactlaw.reporting.run import Run, by_cause, shares
+from contactlaw.reporting.run import CAUSES, Run, by_cause, shares
+
+_ROW, _PANEL = 0.42, 0.9  # [inches] height of a wall, and of what is around the walls of a panel
+_LEAST = 2e-3  # [longest bar], the least part that can be seen
+_WIDE = 7.0  # [%], the width of a number with room around it
 
 
 def draw(run: Run) -> Figure:
-    """Draw two panels with a bar for each wall, the first one on top."""
+    """Draw a bar for each wall, the first one on top: energies taken, and shares of what came."""
     walls, causes = run.walls, by_cause(run.rows)
-    most, rubs = int(causes.argmax()), causes[-1] > 0.0
-    share = 100.0 * causes[most] / (causes.sum() or 1.0)
-    height = 2.6 + 0.5 * max(len(walls), 3)
-    figure = style.figure(
-        12.0,
-        height,
-        f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
-        f"{run.subject}; left: energy that all contacts took, right: shares of the energy that the impacts brought",
-    )
-    left, right = figure.subplots(1, 2, sharey=True)
+    most = CAUSES[int(causes.argmax())]
     unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
-    for n, wall in enumerate(walls):
-        part = by_cause(wall.rows)
-        for m, (_, colour) in enumerate(PARTS[1:]):
-            left.barh(n, part[m] / scale, 0.7, part[:m].sum() / scale, color=colour, edgecolor="white", linewidth=0.6)
-        left.annotate(
-            drawn(part.sum(), "J", 3),
-            (part.sum() / scale, n),
-            (4, 0),
-            va="center",
-            textcoords="offset points",
-            fontsize=11,
-        )
-        if wall.impacts.size:
-            found = shares(wall.impacts, wall.impacts["mass"], rubs)
-            across(right, n, list(zip(PARTS, found, strict=True)))
-    left.set_yticks(range(len(walls)), [wall.name for wall in walls])
-    left.set_ylim(max(len(walls), 3) - 0.5, -0.5)
-    left.set_xlabel(f"energy taken [{unit.replace('u', 'µ')}]")
-    left.set_xlim(0.0, 1.2 * left.dataLim.x1 or 1.0)  # room for the sums
-    right.set(xlabel="share of impacts' energy [%]", xlim=(0.0, 100.0))
-    for axes in (left, right):
+    energies = np.array([[0.0, *by_cause(wall.rows) / scale] for wall in walls])
+    parts = np.array([100.0 * np.array(shares(wall.impacts, causes[-1] > 0.0)) for wall in walls])
+    figure = style.figure(
+        style.COLUMN,
+        2.2 + 2.0 * (_PANEL + _ROW * len(walls)),
+        f"{100.0 * causes.max() / (causes.sum() or 1.0):.0f} % of what the walls take: {style.ENERGIES[most][0]}",
+        run.subject,
+    )
+    upper, lower = figure.subplots(2, 1)
+    _stack(upper, energies)
+    for n, total in enumerate(energies.sum(axis=1)):
+        upper.annotate(drawn(total * scale, "J", 3), (total, n), (4, 0), textcoords="offset points", va="center")
+    upper.set_xlim(0.0, 1.25 * energies.sum(axis=1).max() or 1.0)  # room for the sums
+    upper.set(xlabel=f"energy taken by all contacts [{unit.replace('u', 'µ')}]")
+    _stack(lower, parts, _WIDE)
+    lower.set(xlabel="share of the energy that impacts bring [%]", xlim=(0.0, 100.0))
+    named: dict[str, Artist] = {}
+    for axes in (lower, upper):
+        axes.set_yticks(range(len(walls)), [wall.name.replace(", ", ",\n") for wall in walls], fontsize=11)
+        axes.set_ylim(len(walls) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")
-    handles = dict(zip(*reversed(right.get_legend_handles_labels()), strict=True))
-    figure.legend(handles.values(), list(handles), loc="outside lower center", ncols=4 if len(handles) < 5 else 3)
+        named |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    figure.legend(named.values(), list(named), loc="outside lower center", ncols=2)
     return figure
+
+
+def _stack(axes: Axes, parts: Array, wide: float = np.inf) -> None:
+    """Stack parts (walls, energies) from left to right, with the numbers of those from `wide` on."""
+    for n, (name, colour) in enumerate(list(style.ENERGIES.values())[: parts.shape[1]]):
+        part = parts[:, n]
+        if part.max() > _LEAST * parts.sum(axis=1).max():
+            bars = axes.barh(range(len(part)), part, 0.7, parts[:, :n].sum(axis=1), color=colour, edgecolor="white")
+            bars.set_label(name)
+            ink = "white" if colour == style.BLUE else style.INK
+            axes.bar_label(bars, [f"{x:.0f}" if x >= wide else "" for x in part], label_type="center", color=ink)

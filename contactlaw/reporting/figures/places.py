@@ -1,8 +1,4 @@
-"""Where the walls take energy from the beads: where they wear, ring and warm.
-
-Colours show the energy per area, averaged over a neighbourhood, of all causes; grey: none near.
-Without the walls' mesh, each contact is a point whose area is the energy that it took.
-"""
+"""Where the walls take energy from the beads: where they wear, ring and warm."""
 
 from typing import Any
 
@@ -13,90 +9,93 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, Integers
 from contactlaw._readable import drawn
 from contactlaw.reporting.charts import DENSITY, density_bar, density_scale, sheet
 from contactlaw.reporting.run import Run, taken
 from contactlaw.reporting.surface import EnergyMap
 
-_TITLE = "Where the walls take energy from the beads"
 _FLAT = 1e-6  # extent over the largest one; walls with less are drawn as a plan
 _VIEWS = {"seen from above": (1.0, -1.6, 1.0), "seen from below, behind": (-1.0, 1.6, -1.0)}
 _DULL = 0.65  # brightness of a surface that is seen edge-on
 _NOTHING = 1e-4  # share of the largest energy per area; less is drawn as no energy, in grey
 _POINTS = 20_000  # most contacts that are drawn
+_WIDE, _HIGH = 5.0, (0.3, 6.0)  # [inches] width of a drawing, and its least and largest height
 
 
 def draw(run: Run) -> Figure:
     """Draw the walls in the colours of their energies, or the contact points alone."""
-    time = float(np.ptp(run.rows["time"]))
-    within = f" in {drawn(time, 's', 3)}" if time > 0.0 else ""
     if run.map is None:
-        return _points(run, within)
-    found = run.map
-    size = np.ptp(found.corners, axis=(0, 1))
-    thin = np.flatnonzero(size <= _FLAT * size.max())
-    views = 1 if thin.size else len(_VIEWS)
-    figure = style.figure(
-        12.0, 6.6 if thin.size else 5.8, _TITLE, f"{run.subject}; energy of all contacts per area{within}"
-    )
-    panels = np.atleast_1d(figure.subplots(1, views))
-    if thin.size:
-        x, y = (n for n in range(3) if n != thin[0])
-        _paint(panels[0], found.corners[:, :, [x, y]], found, colours(found))
-        panels[0].set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]")
-    else:
-        for axes, (name, towards) in zip(panels, _VIEWS.items(), strict=True):
-            _view(axes, found, np.array(towards) / np.linalg.norm(towards))
-            axes.set_title(f"{name}; {1e3 * size.max():.3g} mm is the longest side")
-    scale = density_scale([found.density])
-    density_bar(figure, ScalarMappable(scale, DENSITY), list(panels))
+        return _points(run)
+    corners, shades = 1e3 * run.map.corners, colours(run.map)
+    size = np.ptp(corners, axis=(0, 1))
+    thin = size <= _FLAT * size.max()
+    shown = np.argsort(thin, kind="stable")[:2]  # the axes of a plan
+    drawings = [(corners[:, :, shown], shades)] if thin.any() else [_seen(corners, shades, v) for v in _VIEWS.values()]
+    grey = "; grey: no contact near" if (shades == to_rgb(style.PALE)).all(axis=1).any() else ""
+    figure, panels = _panels(run, [np.ptp(flat, axis=(0, 1)) for flat, _ in drawings], 0.7, grey)
+    scale = density_scale([run.map.density])
+    for axes, (flat, painted), name in zip(panels, drawings, _VIEWS, strict=False):
+        sheet(axes, flat, run.map.density, scale).set(array=None, facecolors=painted)
+        axes.autoscale_view()
+        axes.set_anchor("N")
+        if thin.any():
+            _label(axes, shown)
+        else:
+            axes.set_title(f"{name}; {size.max():.3g} mm is the longest side")
+            axes.axis("off")
+    density_bar(figure, ScalarMappable(scale, DENSITY), panels)
     return figure
 
 
-def _paint(axes: Axes, corners: Array, found: EnergyMap, shades: Array) -> None:
-    drawn = sheet(axes, 1e3 * corners, found.density, density_scale([found.density]))
-    drawn.set(array=None, facecolors=shades)
-    axes.autoscale_view()
+def _panels(run: Run, sizes: list[Array], below: float, more: str) -> tuple[Figure, list[Axes]]:
+    """Make a figure with room for drawings of some sizes, and `below` inches for their legend."""
+    time = float(np.ptp(run.rows["time"]))
+    within = f" in {drawn(time, 's', 3)}" if time > 0.0 else ""
+    high = max(float(np.clip(_WIDE * size[1] / size[0], *_HIGH)) for size in sizes)
+    title, about = "Where the walls take energy from the beads", f"{run.subject}; all contacts{within}{more}"
+    figure = style.figure(style.COLUMN, 1.0 + below + len(sizes) * (0.5 + high), title, about)
+    return figure, list(figure.subplots(len(sizes), 1, squeeze=False)[:, 0])
 
 
-def _view(axes: Axes, found: EnergyMap, towards: Array) -> None:
-    """Draw walls in space as one at the end of `towards` sees them from far away."""
+def _label(axes: Axes, shown: Integers) -> None:
+    axes.set(xlabel=f"{'xyz'[shown[0]]} [mm]", ylabel=f"{'xyz'[shown[1]]} [mm]", aspect="equal")
+
+
+def _seen(corners: Array, shades: Array, direction: tuple[float, float, float]) -> tuple[Array, Array]:
+    """Project triangles as seen from far away in a direction, the nearest one last; darken their colours."""
+    towards = np.array(direction) / np.linalg.norm(direction)
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
     plane = np.stack((right, np.cross(towards, right)), axis=1)
-    order = np.argsort(found.corners.mean(axis=1) @ towards)  # what is near hides what is far
-    corners = found.corners[order]
+    order = np.argsort(corners.mean(axis=1) @ towards)
+    corners = corners[order]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing = np.abs(normal @ towards) / np.linalg.norm(normal, axis=1)
-    shades = colours(found)[order] * (_DULL + (1.0 - _DULL) * facing)[:, None]
-    _paint(axes, corners @ plane, found, shades)
-    axes.axis("off")
+    return corners @ plane, shades[order] * (_DULL + (1.0 - _DULL) * facing)[:, None]
 
 
-def _points(run: Run, within: str) -> Figure:
+def _points(run: Run) -> Figure:
     """Draw contact points as seen along the axis in which they spread the least."""
     energy, places = taken(run.rows), 1e3 * run.on_walls.points
     spread = np.ptp(places, axis=0)
-    x, y = (n for n in range(3) if n != 2 - int(np.argmin(spread[::-1])))
+    shown = np.delete(np.arange(3), 2 - int(np.argmin(spread[::-1])))
     # points on one flat wall, or a single one, need some room beside them
-    wide, high = np.maximum(spread[[x, y]], 0.12 * spread.max() or 1.0)
-    height = float(np.clip(11.0 * high / wide, 1.2, 6.0))
-    figure = style.figure(12.0, 1.9 + height, _TITLE, f"{run.subject}; contacts{within}")
-    axes = figure.add_subplot()
-    few = np.argsort(-energy)[:_POINTS]
+    size = np.maximum(spread[shown], 0.12 * spread.max() or 1.0)
+    figure, (axes,) = _panels(run, [size], 0.5, "")
+    largest = np.argsort(-energy)[:_POINTS]
     most = float(f"{float(np.quantile(energy, 0.98)) or 1.0:.0e}")
     look: dict[str, Any] = {"color": style.VERMILION, "alpha": 0.4, "linewidths": 0}
-    size = 200.0 * (energy[few] / most).clip(0.01, 4.0)
-    axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **look)
+    area = 200.0 * (energy[largest] / most).clip(0.01, 4.0)
+    x, y = places[largest][:, shown].T
+    axes.scatter(x, y, s=area, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
         axes.scatter([], [], s=200.0 * part, label=drawn(part * most, "J", 3), **look)
-    middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
-    for n, size, limit in ((x, wide, axes.set_xlim), (y, high, axes.set_ylim)):
-        limit(middle[n] - 0.55 * size, middle[n] + 0.55 * size)
-    axes.locator_params(axis="y", nbins=6 if high > 0.3 * wide else 3)
-    axes.set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]", aspect="equal")
-    figure.legend(title="taken by a contact", loc="outside lower center", ncols=3)
+    low, high = (0.5 * (places.min(axis=0) + places.max(axis=0)))[shown] + 0.55 * np.outer((-1.0, 1.0), size)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    axes.locator_params(axis="y", nbins=6 if size[1] > 0.3 * size[0] else 3)
+    _label(axes, shown)
+    figure.legend(title="energy that a contact took", loc="outside lower center", ncols=3)
     return figure
 
 

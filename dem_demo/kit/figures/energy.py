@@ -12,30 +12,26 @@ from contactlaw import style
 from dem_demo.kit.drawing import panels, source
 from dem_demo.kit.run import B, Runs
 
-_PARTS = (
-    ("moving", "kinetic energy of the beads", style.PALE),
-    ("wave", "bending wave in the plate", style.BLUE),
-    ("plastic", "lost at the contact", style.ORANGE),
-    ("vibration", "micro-slip and vibration at the contact", style.VERMILION),
-    ("friction", "friction on the walls", style.SKY),
-    ("others", "bead on bead", style.GREEN),
-)
+_LEAST = 2e-3  # [largest part], the least part that can be seen
+_FIELDS = "moving", "wave", "plastic", "vibration", "friction", "others"  # of the account, as in `style.ENERGIES`
 
 
 def draw(runs: Runs[B]) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
     wall = runs[0].scene.WALL
     figure = style.figure(
-        12.0,
-        6.0,
+        style.COLUMN,
+        8.6,
         f"A moving {wall} feeds energy in, and impacts take it away",
         f"{source(runs)}; energies of all beads since the start",
     )
     handles: dict[str, Artist] = {}
     for axes, run in panels(figure, runs):
         found, time = run.account, run.time * 1e3
-        used = [(getattr(found, field) * 1e3, *look) for field, *look in _PARTS if getattr(found, field).any()]
-        parts, labels, colours = zip(*used, strict=True)
+        looks = zip(_FIELDS, style.ENERGIES.values(), strict=True)
+        shown = [(1e3 * getattr(found, field), *look) for field, look in looks]
+        least = _LEAST * max(part.max() for part, *_ in shown)
+        parts, labels, colours = zip(*(one for one in shown if one[0].max() > least), strict=True)
         axes.stackplot(time, parts, labels=labels, colors=colours, linewidth=0)
         without = (found.start + found.gravity) * 1e3
         axes.plot(time, without + found.walls * 1e3, color=style.INK, linewidth=2.0, label="total")
@@ -45,5 +41,5 @@ def draw(runs: Runs[B]) -> Figure:
         axes.set(xlabel="time [ms]", ylabel="energy [mJ]")
         axes.label_outer()
         handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    figure.legend(handles.values(), list(handles), loc="outside lower center", ncols=3)
+    figure.legend(handles.values(), list(handles), loc="outside lower center", ncols=2)
     return figure

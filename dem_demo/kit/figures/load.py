@@ -16,7 +16,7 @@ def draw(runs: Runs[B]) -> Figure:
     force = "force", "weights", 2, -1.0 / (GRAVITY * scene.mass.sum())
     most = (force[3] * runs[0].borne[:, :, 2].sum(axis=1)).max()
     title = f"Landing beads press on the {scene.WALL} with up to {most:.1f} times their weight"
-    figure = style.figure(12.0, 6.8, title, f"{source(runs)}; all walls, means over {frame:g} ms")
+    figure = style.figure(style.COLUMN, 6.6, title, f"{source(runs)}; all walls, means over {frame:g} ms")
     panels = figure.subplots(2, 1, sharex=True)
     for axes, (name, unit, column, factor) in zip(panels, (force, scene.DRIVE), strict=True):
         for run, line, colour in zip(runs, ("-", "--"), (style.BLUE, style.VERMILION), strict=False):
@@ -26,5 +26,5 @@ def draw(runs: Runs[B]) -> Figure:
     panels[0].axhline(1.0, color=style.INK, linestyle=":", label="weight of the beads")
     panels[0].set_ylim(bottom=0.0)
     panels[1].set_xlabel("time [ms]")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

@@ -26,8 +26,8 @@ def draw(runs: Runs[B]) -> Figure:
     """Draw a point per impact under the law, the law's curves, and the constant."""
     run, scene = runs[0], runs[0].scene
     figure = style.figure(
-        10.5,
-        6.2,
+        style.COLUMN,
+        5.8,
         f"One {scene.WALL} has many coefficients of restitution",
         f"{source(runs)}; points: impacts as they happened in the engine, lines: the law",
     )

@@ -16,8 +16,8 @@ def draw(runs: Runs[B]) -> Figure:
     """Draw the last frame of both runs."""
     time, scene = runs[0].time[-1], runs[0].scene
     figure = style.figure(
-        12.0,
-        1.4 + height(runs, 10.0, 0.4),
+        style.COLUMN,
+        1.2 + height(runs),
         "The same beads on the same walls, with two kinds of rebound",
         f"{source(runs)}; t = {time * 1e3:.0f} ms, a slice of {2.0 * scene.slice[1] * MM:.0f} mm along the middle",
     )

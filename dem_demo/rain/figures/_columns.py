@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.reporting.charts import wall_axis
 from contactlaw.reporting.limits import label
 from dem_demo.kit.drawing import source
 from dem_demo.kit.run import Runs
@@ -18,11 +17,13 @@ from dem_demo.rain.scene import Shower
 
 def figure(runs: Runs[Shower], title: str, points: str, rows: NDArray[np.void]) -> tuple[Figure, Axes]:
     """Make a figure with a column per plate; `points` says what each of these impacts is."""
-    made = style.figure(
-        10.5, 6.2, title, f"{source(runs)}; {points}, in each column from slow (left) to fast (right){ringed(rows)}"
-    )
+    about = f"{source(runs)}; {points}, in each column from slow (left) to fast (right){ringed(rows)}"
+    made = style.figure(style.COLUMN, 6.4, title, about)
     axes = made.add_subplot()
-    wall_axis(axes, [label(thickness) for thickness in runs[0].scene.plates])
+    labels = [label(thickness) for thickness in runs[0].scene.plates]
+    axes.set_xticks(range(len(labels)), labels, rotation=60 if len(labels) > 5 else 0)
+    axes.set(xlim=(-0.55, len(labels) - 0.45), xlabel="plate thickness")
+    axes.grid(visible=False, axis="x")
     return made, axes
 
 

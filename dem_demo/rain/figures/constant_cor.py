@@ -38,7 +38,7 @@ def draw(runs: Runs[Shower]) -> Figure:
         look: dict[str, Any] = {"ha": "right", "va": "bottom", "fontweight": "bold", "path_effects": [_HALO]}
         axes.annotate(_signed(middle), (n + 0.42, middle), (0, 3), textcoords="offset points", **look)
     axes.axhline(0.0, color=style.INK, linewidth=1.4)
-    axes.set_ylabel("error of rebound energy [% of impact energy]")
+    axes.set_ylabel("error [% of the impact's energy]")
     return figure
 
 

@@ -1,7 +1,7 @@
 """What each plate takes from the beads, and where the energy goes.
 
-Left: energy that all contacts took. Right: shares of what the impacts brought. A thin plate's
-bending wave carries energy away for good; on a thick one plastic flow at the contact takes it.
+A thin plate's bending wave carries energy away for good; on a thick plate the losses at the contact
+prevail.
 """
 
 from __future__ import annotations
@@ -19,5 +19,5 @@ def draw(runs: Runs[Shower]) -> Figure:
     """Draw two panels with a bar for each plate."""
     known = of_any_run.Run(runs[0].record)
     if not known.rows.size:
-        return style.figure(12.0, 4.0, "Where the energy of the impacts goes", "no bead has hit a plate yet")
+        return style.figure(style.COLUMN, 4.0, "Where the energy of the impacts goes", "no bead has hit a plate yet")
     return energy.draw(known)

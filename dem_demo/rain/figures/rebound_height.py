@@ -37,9 +37,9 @@ def draw(runs: Runs[Shower]) -> Figure:
     cor = run.mean_cor
     name = f"one COR for all: the run's mean, {cor:.2f}"
     axes.axhline(cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0, label=name)
-    axes.set_ylabel("rebound height / impact height  $v^2/2g$")
+    axes.set_ylabel("rebound height over $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.4)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.05, 1.0))
     return figure
 
 

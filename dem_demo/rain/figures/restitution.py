@@ -21,10 +21,10 @@ from dem_demo.rain.scene import Shower
 def draw(runs: Runs[Shower]) -> Figure:
     """Draw a panel per plate with a common scale."""
     run, plates = runs[0], runs[0].scene.plates
-    columns = min(5, len(plates))
+    columns = min(2, len(plates))
     figure = style.figure(
-        13.0,
-        1.6 + 3.8 * math.ceil(len(plates) / columns),
+        style.COLUMN,
+        1.8 + 2.6 * math.ceil(len(plates) / columns),
         "The COR depends on thickness, bead size and speed",
         f"{source(runs)}; points: impacts of the run, lines: model for the smallest, middle "
         f"and largest bead, triangle: yield speed{ringed(run.impacts)}",
@@ -37,10 +37,9 @@ def draw(runs: Runs[Shower]) -> Figure:
             _panel(axes, run, n, colours)
         else:
             axes.set_visible(False)
-    for axes in grid[:, 0]:
-        axes.set_ylabel("coefficient of restitution")
-    figure.supxlabel("normal impact speed [m/s]", fontsize=13, color=style.INK)
-    figure.colorbar(colours, ax=list(grid.flat), pad=0.01, fraction=0.02).set_label("bead radius [mm]")
+    figure.supxlabel("normal impact speed [m/s]", color=style.INK)
+    figure.supylabel("coefficient of restitution", color=style.INK)
+    figure.colorbar(colours, ax=list(grid.flat), pad=0.01, fraction=0.03, aspect=40).set_label("bead radius [mm]")
     return figure
 
 

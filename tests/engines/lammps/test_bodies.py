@@ -119,7 +119,7 @@ def test_one_constant_is_that_of_the_recorded_impacts(name, tmp_path, capsys):
         np.save(tmp_path / name, rows)
     else:
         np.savetxt(tmp_path / name, rows, delimiter=",", header=",".join(rows.dtype.names))
-    command = ["constant", "--record", str(tmp_path / name), "--csv", "--law", "myc"]
+    command = ["constant", str(tmp_path / name), "--csv", "--law", "myc"]
     pair = ["--sphere", PAIR.sphere.name, "--plate", PAIR.plate.name]
     assert main(command + pair * (name != "run.h5")) == 0
     head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
@@ -159,7 +159,7 @@ def test_a_refused_attachment_leaves_nothing_behind():
 def test_two_spheres_of_a_body_that_touch_at_once_are_counted():
     _, walls, rows = thrown(np.array([[1.0, 0.0, 0.0]]))
     assert rows["bead"].tolist() == [1, 2] and (rows["kind"] == Kind.STRUCK).all()
-    assert walls.record().left_out == "2 of 2 rows are no impacts and left out: 2 struck"
+    assert walls.record().left_out.startswith("Of 2 contacts, 100 % were struck by another bead while they touched")
 
 
 def test_bodies_may_come_and_go():

@@ -1,0 +1,95 @@
+"""``contactlaw find``: the thicknesses of the plate, or the impact speeds, that give a COR."""
+
+import argparse
+import functools
+import itertools
+import math
+import sys
+from typing import Any
+
+import numpy as np
+
+from contactlaw import quantities
+from contactlaw._errors import ArgumentError
+from contactlaw.cli.parts import bands, chosen, options, wording
+from contactlaw.cli.parts.impacts import COLUMNS
+from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
+from contactlaw.fitting.drops import rebounds_of
+from contactlaw.quantities import HEIGHT, SHARE
+
+_KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand, and what it finds as subcommands of its own."""
+    about = "the thicknesses of the plate, or the impact speeds, that give a COR"
+    unknowns = options.group(commands, "find", about, "UNKNOWN", "what to find: thickness or speed")
+    for unknown, whole in (("thickness", "thicknesses of the plate"), ("speed", "impact speeds")):
+        command = options.command(
+            unknowns, unknown, f"find all {whole} that give a COR", functools.partial(_run, unknown)
+        )
+        options.add_pair(command)
+        options.add_sizes(command, quantities.values, unknown=unknown)
+        goal = command.add_mutually_exclusive_group(required=True)
+        options.add_quantity(goal, "--cor", SHARE, "COR to reach, between 0 and 1", quantities.values, metavar="E")
+        if unknown == "thickness":
+            height = "height of the bounce to reach [m], in place of --cor; takes a single --speed or --drop"
+            options.add_quantity(goal, "--bounce", HEIGHT, height, quantities.values, metavar="Z")
+            options.add_speed(command, quantities.values)
+            options.add_layers(command)
+        options.add_name_of_law(command)
+        command.set_defaults(outside="raise")  # what is outside the table is not searched
+        options.add_errors(command, _KNOWN[unknown])
+        options.add_forms(command)
+        command.epilog = f"{options.UNITS} {options.LISTS}"
+
+
+def _run(unknown: str, arguments: argparse.Namespace) -> None:
+    chosen.check_quantities(arguments)
+    if getattr(arguments, "bounce", None):
+        if len(arguments.speed) > 1:
+            raise ArgumentError("bounce", None, "takes a single --speed or --drop")
+        measured = {"speed": arguments.speed, "bounce": arguments.bounce, "radius": chosen.bead_radius(arguments)}
+        arguments.cor = rebounds_of(measured, chosen.density(arguments))["restitution"].tolist()
+    model, known = chosen.model(arguments), _KNOWN[unknown]
+    plate, layers = model.pair.given[1], {}
+    if below := [chosen.layer(text, arguments.materials) for text in getattr(arguments, "on", ())]:
+        layers = {"layers": [(plate, None), *below]}
+    questions = [*itertools.product(arguments.cor, *(getattr(arguments, name) for name in known))]
+    errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
+    answers: Any = getattr(model, unknown)(*np.array(questions).T, **errors, **layers)
+
+    remarks, rows = [], []
+    for (cor, *sizes), answer in zip(questions, answers, strict=True):
+        if answer.remark:
+            impact = in_words(chosen.asked(arguments, model, **dict(zip(known, sizes, strict=True))))
+            remarks.append(f"{impact}, COR {cor:g}: {answer.remark}")
+        found = [*zip(answer.value, answer.low, answer.high, answer.flags, strict=True)]
+        rows += [(cor, *sizes, *solution, answer.remark) for solution in found or [(math.nan, math.nan, math.nan, 0)]]
+    if len(remarks) == len(questions):
+        raise ValueError("\n".join(remarks))
+    for remark in remarks:
+        wording.print_warning(remark)
+
+    table = _table(unknown, rows, chosen.asked(arguments, model))
+    table.write(sys.stdout, arguments.form)
+    if arguments.form == "text":
+        band = next(answer.band for answer in answers if answer.band)
+        of = {"thickness": "thicknesses", "speed": "speeds"}[unknown]
+        subject = f"{of} whose predicted range contains the COR you asked for"
+        print("", *wrapped(f"68 %: {bands.meaning(band, model.pair, subject)}."), sep="\n")
+
+
+def _table(unknown: str, rows: list[tuple[Any, ...]], asked: dict[str, Any]) -> Table:
+    """Table of the rows; ends of a range that are not known become NaN."""
+    known = _KNOWN[unknown]
+    names = ("restitution", *known, unknown, f"{unknown}_low", f"{unknown}_high", "flags", "remark")
+    values = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
+    low, high = values[names[4]], values[names[5]]
+    low[np.isinf(low)] = np.nan
+    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
+    by_name = {column.name: column for column in COLUMNS}
+    cor, *inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in ("restitution", *known))
+    value = by_name[unknown]._replace(is_input=False)
+    ends = value._replace(name=names[4], title="68 %", to=names[5]), Column(names[5], value.unit)
+    return Table([cor, *inputs, value, *ends, Column("remark")], values, asked, values["flags"])

@@ -1,0 +1,85 @@
+"""``contactlaw find``: odd command lines, and what people read; its numbers are in tests/answers."""
+
+import pytest
+from command_line import misused, refused
+
+from contactlaw.cli import main
+
+PAIR = "--sphere stainless-steel-304-ball --plate glass --radius 1mm".split()
+THICKNESS = ["find", "thickness", *PAIR]
+SPEED = ["find", "speed", *PAIR]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([*THICKNESS, "--cor", "1.5", "--speed", "2"], "--cor: got '1.5'; must lie between"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "-2"], "--speed: got '-2'; must lie between"),
+        ([*THICKNESS, "--cor", "0.99", "--speed", "2"], "COR 0.99: no thickness: "),
+        ([*SPEED, "--cor", "0.01", "--thickness", "inf"], "COR 0.01: no speed: "),
+        ([*THICKNESS, "--bounce", "1cm", "--speed", "1,2"], "--bounce: takes a single --speed or --drop"),
+        ([*THICKNESS, "--bounce", "1cm", "--drop", "3cm", "--radius", "1mm,2mm"], "takes one radius"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "2e4"], "--speed: even on a half-space the impact is outside"),
+        ([*SPEED, "--cor", "0.5", "--thickness", "10um"], "--thickness: even at 0.0001 m/s the impact is outside"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--on", "steel-s235"], "expected a material and a thickness"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--plate", "glas"], "unknown material 'glas'"),
+        ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--radius-error", "2"], "--radius-error: got '2'"),
+    ],
+)
+def test_refused_questions_are_status_1_and_one_sentence(words, message, capsys):
+    refused(words, message, capsys=capsys)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["find"], "UNKNOWN"),
+        (["find", "radius", *PAIR], "radius"),
+        (["find", "thicknes", *PAIR], "thickness"),
+        ([*THICKNESS, "--speed", "2"], "--cor"),
+        ([*THICKNESS, "--cor", "0.5"], "--speed"),
+        ([*THICKNESS, "--cor", "0.5", "--bounce", "1cm", "--speed", "2"], "not allowed with argument --cor"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--thickness", "1mm"], "--thickness: no such option"),
+        ([*SPEED, "--bounce", "1cm", "--thickness", "1mm"], "--bounce: no such option"),
+        ([*SPEED, "--cor", "0,5", "--thickness", "1mm"], "is it a decimal comma? Write 0.5"),
+        ([*SPEED, "--cor", "half", "--thickness", "1mm"], "half"),
+        ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--csv", "--json"], "not allowed with argument --csv"),
+    ],
+)
+def test_wrong_usage_is_status_2(words, message, capsys):
+    misused(words, message, capsys)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [*THICKNESS, "--cor", "0.5", "--speed", "2"],
+        [*THICKNESS, "--cor", "0.3,0.5,0.99", "--speed", "1,2", "--radius", "1mm,2mm"],
+        [*SPEED, "--cor", "0.5,0.9", "--thickness", "1mm,2mm,inf"],
+        ["find", "--help"],
+        ["find", "thickness", "--help"],
+        ["find", "speed", "--help"],
+    ],
+    ids=" ".join,
+)
+def test_what_people_read_fits_a_terminal(words, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    try:
+        assert main(words) == 0
+    except SystemExit as stop:
+        assert stop.code == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    if "--help" not in words:
+        heads = next(line for line in lines if "68 %" in line).split()
+        assert len({*heads}) == len(heads)
+        text = " ".join(lines)
+        plural = "thicknesses" if "thickness" in words else "speeds"
+        assert f"68 %: {plural} whose predicted range contains the COR you asked for" in text
+
+
+def test_a_bounce_stands_for_its_cor(capsys):
+    """In a heavy gas-free limit the COR is the root of the heights; air makes it a little larger."""
+    assert main([*THICKNESS, "--bounce", "5cm", "--drop", "20cm", "--csv"]) == 0
+    head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
+    assert 0.5 < float(row[head.index("restitution")]) < 0.51
