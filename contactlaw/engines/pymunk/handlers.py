@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pymunk
 
-    from contactlaw.engines.pymunk.contacts import Contacts
-
 Callback = Callable[["pymunk.Arbiter", "pymunk.Space", Any], None]
 Key = tuple[int | None, int | None]  # two collision types; None: any
 Hook = tuple[Callback, Any]  # a callback of the user, and the data to call it with
@@ -23,7 +21,7 @@ class Handlers:
     wrapped, so that its error is raised by the step.
     """
 
-    def __init__(self, space: pymunk.Space, contacts: Contacts, bead: int, plate: int) -> None:
+    def __init__(self, space: pymunk.Space, contacts: Any, bead: int, plate: int) -> None:
         self._space, self._contacts, self._stranger = space, contacts, (bead, 0)
         self._replaced = vars(space).get("on_collision")
         self._engine: Any = space.on_collision
