@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from contactlaw.engines.pymunk.edges import belongs_to_neighbour, near
@@ -33,7 +31,7 @@ class Impact(NamedTuple):
 
     bead: BeadShape
     other: BeadShape | PlateShape
-    shapes: tuple[Any, Any]  # of both
+    body: Any  # of the bead
     at: Vector  # where the bead touches [m]
     normal: Vector  # from the bead to the other
     speed: float  # of approach [m/s]
@@ -73,6 +71,7 @@ class Contacts:
     # This callback runs for every contact in every step, and a pile has many contacts.
     def pre_solve(self, arbiter: pymunk.Arbiter, space: pymunk.Space, hooks: list[Hook]) -> None:
         """Answer the contact of a bead with a plate or a bead, after the user's own handler."""
+        impact = None
         try:
             circle, shape = arbiter.shapes
             bead, other = getattr(circle, MARK, None), getattr(shape, MARK, None)
@@ -103,7 +102,7 @@ class Contacts:
                     raise TunnellingError(bead.index, plate.index, self.time, abs(speed), None)
                 self._now[key] = normal
             if speed <= self._resting_speed + RESTING * other.shake:
-                cor, impact, edge = self._rest(arbiter, speed), None, FAR
+                cor, edge = self._rest(arbiter, speed), FAR
                 if plate and plate.friction is not None:
                     arbiter.friction = plate.friction
             else:
@@ -113,11 +112,12 @@ class Contacts:
                 kind = Kind.IMPACT if arbiter.is_first_contact else Kind.STRUCK
                 slip = nx * (vy - uy) - ny * (vx - ux) + radius * body.angular_velocity
                 slip -= belt(arbiter, normal)
-                impact = Impact(bead, other, (circle, shape), at, normal, speed, kind, slip)
-                with self._noting(impact):
-                    cor, edge = self._answer(arbiter, impact)
+                impact = Impact(bead, other, body, at, normal, speed, kind, slip)
+                cor, edge = self._answer(arbiter, impact)
             self._met.append((arbiter, plate, at, cor, impact, edge))
         except BaseException as error:
+            if impact:
+                error.add_note(f"for {impact.bead} on {impact.other} at {impact.speed:.9g} m/s, t = {self.time:.9g} s")
             self.keep(error)
             arbiter.restitution = 0.0
 
@@ -160,10 +160,10 @@ class Contacts:
         `gain` times that far away, and so is the bead's tangential motion at sliding speeds that
         are as much larger.
         """
-        (nx, ny), slip, body, friction = impact.normal, impact.slip, impact.shapes[0].body, plate.friction or 0.0
+        (nx, ny), slip, friction = impact.normal, impact.slip, plate.friction or 0.0
         target = sliding(arbiter)
         if friction:
-            check_moment(body, impact.bead.kind.radius)
+            check_moment(impact.body, impact.bead.kind.radius)
             target += gain * (plate.answers(impact.bead).slide(impact.speed, slip / gain) - slip / gain)
         arbiter.friction = friction
         if not plate.mount.free:  # else the plate falls as the bead does, and a light one limits the impulses
@@ -198,15 +198,17 @@ class Contacts:
         self.borne[n + 5] -= x * jy - y * jx
 
     def _record(self, arbiter: pymunk.Arbiter, impact: Impact, cor: float, impulse: Vector, edge: KnownEdge) -> None:
-        bead, other, shapes, at, (nx, ny), speed, kind, slip = impact
-        body, change, work = shapes[0].body, 0.0, 0.0
+        bead, other, body, at, (nx, ny), speed, kind, slip = impact
+        change = work = 0.0
         if arbiter.friction > 0.0:
-            for shape, place in zip(shapes, (at, other.touched(shapes[1], at, impact.normal)), strict=True):
-                jx, jy = pushed(shape.body, place, impulse)
-                change += nx * jy - ny * jx
-            work = -(nx * impulse[1] - ny * impulse[0]) * (slip + 0.5 * change) / body.mass
-            if None in (shapes[0].space, shapes[1].space):  # the impulse of what has left the space is lost
+            if None in [shape.space for shape in arbiter.shapes]:  # the impulse of what has left the space is lost
                 change = work = math.nan
+            else:
+                (touch,) = arbiter.contact_point_set.points
+                for pushed_body, place in zip(arbiter.bodies, (touch.point_a, touch.point_b), strict=True):
+                    jx, jy = pushed(pushed_body, place, impulse)
+                    change += nx * jy - ny * jx
+                work = -(nx * impulse[1] - ny * impulse[0]) * (slip + 0.5 * change) / body.mass
         after = math.copysign(1.0, slip) * (slip + change)
         plate, partner = (-1, other.index) if isinstance(other, BeadShape) else (other.index, -1)
         seen = self.time, bead.index, plate, partner, *at, 0.0, speed, cor, abs(slip), kind
@@ -224,16 +226,6 @@ class Contacts:
                 "restitution in pymunk is 0: call add_plate or add_bead with it; or give both "
                 "shapes an elasticity; or let beads pass by a pymunk.ShapeFilter or shape.sensor"
             )
-
-    @contextmanager
-    def _noting(self, impact: Impact) -> Iterator[None]:
-        """Add to an error in which impact it was."""
-        try:
-            yield
-        except Exception as error:
-            where = f"for {impact.bead} on {impact.other} at {impact.speed:.9g} m/s, t = {self.time:.9g} s"
-            error.add_note(where)
-            raise
 
     def keep(self, error: BaseException) -> None:
         """Keep the first error of a step; an interrupt takes precedence over others."""

@@ -72,7 +72,7 @@ def _beyond(plate: PlateShape, came: int, corner: int) -> KnownEdge:
 
     The way to it comes to the corner from another one, and goes on where plates turn least.
     """
-    distance, seen, limit = 0.0, set(), FARTHEST * plate.thickness
+    distance, seen, limit = 0.0, set(), FARTHEST * plate.wall
     while (plate.index, came, corner) not in seen and distance <= limit:
         seen.add((plate.index, came, corner))
         corners = _corners(plate)

@@ -244,7 +244,7 @@ class PymunkImpacts:
         mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
         swings = thickness if sheet_of(wall) is wall else wall
         index = self._register.plate(chosen, wall)
-        plate = PlateShape(index, ref(shape), mount, thickness, swings, chosen, friction, edges)
+        plate = PlateShape(index, ref(shape), mount, swings, chosen, friction, edges)
         setattr(shape, MARK, plate)
         self._plates[index], self._joined = plate, False
         self._contacts.borne.extend([0.0] * NUMBERS)

@@ -53,11 +53,6 @@ class BeadShape:
     def __str__(self) -> str:
         return f"bead {self.index}"
 
-    def touched(self, circle: Any, at: Vector, normal: Vector) -> Vector:
-        """Where it is touched [m] by a bead with this normal."""
-        (x, y), (nx, ny) = circle.body.position, normal
-        return x - self.kind.radius * nx, y - self.kind.radius * ny
-
     def velocity_at(self, circle: Any, at: Vector, normal: Vector) -> Vector:
         """Velocity of its surface [m/s] where a bead with this normal touches it."""
         (ux, uy), (nx, ny), speed = circle.body.velocity, normal, self.kind.radius * circle.body.angular_velocity
@@ -86,8 +81,7 @@ class PlateShape:
     index: int
     shape: weakref.ref[Face]
     mount: Mount
-    thickness: float
-    wall: Any  # the thickness, or what swings back
+    wall: Any  # the thickness [m], or what swings back
     models: ModelsByBead
     friction: float | None = None  # None: the engine's own
     edge: Edges | None = None  # None: endless
@@ -113,10 +107,6 @@ class PlateShape:
     def curve(self, bead: BeadShape) -> CorBySpeed:
         """COR by speed of a bead on this plate, far from its edges."""
         return self.answers(bead).cor
-
-    def touched(self, shape: Any, at: Vector, normal: Vector) -> Vector:
-        """Where it is touched [m]: where the bead touches it."""
-        return at
 
     def velocity_at(self, shape: Any, at: Vector, normal: Vector) -> Vector:
         """Velocity of the plate [m/s] where a bead touches it."""
