@@ -47,7 +47,7 @@ class Contacts:
         self.time = 0.0  # sum of the steps so far
         self.resting = 0  # number of contacts too slow for an impact
         self.error: BaseException | None = None  # the first one in this step, or an interrupt
-        self.stranger: str | None = None  # says what bead stopped last at a shape not registered
+        self.stranger = ""  # says what bead stopped first at a shape not registered
         self.borne: list[float] = []  # integrals over time of what each plate bears, as in `Loads`
         self._resting_speed = 0.0
         self._anew = 0.0  # contacts that approach more slowly do not rest [m/s]
@@ -218,7 +218,7 @@ class Contacts:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""
         circle, shape = arbiter.shapes
         bead = getattr(circle, MARK, None)
-        if bead is not None and not arbiter.restitution:
+        if bead is not None and not arbiter.restitution and not self.stranger:
             left, bottom, right, top = shape.bb
             self.stranger = (
                 f"{bead} hits a {type(shape).__name__} between ({left:.4g}, {bottom:.4g}) and "

@@ -68,13 +68,6 @@ class Handlers:
 
         return guarded
 
-    def ignore_strangers(self) -> None:
-        """Stop watching for shapes that are not registered."""
-        import pymunk
-
-        if (self._stranger, "post_solve") not in self._users:
-            self._engine(*self._stranger, post_solve=pymunk.empty_callback)
-
     def detach(self) -> None:
         """Remove the adapter's handlers from the space; the user's stay."""
         import pymunk
@@ -83,8 +76,8 @@ class Handlers:
         del state["on_collision"]
         if self._replaced:
             state["on_collision"] = self._replaced
-        self.ignore_strangers()
         for key in self._hooks:
             self._engine(*key, pre_solve=pymunk.empty_callback)
+        self._engine(*self._stranger, post_solve=pymunk.empty_callback)
         for (key, phase), (callback, data) in self._users.items():
             self._engine(*key, **{phase: callback}, data=data)

@@ -21,7 +21,7 @@ from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.edges import edges_of, join
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models, plate_of
+from contactlaw.engines.pymunk.models import Models, materials_of
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
     MARK,
@@ -73,7 +73,7 @@ class PymunkImpacts:
         self._contacts = Contacts()
         self._register = Register(models)
         self._asked = 0.0  # time at which loads were asked [s]
-        self._attached = True
+        self._attached, self._warned = True, False  # the latter of a shape that is not registered
         # Shapes keep their beads and plates alive, and bodies their mounts.
         self._beads: WeakValueDictionary[int, BeadShape] = WeakValueDictionary()  # by id of the body
         self._plates: WeakValueDictionary[int, PlateShape] = WeakValueDictionary()  # by index
@@ -233,7 +233,7 @@ class PymunkImpacts:
             if sheet_of(wall) is not wall:
                 if not knows(one, "pair", "oblique"):
                     raise TypeError(f"thickness: {one!r} knows no plate that swings back; give an ImpactModel")
-                wall = wall if swing_of(plate_of(one), wall)[1] else sheet_of(wall)
+                wall = wall if swing_of(materials_of(one)[1], wall)[1] else sheet_of(wall)
             if friction is not None and not knows(one, "oblique"):
                 raise TypeError(
                     f"friction: {one!r} knows none, it has no oblique(); leave friction=None, which is pymunk's own, "
@@ -244,7 +244,7 @@ class PymunkImpacts:
         mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
         swings = thickness if sheet_of(wall) is wall else wall
         index = self._register.plate(chosen, wall)
-        plate = PlateShape(index, ref(shape), mount, swings, chosen, friction, edges)
+        plate = PlateShape(index, ref(shape, self._part), mount, swings, chosen, friction, edges)
         setattr(shape, MARK, plate)
         self._plates[index], self._joined = plate, False
         self._contacts.borne.extend([0.0] * NUMBERS)
@@ -277,7 +277,7 @@ class PymunkImpacts:
         if shape.collision_type != self.plate_type:
             raise ArgumentError("shape", None, f"{shape!r} is no plate of this attachment")
         forget(shape)
-        self._joined = False
+        self._part(shape)
 
     def beads(self) -> NDArray[np.void]:
         """All beads that were ever registered, by their index in the record.
@@ -383,6 +383,10 @@ class PymunkImpacts:
             raise RuntimeError("this attachment is detached: call attach(space, model) again")
         return body_of(shape, kinds, self._space, (self.bead_type, self.plate_type))
 
+    def _part(self, shape: Any) -> None:
+        """Let the others find their shared ends again, because a plate has gone."""
+        self._joined = False
+
     def _step(self, dt: float) -> None:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
@@ -397,7 +401,6 @@ class PymunkImpacts:
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
-        stranger, self._contacts.stranger = self._contacts.stranger, None
-        if stranger is not None:
-            self._handlers.ignore_strangers()
-            warnings.warn(stranger, stacklevel=2)
+        if self._contacts.stranger and not self._warned:
+            self._warned = True
+            warnings.warn(self._contacts.stranger, stacklevel=2)

@@ -107,7 +107,7 @@ class Models:
         self.spheres: list[Any] = []
         self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
         for model in self.all:
-            sphere, plate = pair = sphere_of(model), plate_of(model)
+            sphere, plate = pair = materials_of(model)
             if len(self.all) > 1 and None in pair:
                 raise ArgumentError(
                     "model",
@@ -150,9 +150,9 @@ class Models:
     def own_models(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ModelsByBead:
         """Models of a plate that was given its own."""
         models = _listed(given)
-        found = ModelsByBead(self.spheres, plate_of(models[0]))
+        found = ModelsByBead(self.spheres, materials_of(models[0])[1])
         for model in models:
-            sphere = sphere_of(model)
+            sphere, _ = materials_of(model)
             known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
             if not known:
                 names = ", ".join(_name(s) for s in self.spheres)
@@ -164,7 +164,7 @@ class Models:
     def of_bead(self, number: int) -> RestitutionModel:
         """First model for beads of a material, which answers where they meet other beads."""
         sphere = self.spheres[number]
-        return next(model for model in self.all if sphere_of(model) == sphere)
+        return next(model for model in self.all if materials_of(model)[0] == sphere)
 
     def extra_arguments(self, number: int, other: int) -> tuple[Any, ...]:
         """Further argument of that model's methods: the other bead's material if it differs."""
@@ -190,14 +190,10 @@ class Models:
         return [_name(sphere) for sphere in self.spheres]
 
 
-def sphere_of(model: RestitutionModel) -> Any:
-    """Material of a model's beads, None if it has no pair."""
-    return getattr(getattr(model, "pair", None), "sphere", None)
-
-
-def plate_of(model: RestitutionModel) -> Any:
-    """Material of a model's plates, None if it has no pair."""
-    return getattr(getattr(model, "pair", None), "plate", None)
+def materials_of(model: RestitutionModel) -> tuple[Any, Any]:
+    """Materials of a model's beads and plates, None if it has no pair."""
+    pair = getattr(model, "pair", None)
+    return getattr(pair, "sphere", None), getattr(pair, "plate", None)
 
 
 def _listed(given: Any) -> list[RestitutionModel]:

@@ -1,5 +1,6 @@
 """Edges of plates: where they are, and what the model answers near them."""
 
+import gc
 import math
 
 import pymunk
@@ -105,6 +106,29 @@ def test_plates_that_come_later_continue_a_plate(model):
     room.steps(space, 5)
     first, second = impacts.collisions()["restitution"]
     assert first < second - 0.01 and second == model.curve(R, H)(2.0)
+
+
+@pytest.mark.parametrize("removed", [False, True])
+def test_plates_that_go_leave_an_edge(model, removed):
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    circle = make_bead(space, (NEAR, 1.01 * R), (0, -2))
+    impacts.add_bead(circle)
+    impacts.add_plate(make_plate(space, (0, 0), (0.1, 0)), H, edge="free")
+    other = make_plate(space, (0, 0), (-0.1, 0))
+    impacts.add_plate(other, H, edge="free")
+    room.steps(space, 5)
+    if removed:
+        impacts.remove_plate(other)
+    space.remove(other)
+    other.body = None
+    del other
+    space.step(room.DT)  # until then pymunk keeps it
+    gc.collect()  # its C part refers to it
+    circle.body.position, circle.body.velocity = (NEAR, 1.01 * R), (0, -2)
+    room.steps(space, 5)
+    first, second = impacts.collisions()["restitution"]
+    assert second < first - 0.01
 
 
 @pytest.mark.parametrize("sliding", [0.5, 2.0, 12.0])
