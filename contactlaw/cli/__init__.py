@@ -15,7 +15,6 @@ import textwrap
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from contactlaw._version import VERSION
 from contactlaw.cli import old_names
@@ -86,12 +85,6 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}", help="print the version and exit")
-    made.add_argument(
-        "--print-completion",
-        action=_Completion,
-        choices=("bash", "zsh", "tcsh"),
-        help="print a script for the shell's completion and exit",
-    )
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="one of those below")
     called = next((word for word in words or () if not word.startswith("-")), None)
     if words and (answer := old_names.answer([*words])):
@@ -118,32 +111,6 @@ def _grouped() -> Iterator[str]:
             yield from textwrap.wrap(f"  {name:12}{about[1] if about else ''}", 80, subsequent_indent=" " * 14)
         yield ""
     yield "`contactlaw COMMAND --help` lists the options of a command."
-
-
-class _Completion(argparse.Action):
-    """Prints a script by which a shell completes subcommands, options, materials and laws."""
-
-    def __call__(self, caller: argparse.ArgumentParser, _: Any, shell: Any, __: Any = None) -> None:
-        try:
-            import shtab
-        except ImportError:
-            caller.exit(_REFUSED, "contactlaw: this needs shtab: pip install 'contactlaw[shell]'\n")
-        from contactlaw import laws
-        from contactlaw.physical.materials import materials
-
-        names = {"sphere": materials(), "plate": materials(), "law": laws.names()}
-        files = {"FILE": shtab.FILE, "FOLDER": shtab.DIR, "DIR": shtab.DIR}
-        made = parser()
-        actions = list(made._actions)  # those of subcommands are put behind, and follow
-        for action in actions:
-            if isinstance(action.choices, dict):
-                actions += [inner for command in action.choices.values() for inner in command._actions]
-            elif action.dest in names:
-                action.choices = names[action.dest]
-            elif action.metavar in files:
-                action.complete = files[action.metavar]  # type: ignore[attr-defined]
-        print(shtab.complete(made, shell))
-        caller.exit()
 
 
 def _drop_output() -> None:

@@ -179,7 +179,6 @@ def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
     ("argv", "message"),
     [
         (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
-        (["table", "check", "--points", "100", "--seed", "-1"], "--seed: got -1; must not be negative"),
         (["table", "info", "--law", "hertz"], "--law: got 'hertz'; never yields"),
         (["table", "info", "missing.h5"], "table: there is no file missing.h5"),
         (["table", "build", "--out", "nowhere/t.h5"], "--out: there is no folder nowhere"),
@@ -227,7 +226,7 @@ def test_help_comes_at_once():
     """It lists every subcommand, and loads nothing that takes long."""
     code = (
         "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
-        "print(text); assert not {'numpy', 'numba', 'h5py', 'shtab'} & {*sys.modules}"
+        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
     )
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     groups = re.findall(r"^(\w+):\n((?:  .*\n)+)", shown.stdout.partition("exit\n")[2], re.MULTILINE)
@@ -322,12 +321,13 @@ def test_materials(capsys):
     assert "copper-ofhc-annealed: Oxygen-free copper" in " ".join(text)
 
 
-def test_table_info_and_check(capsys):
+def test_table_info_and_check(capsys, monkeypatch):
+    monkeypatch.setattr("secrets.randbits", lambda bits: 5)
     assert main(["table", "info"]) == 0
     info = capsys.readouterr().out
     assert "law myc" in info
     assert "restitution" in info
-    assert main(["table", "check", "--points", "1000", "--seed", "5"]) == 0
+    assert main(["table", "check", "--points", "1000"]) == 0
     assert "seed 5" in capsys.readouterr().out
 
 
@@ -336,9 +336,7 @@ def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
     assert main(["table", "info", *steel]) == 0
     assert "law fem:" in capsys.readouterr().out
     assert main(["table", "info", *steel[:4]]) == 1
-    assert capsys.readouterr().err == (
-        "contactlaw: --law: got 'fem'; takes numbers from a pair: give --sphere and --plate too\n"
-    )
+    assert capsys.readouterr().err == ("contactlaw: --plate: has to be given, no record or file says it\n")
     asked = ["table", "info", *steel[:2], "--sphere", "steal", "--plate", "glass"]
     refused(asked, "--sphere: unknown material 'steal'", capsys=capsys)
 
@@ -434,39 +432,3 @@ PLOT = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0
 def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     refused([*PLOT, "--plot", str(tmp_path / "cor.png")], "pip install 'contactlaw[demo]'", capsys=capsys)
-
-
-@pytest.mark.parametrize(
-    ("typed", "offered"),
-    [
-        ("ex", ["export", "explore"]),
-        ("cor --outside ''", ["raise", "solve", "clamp"]),
-        ("cor --sphere bearing", ["bearing-steel-52100", "bearing-steel-52100-ball"]),
-        ("table build --law ko", ["kogut_etsion"]),
-        ("fit --materials mi", ["mine.toml"]),
-    ],
-)
-def test_a_shell_completes_what_is_typed(typed, offered, completion, tmp_path):
-    (tmp_path / "mine.toml").touch()
-    script = (
-        f"source {completion}; COMP_WORDS=(contactlaw {typed})\n"
-        'COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _shtab_contactlaw; printf "%s\\n" "${COMPREPLY[@]}"'
-    )
-    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
-    assert done.stdout.split() == offered
-
-
-@pytest.fixture(scope="module")
-def completion(tmp_path_factory):
-    command = [sys.executable, "-m", "contactlaw", "--print-completion", "bash"]
-    path = tmp_path_factory.mktemp("shell") / "contactlaw.bash"
-    path.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
-    return path
-
-
-def test_without_shtab_the_remedy_is_named(capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "shtab", None)
-    with pytest.raises(SystemExit) as stop:
-        main(["--print-completion", "bash"])
-    assert stop.value.code == 1
-    assert "this needs shtab: pip install 'contactlaw[shell]'" in capsys.readouterr().err

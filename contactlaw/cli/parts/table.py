@@ -51,6 +51,7 @@ class Table:
     flags: Integers | None = None  # limits of the model that each row exceeds
     counts: Mapping[Validity, int] | None = None  # impacts that exceed each, if a row has several
     total: int = 0  # impacts of these counts
+    width: int = WIDTH  # of its sentences; less in comments of another program
 
     def __len__(self) -> int:
         """Count the rows."""
@@ -66,7 +67,7 @@ class Table:
         named = (f"{column.title} {self._alike(column)}" for column in alike)
         title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
         if title:
-            yield from wrapped(title)
+            yield from wrapped(title, "", self.width)
         cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
         letters = self._letters()
         marks = ["".join(mark for flag, (mark, _) in letters.items() if row & flag) for row in self._row_flags()]
@@ -84,7 +85,7 @@ class Table:
         """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
         for flag, (mark, count) in self._letters().items():
             (words,) = explain(flag)
-            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ")
+            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ", self.width)
 
     def _letters(self) -> dict[Validity, tuple[str, int]]:
         """Letter of each flag, and its number of impacts."""
@@ -175,9 +176,9 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
     yield from filter(None, ("  ".join(row).rstrip() for row in zip(*padded, strict=True)))  # units may be missing
 
 
-def wrapped(text: str, indent: str = "") -> list[str]:
+def wrapped(text: str, indent: str = "", width: int = WIDTH) -> list[str]:
     """Break a text into lines for a terminal; lines after the first are indented."""
-    return textwrap.wrap(text, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return textwrap.wrap(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def in_words(asked: Mapping[str, Any]) -> str:
