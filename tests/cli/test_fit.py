@@ -314,14 +314,6 @@ def full(*_):
     raise OSError(ENOSPC, os.strerror(ENOSPC))
 
 
-def test_where_yield_begins_is_drawn():
-    pair = cl.Pair("gamma-alumina", "glass")
-    data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))
-    (curve,) = fit_figure(cl.fit(pair, data, "thickness"), "").curves
-    expected = cl.ImpactModel(pair).yield_speed(RADIUS, THICKNESS)
-    assert np.interp(0.0, np.log(curve.overload), curve.x) == pytest.approx(expected, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     "text",
     [
