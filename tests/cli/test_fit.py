@@ -13,7 +13,6 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main
-from contactlaw.cli.fit.figure import figure as fit_figure
 from contactlaw.cli.parts import rebounds as tables
 from contactlaw.cli.parts.figure import MOST_CURVES, Figure
 from contactlaw.engines.record import IMPACT

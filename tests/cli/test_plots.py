@@ -8,10 +8,12 @@ from errno import ENOSPC
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import contactlaw as cl
 from contactlaw.cli import main
+from contactlaw.cli.parts.figure import Points, draw_points
 
 R, INF = 0.9e-3, math.inf
 
@@ -116,6 +118,21 @@ def test_limits_are_dashed(drawn, tmp_path):
     assert "radius 0.9 mm. Dashed: plate thinner than" in said
     assert "; or faster than the impacts" in said
     assert axes.get_xscale() == "log" and axes.get_ylabel() == "coefficient of restitution [-]"
+
+
+def test_points_beyond_a_limit_are_hollow():
+    figure = Figure()
+    axes = figure.subplots()
+    flags = np.array([0, cl.Validity.THIN_PLATE])
+    draw_points(
+        axes, Points(np.array([1.0, 2.0]), np.array([0.5, 0.5]), "measured", np.array([0.1, 0.1]), flags), "blue", 1, 1
+    )
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())
+    for x, colour in ((1.0, [0, 0, 255, 255]), (2.0, [255, 255, 255, 255])):
+        column, row = axes.transData.transform((x, 0.5)).round().astype(int)
+        assert pixels[len(pixels) - row, column].tolist() == colour
 
 
 def test_a_history_is_the_force_over_time(drawn, tmp_path):

@@ -166,4 +166,4 @@ def draw_points(axes: Axes, points: Points, colour: Any, x_size: float, y_size: 
     error = None if points.error is None else points.error / y_size
     look = {"color": colour, "markersize": 7}
     axes.errorbar(x, y, error, fmt="o", markerfacecolor="white", capsize=3, **look)
-    axes.plot(x, inside, "o", label=points.label or None, **look)  # over the hollow ones
+    axes.plot(x, inside, "o", label=points.label or None, zorder=3.0, **look)  # over the hollow ones
