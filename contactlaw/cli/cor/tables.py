@@ -31,7 +31,7 @@ _OBLIQUE = (
     Column("rebound_angle", "deg", "leaves at", "deg"),
     Column("friction_energy", "J"),
 )
-_HISTORY = (
+_HISTORY: tuple[Column, ...] = (
     Column("time", "s"),
     Column("force", "N"),
     Column("compression", "m"),

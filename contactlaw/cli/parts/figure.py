@@ -138,7 +138,8 @@ class Figure:
         remarks = list(self.remarks)
         if any(curve.x[-1] == math.inf for curve in self.curves):
             remarks.append("Thin line: half-space")
-        flags = np.concatenate([np.ravel(part.flags) for part in (*self.curves, *self.points)])
+        parts: list[Curve | Points] = [*self.curves, *self.points]
+        flags = np.concatenate([np.ravel(part.flags) for part in parts])
         if words := limits_in_words(int(np.bitwise_or.reduce(flags)) & Validity.ACCURACY):
             remarks.append(f"{'Dashed or hollow' if self.points else 'Dashed'}: {'; or '.join(words)}")
         return remarks
