@@ -1,4 +1,4 @@
-"""``contactlaw export``: source files for codes without Python: C header, LAMMPS, LIGGGHTS."""
+"""``contactlaw export`` (engines): source files for codes without Python: C header, LAMMPS, LIGGGHTS."""
 
 import argparse
 import functools

@@ -1,4 +1,4 @@
-"""``contactlaw find``: the thicknesses of the plate, or the impact speeds, that give a COR."""
+"""``contactlaw find`` (ask): the thicknesses of the plate, or the impact speeds, that give a COR."""
 
 import argparse
 import functools

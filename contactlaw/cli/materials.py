@@ -1,4 +1,4 @@
-"""``contactlaw materials``: the catalogue of materials, with the source of each number."""
+"""``contactlaw materials`` (ask): the catalogue of materials, with the source of each number."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""``contactlaw table``: describe, check or build a lookup table."""
+"""``contactlaw table`` (engines): describe, check or build a lookup table."""
 
 import argparse
 import secrets

@@ -1,4 +1,4 @@
-"""``contactlaw constant``: one COR for each wall and its errors, or a table of COR over speed."""
+"""``contactlaw constant`` (engines): one COR for each wall and its errors, or a table of COR over speed."""
 
 import argparse
 import functools
