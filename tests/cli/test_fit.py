@@ -13,7 +13,6 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main
-from contactlaw.cli.fit.figure import figure as fit_figure
 from contactlaw.cli.parts import rebounds as tables
 from contactlaw.cli.parts.figure import MOST_CURVES, Figure
 from contactlaw.engines.record import IMPACT
@@ -312,14 +311,6 @@ def test_of_several_quantities_the_one_with_the_most_values_is_drawn(table, tmp_
 
 def full(*_):
     raise OSError(ENOSPC, os.strerror(ENOSPC))
-
-
-def test_where_yield_begins_is_drawn():
-    pair = cl.Pair("gamma-alumina", "glass")
-    data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))
-    (curve,) = fit_figure(cl.fit(pair, data, "thickness"), "").curves
-    expected = cl.ImpactModel(pair).yield_speed(RADIUS, THICKNESS)
-    assert np.interp(0.0, np.log(curve.overload), curve.x) == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize(

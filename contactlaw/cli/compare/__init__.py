@@ -1,4 +1,4 @@
-"""``contactlaw compare``: measured CORs beside the model, to which they were not fitted."""
+"""``contactlaw compare`` (measure): measured CORs beside the model, to which they were not fitted."""
 
 import argparse
 import json

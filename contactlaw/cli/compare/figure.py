@@ -29,4 +29,4 @@ def curve(model: ImpactModel, impact: Mapping[str, Any], errors: Mapping[str, fl
     hit = model.solve(**impact)
     cor, band = np.asarray(hit.restitution), model.uncertainty(**impact, **errors).restitution
     low, high = (np.where(np.isfinite(end), end, cor) for end in (band.low, band.high))
-    return {"y": cor, "low": low, "high": high, "flags": np.asarray(hit.flags), "overload": np.asarray(hit.overload)}
+    return {"y": cor, "low": low, "high": high, "flags": np.asarray(hit.flags)}

@@ -1,4 +1,4 @@
-"""``contactlaw fit``: strengths, sizes and more from measured rebounds, with their errors."""
+"""``contactlaw fit`` (measure): strengths, sizes and more from measured rebounds, with their errors."""
 
 import argparse
 import json

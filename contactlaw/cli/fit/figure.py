@@ -28,7 +28,7 @@ def figure(found: Fit, about: str) -> Figure:
         hit, errors = found.curve(speed * np.cos(angle), **impact, **along)
         value = np.asarray(getattr(hit, kind)) + shift
         ends = {"low": value - errors[kind], "high": value + errors[kind]}
-        return {"y": value, **ends, "flags": np.asarray(hit.flags), "overload": np.asarray(hit.overload)}
+        return {"y": value, **ends, "flags": np.asarray(hit.flags)}
 
     error: Any = getattr(data, f"{kind}_error")
     measured = Measured(

@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import figure, impacts, own, rebounds, wording
+from contactlaw.cli.parts import figure, own, rebounds, wording
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
@@ -22,6 +22,8 @@ from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Foundation, Layers, Shell
+
+_UNITS = {"speed": "m/s", "radius": "m", "thickness": "m", "mass": "kg"}
 
 
 def model(arguments: argparse.Namespace) -> ImpactModel:
@@ -111,8 +113,10 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
 
 def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     """Repeat what the user asked: names of materials, wall and law, and sizes in SI units."""
-    names = impacts.asked(model, **sizes)
-    return names | {"plate": plate_in_words(arguments, names["plate"])}
+    law, (sphere, plate) = model.force_law, model.pair.given
+    name = law.family if law.from_pair else law.name
+    numbers = {f"{n}_{_UNITS[n]}": float(size) for n, size in sizes.items() if size is not None}
+    return {"sphere": sphere.name, "plate": plate_in_words(arguments, plate.name), "law": name, **numbers}
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:
