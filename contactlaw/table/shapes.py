@@ -6,7 +6,7 @@ shares of its largest value. Between two of these states runs the cubic through 
 the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f.
 
 Times and speeds at given shares are smooth in the coordinates of a table. They need fewer nodes than
-COR does: the grid here is coarser than the table's, with the same strengths.
+COR does: the grid here is coarser than the table's, but its strengths are closer.
 
 Legend: d compression, q its root, f force, u speed of the sphere, t time; w_m, lam, y as in
 `contactlaw.equation.zener`; all on Hertz's scale.
@@ -26,7 +26,7 @@ from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
-from contactlaw.table.grid import Grid
+from contactlaw.table.grid import Grid, ladder_of
 from contactlaw.table.sweep import Progress
 
 STATES = 16  # on either side of the top
@@ -34,11 +34,13 @@ STATES = 16  # on either side of the top
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
 _ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 8  # cells along lambda, up to yield, to the law's end and beyond
+_APART = 0.015  # largest distance of rungs in ln k
 
 
 def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
     """Solve shapes at nodes, times [T_H] and speeds [V0], and fit splines."""
     coarse = grid.with_cells(_ROWS, _BELOW, max(_BEYOND, int(grid.axes.beyond)), _AFTER)
+    coarse = coarse.on_ladder(law, ladder_of(law, _APART))
     lam, y, strength = coarse.nodes()
     flat = lam.ravel(), y.ravel(), strength.ravel()
     states = np.empty((lam.size, 2, SIZE))

@@ -504,7 +504,6 @@ REFUSED = {
         "above 1000000.*a rate for one of two bodies",
     ),
     # the few laws that it had for such pairs knew the rate of the weaker body alone
-    "rates": ((metal.STEEP, "fem"), {"table": "none"}, "above 1000000.*a rate for one of two bodies"),
 }
 REFUSED |= {
     repr(prefix): ((PAIR, "myc"), {"prefix": prefix}, "prefix: .*must be lower-case words and digits")
