@@ -11,12 +11,10 @@ from contactlaw._arrays import Array, Integers
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
-from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.physical.arguments import check
 from contactlaw.physical.kind import Kind, only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
-from contactlaw.quantities import SPEED
 from contactlaw.record import hdf5
 from contactlaw.record.file import HDF5, Record, read_record
 
@@ -38,12 +36,7 @@ class Recorded(NamedTuple):
 
 _SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
 _OF_ENGINE = {"speed": "approach_speed"} | {name: name for name in ("plate", "kind", "radius", "thickness", "mass")}
-_COLUMNS = {
-    "speed": TextColumn(columns.SPEEDS, SPEED),
-    **columns.SIZES,
-    "weights": TextColumn(("weight", "weights"), None),
-    "plate": TextColumn(("plate",), None),
-}
+_FIELDS = columns.IMPACT | {"weight": ("weights", 1.0), "weights": ("weights", 1.0), "plate": ("plate", 1.0)}
 
 
 def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
@@ -153,20 +146,15 @@ def _on_plates(rows: dict[str, Array]) -> Recorded:
 
 def _text(content: bytes) -> Recorded:
     """Pick the columns of a text that are known by their names, and give them SI units."""
-    try:
-        heads, rows, delimiter = columns.split_table(content)
-    except ValueError as error:
-        raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
     # Only in an engine's record does a column kind say what is an impact, and mass what of.
-    more = ("kind", "mass") if "sliding_speed" in heads else ()
-    found = columns.locate(heads, _COLUMNS | {one: TextColumn((one,), None) for one in more})
-    if "speed" not in found:
-        raise ValueError(f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s")
-    _, numbers = columns.numbers(rows, delimiter, heads, [one.place for one in found.values()])
-    picked: dict[str, Any] = {
-        field: column / one.per_unit for (field, one), column in zip(found.items(), numbers.T, strict=True)
-    }
-    columns.halve_diameters(picked)
+    more = ("kind", "mass") if b"sliding_speed" in content.partition(b"\n")[0] else ()
+    table = columns.read(content, _FIELDS | {name: (name, 1.0) for name in more})
+    picked: dict[str, Any] = {**table.values}
+    if table.wrong:
+        raise ValueError(table.wrong[0])
+    if "speed" not in picked:
+        listed = ", ".join(table.names)[:200]
+        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
     if "plate" in picked:
         plate = picked["plate"]
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
