@@ -45,7 +45,7 @@ def _run(arguments: argparse.Namespace) -> None:
     source = chosen.of_file(arguments, arguments.data)
     pair = source.pair
     model = ImpactModel(pair, arguments.law)
-    bodies = impacts.asked(model)
+    bodies = chosen.asked(arguments, model)
     with chosen.plot_file(arguments):
         found = compare(pair, source.rebounds, arguments.law, **source.errors)
         if arguments.plot is not None:
