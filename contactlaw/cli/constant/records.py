@@ -11,10 +11,8 @@ from contactlaw._arrays import Array
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import columns, wording
-from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.physical.arguments import check
 from contactlaw.physical.pair import Pair
-from contactlaw.quantities import SPEED
 from contactlaw.record.file import HDF5, Record, read_record
 
 Impacts = dict[str, Array]  # speed, and what is known of radius, thickness, mass, weights; in SI units
@@ -29,11 +27,7 @@ class Recorded(NamedTuple):
 
 
 _OF_ENGINE = {"speed": "approach_speed"} | {name: name for name in ("radius", "thickness", "mass")}
-_OF_TEXT = {
-    "speed": TextColumn(columns.SPEEDS, SPEED),
-    **columns.SIZES,
-    "weights": TextColumn(("weight", "weights"), None),
-}
+_OF_TEXT = columns.IMPACT | {"weight": ("weights", 1.0), "weights": ("weights", 1.0)}
 
 
 def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
@@ -88,16 +82,12 @@ def _by_pair(record: Record) -> Iterator[Recorded]:
 
 def _text(content: bytes) -> Impacts:
     """Pick the columns of a text that are known by their names, and give them SI units."""
-    try:
-        heads, rows, delimiter = columns.split_table(content)
-    except ValueError as error:
-        raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
-    found = columns.locate(heads, _OF_TEXT)
-    if "speed" not in found:
-        raise ValueError(f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s")
-    if "plate" in heads:
+    table = columns.read(content, _OF_TEXT)
+    if table.wrong:
+        raise ValueError(table.wrong[0])
+    if "speed" not in table.values:
+        listed = ", ".join(table.names)[:200]
+        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
+    if "plate" in table.names:
         raise ValueError("a column plate: leave it and beads on beads out; of an engine's record take .h5 or .npy")
-    _, numbers = columns.numbers(rows, delimiter, heads, [one.place for one in found.values()])
-    picked = {name: column / one.per_unit for (name, one), column in zip(found.items(), numbers.T, strict=True)}
-    columns.halve_diameters(picked)
-    return picked
+    return table.values
