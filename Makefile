@@ -31,7 +31,7 @@ test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, 
 	  --junitxml=$(VENV)/engines.xml
 	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
 
-EXTRAS := lammps demo fit shell
+EXTRAS := lammps demo fit
 
 extras:  ## use each extra of users in an environment of its own: attach, record, save, read, report
 	@for extra in $(EXTRAS); do \

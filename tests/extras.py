@@ -79,11 +79,6 @@ def fit(folder):
     assert 0.3e-3 < cl.fit(PAIR, data, "thickness").values["thickness"] < 3e-3
 
 
-def shell(folder):
-    """Completion of commands."""
-    assert "cor" in command("--print-completion", "bash")
-
-
 def command(*words):
     """Output of a command of contactlaw."""
     done = subprocess.run([sys.executable, "-m", "contactlaw", *words], capture_output=True, text=True)
@@ -93,5 +88,5 @@ def command(*words):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
-        {"lammps": lammps, "demo": demo, "fit": fit, "shell": shell}[sys.argv[1]](Path(temporary))
+        {"lammps": lammps, "demo": demo, "fit": fit}[sys.argv[1]](Path(temporary))
     print(f"contactlaw[{sys.argv[1]}] works alone")

@@ -59,7 +59,7 @@ FILES = {
     "record": "columns hdf5 file",
     "reporting": "limits page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies commands memory errors callback attachment",
-    "engines/pymunk": "handlers models record registry seams edges lookahead contacts impacts attachment",
+    "engines/pymunk": "friction handlers models record registry edges lookahead contacts impacts attachment",
     "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",
     "cli/cor": "tables figures files",

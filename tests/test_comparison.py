@@ -130,7 +130,7 @@ def test_the_command_reads_conditions_and_draws(tmp_path, capsys):
         ("# kind", "# knd", "did you mean kind"),
         ("# title", "# by me\n# title", "are no TOML"),
         (",COR_error", ",remark", "restitution_error: has to be given"),
-        ('"soda-lime-glass"', "3", "write the name of a material, or a table [plate]"),
+        ('"soda-lime-glass"', "3", "plate in its head: plate: name: got 3; must be a string"),
     ):
         path.write_text(text.replace(old, new))
         refused(["compare", str(path)], words, capsys=capsys)
@@ -175,7 +175,7 @@ def test_other_programs_read_rows_or_everything(tmp_path, capsys):
 def test_a_body_like_another_has_the_numbers_of_the_head_and_their_errors(head, numbers, tmp_path):
     path = tmp_path / "mine.csv"
     path.write_text(f'# [plate]\n# like = "stainless-steel-304"\n# {head}\nspeed_m/s,COR\n1,0.5\n')
-    plate = rebounds.conditions(rebounds.read(path), {}).bodies["plate"]
+    plate = rebounds.read(path, {}, lambda bodies: cl.Pair("glass", bodies["plate"])).pair.plate
     wanted = dataclasses.replace(cl.material("stainless-steel-304"), **numbers)
     assert (plate, dict(plate.uncertainty)) == (wanted, dict(wanted.uncertainty))
 
@@ -183,7 +183,7 @@ def test_a_body_like_another_has_the_numbers_of_the_head_and_their_errors(head, 
 def test_a_head_of_windows_keeps_its_letters_and_no_head_moves_the_cursor(tmp_path):
     path = tmp_path / "mine.csv"
     path.write_bytes('# title = "Gl\u00e4tte\\u001b[2J"\nspeed_m/s,COR\n1,0.5\n'.encode("cp1252"))
-    assert rebounds.conditions(rebounds.read(path), {}).title == "Gl\u00e4tte [2J"
+    assert rebounds.read(path, {}, lambda _: cl.Pair("glass", "glass")).title == "Gl\u00e4tte [2J"
 
 
 def test_an_export_of_phyphox_is_compared(tmp_path, capsys):

@@ -29,7 +29,7 @@ NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 STATED = {
     "README": 5,
     "angles_and_edges": 10,
-    "engines": 2,
+    "engines": 3,
     "fit": 3,
     "lammps": 2,
     "laws": 12,

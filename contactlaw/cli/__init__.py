@@ -1,9 +1,9 @@
 """Command line: ``contactlaw cor | find | constant | fit | export | ...``.
 
 A file or folder has the subcommand of its name: its function `add` adds the parser and options to
-argparse's subparsers, and the line of its docstring that begins with ``contactlaw NAME`` says what
-it is for. Only the file of the subcommand that is called is imported, so that help comes at once.
-Code that several subcommands share is in `parts`.
+argparse's subparsers. Its docstring begins with a line such as ``contactlaw cor`` (ask): the name,
+the group in the help, and what it is for. Only the file of the subcommand that is called is
+imported, so that help comes at once. Code that several subcommands share is in `parts`.
 """
 
 import argparse
@@ -15,20 +15,12 @@ import textwrap
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from contactlaw._version import VERSION
 from contactlaw.cli import old_names
 from contactlaw.parser import Parser
 
-_GROUPS = {
-    "ask": ("cor", "find", "materials"),
-    "measure": ("fit", "compare"),
-    "engines": ("constant", "export", "table"),
-    "pages": ("explore", "report"),
-}
-_COMMANDS = [name for names in _GROUPS.values() for name in names]
-_ABOUT = re.compile(r"``contactlaw \w+``: (.*)\.")
+_ABOUT = re.compile(r'"""``contactlaw (\w+)`` \((\w+)\): (.*)\.')
 _DONE, _REFUSED, _MISUSED, _INTERRUPTED = 0, 1, 2, 130
 
 
@@ -86,64 +78,33 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}", help="print the version and exit")
-    made.add_argument(
-        "--print-completion",
-        action=_Completion,
-        choices=("bash", "zsh", "tcsh"),
-        help="print a script for the shell's completion and exit",
-    )
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="one of those below")
     called = next((word for word in words or () if not word.startswith("-")), None)
     if words and (answer := old_names.answer([*words])):
         made.exit(_MISUSED, f"contactlaw: {answer}\n")
-    if words is None or called in _COMMANDS:
-        for name in _COMMANDS if words is None else [called]:
+    subcommands = sorted(_subcommands())
+    names = [name for _, name, _ in subcommands]
+    if words is None or called in names:
+        for name in names if words is None else [called]:
             importlib.import_module(f"{__name__}.{name}").add(commands)
         return made
-    for name in _COMMANDS:
+    lines = []
+    for group, name, about in subcommands:
         commands.add_parser(name)
+        title = f"\n{group}:"
+        lines += [title] * (title not in lines)
+        lines += textwrap.wrap(f"  {name:12}{about}", 80, subsequent_indent=" " * 14)
     made.formatter_class = argparse.RawDescriptionHelpFormatter
-    made.epilog = "\n".join(_grouped())
+    made.epilog = "\n".join([*lines, "\n`contactlaw COMMAND --help` lists the options of a command."])
     return made
 
 
-def _grouped() -> Iterator[str]:
-    """Lines of the help with all subcommands, each with the sentence of its file's docstring."""
-    for title, names in _GROUPS.items():
-        yield f"{title}:"
-        for name in names:
-            path = Path(__file__).parent / name
-            file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-            about = _ABOUT.search(file.read_text(encoding="utf-8"))
-            yield from textwrap.wrap(f"  {name:12}{about[1] if about else ''}", 80, subsequent_indent=" " * 14)
-        yield ""
-    yield "`contactlaw COMMAND --help` lists the options of a command."
-
-
-class _Completion(argparse.Action):
-    """Prints a script by which a shell completes subcommands, options, materials and laws."""
-
-    def __call__(self, caller: argparse.ArgumentParser, _: Any, shell: Any, __: Any = None) -> None:
-        try:
-            import shtab
-        except ImportError:
-            caller.exit(_REFUSED, "contactlaw: this needs shtab: pip install 'contactlaw[shell]'\n")
-        from contactlaw import laws
-        from contactlaw.physical.materials import materials
-
-        names = {"sphere": materials(), "plate": materials(), "law": laws.names()}
-        files = {"FILE": shtab.FILE, "FOLDER": shtab.DIR, "DIR": shtab.DIR}
-        made = parser()
-        actions = list(made._actions)  # those of subcommands are put behind, and follow
-        for action in actions:
-            if isinstance(action.choices, dict):
-                actions += [inner for command in action.choices.values() for inner in command._actions]
-            elif action.dest in names:
-                action.choices = names[action.dest]
-            elif action.metavar in files:
-                action.complete = files[action.metavar]  # type: ignore[attr-defined]
-        print(shtab.complete(made, shell))
-        caller.exit()
+def _subcommands() -> Iterator[tuple[str, str, str]]:
+    """Read the group, the name and the purpose of each subcommand out of its file."""
+    for folder in map(Path, __path__):
+        for path in (*folder.glob("*.py"), *folder.glob("*/__init__.py")):
+            if about := _ABOUT.match(path.read_text(encoding="utf-8")):
+                yield about[2], about[1], about[3]
 
 
 def _drop_output() -> None:

@@ -1,4 +1,4 @@
-"""``contactlaw explore``: a page with sliders for a browser."""
+"""``contactlaw explore`` (pages): a page with sliders for a browser."""
 
 import argparse
 from typing import Any

@@ -1,15 +1,15 @@
-"""``contactlaw find``: the thicknesses of the plate, or the impact speeds, that give a COR."""
+"""``contactlaw find`` (ask): the thicknesses of the plate, or the impact speeds, that give a COR."""
 
 import argparse
 import functools
 import itertools
-import math
 import sys
 from typing import Any
 
 import numpy as np
 
 from contactlaw import quantities
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import bands, chosen, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS
@@ -55,24 +55,20 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     plate, layers = model.pair.given[1], {}
     if below := [chosen.layer(text, arguments.materials) for text in getattr(arguments, "on", ())]:
         layers = {"layers": [(plate, None), *below]}
-    questions = [*itertools.product(arguments.cor, *(getattr(arguments, name) for name in known))]
+    questions = np.array([*itertools.product(arguments.cor, *(getattr(arguments, name) for name in known))])
     errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
-    answers: Any = getattr(model, unknown)(*np.array(questions).T, **errors, **layers)
-
-    remarks, rows = [], []
-    for (cor, *sizes), answer in zip(questions, answers, strict=True):
-        if answer.remark:
-            impact = in_words(chosen.asked(arguments, model, **dict(zip(known, sizes, strict=True))))
-            remarks.append(f"{impact}, COR {cor:g}: {answer.remark}")
-        found = [*zip(answer.value, answer.low, answer.high, answer.flags, strict=True)]
-        rows += [(cor, *sizes, *solution, answer.remark) for solution in found or [(math.nan, math.nan, math.nan, 0)]]
+    answers: Any = getattr(model, unknown)(*questions.T, **errors, **layers)
+    remarks = [
+        f"{in_words(chosen.asked(arguments, model, **dict(zip(known, sizes, strict=True))))}, COR {cor:g}: {one.remark}"
+        for (cor, *sizes), one in zip(questions.tolist(), answers, strict=True)
+        if one.remark
+    ]
     if len(remarks) == len(questions):
         raise ValueError("\n".join(remarks))
     for remark in remarks:
         wording.print_warning(remark)
 
-    table = _table(unknown, rows, chosen.asked(arguments, model))
-    table.write(sys.stdout, arguments.form)
+    _table(unknown, questions, answers, chosen.asked(arguments, model)).write(sys.stdout, arguments.form)
     if arguments.form == "text":
         band = next(answer.band for answer in answers if answer.band)
         of = {"thickness": "thicknesses", "speed": "speeds"}[unknown]
@@ -80,16 +76,18 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
         print("", *wrapped(f"68 %: {bands.meaning(band, model.pair, subject)}."), sep="\n")
 
 
-def _table(unknown: str, rows: list[tuple[Any, ...]], asked: dict[str, Any]) -> Table:
-    """Table of the rows; ends of a range that are not known become NaN."""
-    known = _KNOWN[unknown]
-    names = ("restitution", *known, unknown, f"{unknown}_low", f"{unknown}_high", "flags", "remark")
-    values = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
-    low, high = values[names[4]], values[names[5]]
+def _table(unknown: str, questions: Array, answers: Any, asked: dict[str, Any]) -> Table:
+    """Table of all solutions; ends of a range that are not known become NaN."""
+    value, low, high, flags = (
+        np.concatenate([getattr(one, name) for one in answers]) for name in ("value", "low", "high", "flags")
+    )
     low[np.isinf(low)] = np.nan
     high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
+    names = "restitution", *_KNOWN[unknown], unknown, f"{unknown}_low", f"{unknown}_high"
+    of_each = np.repeat(questions, [one.value.size for one in answers], axis=0)
+    values = dict(zip(names, [*of_each.T, value, low, high], strict=True))
     by_name = {column.name: column for column in COLUMNS}
-    cor, *inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in ("restitution", *known))
-    value = by_name[unknown]._replace(is_input=False)
-    ends = value._replace(name=names[4], title="68 %", to=names[5]), Column(names[5], value.unit)
-    return Table([cor, *inputs, value, *ends, Column("remark")], values, asked, values["flags"])
+    inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in names[:-3])
+    column = by_name[unknown]._replace(is_input=False)
+    ends = column._replace(name=names[-2], title="68 %", to=names[-1]), Column(names[-1], column.unit)
+    return Table([*inputs, column, *ends], values, asked, flags)

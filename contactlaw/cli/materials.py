@@ -1,4 +1,4 @@
-"""``contactlaw materials``: the catalogue of materials, with the source of each number."""
+"""``contactlaw materials`` (ask): the catalogue of materials, with the source of each number."""
 
 import argparse
 import json
@@ -28,9 +28,8 @@ _COLUMNS = [Column(title, title=title, shown=unit, scale=scale) for title, unit,
 _LISTED = 8  # columns of the catalogue; one material has all others
 _MEANING = (
     "E Young's modulus, nu Poisson's ratio, rho density, yield: yield strength, H hardness; hardening: flow stress "
-    "= yield + B strain^n"
+    "= yield + B strain^n; C growth of the flow stress per e-fold of the strain rate; tan delta loss factor."
 )
-_OF_ONE = "; C growth of the flow stress per e-fold of the strain rate; tan delta loss factor"
 
 
 def add(commands: Any) -> None:
@@ -50,7 +49,7 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     values = dict(zip((title for title, *_ in _TITLES), zip(*map(_numbers, bodies), strict=True), strict=True))
     Table(_COLUMNS[1:] if name else _COLUMNS[:_LISTED], values).write(sys.stdout)
-    print("", *wrapped(f"{_MEANING}{_OF_ONE * bool(name)}."), sep="\n")
+    print("", *wrapped(_MEANING), sep="\n")
     if name:
         print("", *wrapped(f"{bodies[0].name}: {bodies[0].source}"), sep="\n")
 

@@ -1,4 +1,4 @@
-"""``contactlaw report``: a page with figures about recorded impacts."""
+"""``contactlaw report`` (pages): a page with figures about recorded impacts."""
 
 import argparse
 import math

@@ -1,14 +1,12 @@
-"""``contactlaw table``: describe, check or build a lookup table."""
+"""``contactlaw table`` (engines): describe, check or build a lookup table."""
 
 import argparse
-import math
 import secrets
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from contactlaw import laws, table
-from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.table import Column, Table, wrapped
@@ -34,44 +32,33 @@ def add(commands: Any) -> None:
         options.add_pair(action, "; only for laws with a table for each pair")
     what = "number of random points, at least 100 (default: %(default)s)"
     check.add_argument("--points", type=int, default=10_000, metavar="N", help=what)
-    check.add_argument("--seed", type=int, metavar="S", help="seed of the random points (default: a new one)")
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
 
 
 def _info(arguments: argparse.Namespace) -> None:
     stored = _stored(arguments)
-    lam, chi = stored.settings.largest_inelasticity, stored.settings.largest_overload
-    strengths = stored.law.strengths
-    strength = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
-    extent = f"inelasticity 0 to {lam:g}, overload to {chi:g}, {strength}{stored.grid.shape}"
-    print(*wrapped(f"law {stored.law.family}: {stored.law.source}"), *wrapped(extent), sep="\n")
-    print(
-        *wrapped(f"settings: {', '.join(f'{name} {value:g}' for name, value in asdict(stored.settings).items())}"),
-        sep="\n",
-    )
-    _print_certificate(stored.certificate, table.bounds(stored.law))
+    settings = ", ".join(f"{name} {value:g}" for name, value in asdict(stored.settings).items())
+    for text in (f"law {stored.law.family}: {stored.law.source}", f"settings: {settings}; nodes {stored.grid.shape}"):
+        print(*wrapped(text), sep="\n")
+    _print_certificate(stored)
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    seed = secrets.randbits(32) if arguments.seed is None else arguments.seed
-    stored, bar = _stored(arguments), cache.progress_bar
-    certificate = table.certify(stored, arguments.points, seed, progress=bar)
-    limits = table.bounds(stored.law)
-    _print_certificate(certificate, limits)
-    exceeded = certificate.exceeded(limits)
-    if exceeded:
-        raise ValueError(f"the table exceeds its bounds: {exceeded} (seed {seed})")
+    stored = _stored(arguments)
+    certificate = table.certify(stored, arguments.points, secrets.randbits(32), progress=cache.progress_bar)
+    _print_certificate(replace(stored, certificate=certificate))
+    if exceeded := certificate.exceeded(table.bounds(stored.law)):
+        raise ValueError(f"the table exceeds its bounds: {exceeded}")
 
 
 def _build(arguments: argparse.Namespace) -> None:
     enable_caching()
     out = Path(arguments.out or f"{arguments.law}.h5")
     with wording.writing("out", out):
-        law = _law(arguments)
-        built = table.build(law, progress=cache.progress_bar)
+        built = table.build(_law(arguments), progress=cache.progress_bar)
         built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)
         file.write(built, out)
-    _print_certificate(built.certificate, table.bounds(law))
+    _print_certificate(built)
     print(out)
 
 
@@ -87,21 +74,18 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
     """Law of a table, by its name and, for laws with parameters of a pair, by the materials."""
     if not laws.parameters(arguments.law):
         return laws.law(arguments.law)
-    if arguments.sphere is None or arguments.plate is None:
-        reason = "takes numbers from a pair: give --sphere and --plate too"
-        raise ArgumentError("law", arguments.law, reason)
     pair = chosen.pair(arguments)
     return with_strengths(pair, law_of(pair, arguments.law))
 
 
-def _print_certificate(certificate: table.Certificate | None, limits: dict[str, float]) -> None:
+def _print_certificate(stored: table.Table) -> None:
+    certificate = stored.certificate
     if certificate is None:
         print("no certificate")
         return
     errors = {"median": certificate.median, "99 %": certificate.percentile_99, "largest": certificate.largest}
-    errors["bound"] = limits
-    fields = [*certificate.largest]
+    errors["bound"] = table.bounds(stored.law)
     columns = [Column("field", title="field", shown=""), *(Column(name, title=name, digits=".1e") for name in errors)]
-    values = {"field": fields} | {name: [sizes[field] for field in fields] for name, sizes in errors.items()}
+    values = {name: [sizes[field] for field in certificate.largest] for name, sizes in errors.items()}
     print("", f"errors at {certificate.points} random points, seed {certificate.seed}", sep="\n")
-    print(*Table(columns, values).text(), sep="\n")
+    print(*Table(columns, values | {"field": [*certificate.largest]}).text(), sep="\n")

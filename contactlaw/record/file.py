@@ -336,11 +336,6 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     return whole.part(np.lexsort(keys))
 
 
-def opened(content: bytes) -> Any:
-    """Open the content of a file of this format; what is none is a ValueError."""
-    return hdf5.opened(content)
-
-
 def read_from(file: h5py.File) -> Record:
     """Read the record of an open file.
 

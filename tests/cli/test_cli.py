@@ -34,11 +34,10 @@ def test_cor_json_holds_every_field(model, capsys):
     assert main([*IMPACT, "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     hit = model.lookup(12.0, 0.9e-3, 1e-3)
-    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed", *ENDS, *ASKED, *SIZES}
+    assert set(printed) == {*cl.Rebound.__dataclass_fields__, *ENDS, *ASKED, *SIZES}
     assert printed.items() >= {**ASKED, **SIZES}.items()
     assert printed["restitution"] == hit.restitution
     assert printed["contact_time"] == hit.contact_time
-    assert printed["yield_speed"] == model.yield_speed(0.9e-3, 1e-3)
     assert printed["flags"] == []
 
 
@@ -64,18 +63,18 @@ def test_cor_can_integrate(model, capsys):
 
 
 def test_the_law_of_hertz_names_the_yield_speed_too(model, capsys):
-    assert main([*IMPACT, "--law", "hertz", "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)["yield_speed"]
-    assert printed == pytest.approx(model.yield_speed(0.9e-3, 1e-3), rel=1e-12)
+    for law in ("myc", "hertz"):
+        assert main([*IMPACT, "--law", law]) == 0
+        assert f"yield_speed           {model.yield_speed(0.9e-3, 1e-3):.6g} m/s\n" in capsys.readouterr().out
 
 
 def test_cor_of_a_plate_too_thin_for_a_yield_speed(capsys):
     thin = [*COR, "--radius", "0.9e-3", "--thickness", "0.05e-3", "--speed", "5"]
     refused(thin, "outside the table", capsys=capsys)
     assert main([*thin, "--outside", "solve"]) == 0
-    assert "none within the table" in capsys.readouterr().out
-    assert main([*thin, "--solve", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["yield_speed"] is None
+    assert "yield_speed           not known\n" in capsys.readouterr().out
+    assert main([*IMPACT, "--cylinder", "5cm"]) == 0
+    assert "yield_speed           not known\n" in capsys.readouterr().out
 
 
 MANY = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "1,5"]
@@ -98,17 +97,8 @@ def test_several_values_are_every_combination(model, capsys):
         h = np.inf if row["thickness"] is None else row["thickness"]
         hit = model.lookup(row["speed"], row["radius"], h)
         assert row["restitution"] == hit.restitution
-        assert row["yield_speed"] == model.yield_speed(row["radius"], h)
     assert rows[0]["flags"] == []
-    assert set(rows[0]) == {
-        "speed",
-        "radius",
-        "thickness",
-        "yield_speed",
-        *cl.Rebound.__dataclass_fields__,
-        *ENDS,
-        *ASKED,
-    }
+    assert set(rows[0]) == {"speed", "radius", "thickness", *cl.Rebound.__dataclass_fields__, *ENDS, *ASKED}
 
 
 def test_a_table_has_a_row_per_impact_and_units(capsys):
@@ -139,7 +129,7 @@ def test_csv_has_units_in_its_header_and_every_digit(model, capsys):
     out = capsys.readouterr().out
     header, *rows = csv.reader(io.StringIO(out))
     assert header[:5] == ["speed_m/s", "radius_m", "thickness_m", "restitution", "contact_time_s"]
-    assert header[-5:] == ["yield_speed_m/s", *ASKED, "flags"]
+    assert header[-4:] == [*ASKED, "flags"]
     assert rows[0][-4:] == [*ASKED.values(), ""]
     hit = model.lookup([1.0, 5.0] * 3, 0.9e-3, np.repeat([0.5e-3, 1e-3, np.inf], 2))
     assert [float(row[3]) for row in rows] == list(hit.restitution)
@@ -179,7 +169,6 @@ def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
     ("argv", "message"),
     [
         (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
-        (["table", "check", "--points", "100", "--seed", "-1"], "--seed: got -1; must not be negative"),
         (["table", "info", "--law", "hertz"], "--law: got 'hertz'; never yields"),
         (["table", "info", "missing.h5"], "table: there is no file missing.h5"),
         (["table", "build", "--out", "nowhere/t.h5"], "--out: there is no folder nowhere"),
@@ -227,15 +216,24 @@ def test_help_comes_at_once():
     """It lists every subcommand, and loads nothing that takes long."""
     code = (
         "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
-        "print(text); assert not {'numpy', 'numba', 'h5py', 'shtab'} & {*sys.modules}"
+        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
     )
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     groups = re.findall(r"^(\w+):\n((?:  .*\n)+)", shown.stdout.partition("exit\n")[2], re.MULTILINE)
     listed = {title: re.findall(r"^  ([a-z]+) ", lines, re.MULTILINE) for title, lines in groups}
-    assert [*listed] == ["ask", "measure", "engines", "pages"]
+    assert [*listed] == ["ask", "engines", "measure", "pages"]
     whole = re.findall(r"^    ([a-z-]+)\b", cli.parser().format_help(), re.MULTILINE)
     assert sum(listed.values(), []) == whole and len(whole) == 10
     assert max(map(len, shown.stdout.splitlines())) <= 80
+
+
+def test_a_new_file_is_enough_for_a_new_subcommand(tmp_path, monkeypatch, capsys):
+    words = "def add(commands):\n    commands.add_parser('greet').set_defaults(run=lambda _: print('hello'))\n"
+    (tmp_path / "greet.py").write_text(f'"""``contactlaw greet`` (people): say hello."""\n{words}')
+    monkeypatch.setattr(cli, "__path__", [*cli.__path__, str(tmp_path)])
+    assert "\npeople:\n  greet       say hello\n" in cli.parser([]).format_help()
+    assert main(["greet"]) == 0
+    assert capsys.readouterr().out == "hello\n"
 
 
 def test_the_options_of_cor_are_in_groups(capsys):
@@ -322,12 +320,13 @@ def test_materials(capsys):
     assert "copper-ofhc-annealed: Oxygen-free copper" in " ".join(text)
 
 
-def test_table_info_and_check(capsys):
+def test_table_info_and_check(capsys, monkeypatch):
+    monkeypatch.setattr("secrets.randbits", lambda bits: 5)
     assert main(["table", "info"]) == 0
     info = capsys.readouterr().out
     assert "law myc" in info
     assert "restitution" in info
-    assert main(["table", "check", "--points", "1000", "--seed", "5"]) == 0
+    assert main(["table", "check", "--points", "1000"]) == 0
     assert "seed 5" in capsys.readouterr().out
 
 
@@ -336,9 +335,7 @@ def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
     assert main(["table", "info", *steel]) == 0
     assert "law fem:" in capsys.readouterr().out
     assert main(["table", "info", *steel[:4]]) == 1
-    assert capsys.readouterr().err == (
-        "contactlaw: --law: got 'fem'; takes numbers from a pair: give --sphere and --plate too\n"
-    )
+    assert capsys.readouterr().err == ("contactlaw: --plate: has to be given, no record or file says it\n")
     asked = ["table", "info", *steel[:2], "--sphere", "steal", "--plate", "glass"]
     refused(asked, "--sphere: unknown material 'steal'", capsys=capsys)
 
@@ -434,39 +431,3 @@ PLOT = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0
 def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     refused([*PLOT, "--plot", str(tmp_path / "cor.png")], "pip install 'contactlaw[demo]'", capsys=capsys)
-
-
-@pytest.mark.parametrize(
-    ("typed", "offered"),
-    [
-        ("ex", ["export", "explore"]),
-        ("cor --outside ''", ["raise", "solve", "clamp"]),
-        ("cor --sphere bearing", ["bearing-steel-52100", "bearing-steel-52100-ball"]),
-        ("table build --law ko", ["kogut_etsion"]),
-        ("fit --materials mi", ["mine.toml"]),
-    ],
-)
-def test_a_shell_completes_what_is_typed(typed, offered, completion, tmp_path):
-    (tmp_path / "mine.toml").touch()
-    script = (
-        f"source {completion}; COMP_WORDS=(contactlaw {typed})\n"
-        'COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _shtab_contactlaw; printf "%s\\n" "${COMPREPLY[@]}"'
-    )
-    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
-    assert done.stdout.split() == offered
-
-
-@pytest.fixture(scope="module")
-def completion(tmp_path_factory):
-    command = [sys.executable, "-m", "contactlaw", "--print-completion", "bash"]
-    path = tmp_path_factory.mktemp("shell") / "contactlaw.bash"
-    path.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
-    return path
-
-
-def test_without_shtab_the_remedy_is_named(capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "shtab", None)
-    with pytest.raises(SystemExit) as stop:
-        main(["--print-completion", "bash"])
-    assert stop.value.code == 1
-    assert "this needs shtab: pip install 'contactlaw[shell]'" in capsys.readouterr().err

@@ -97,13 +97,10 @@ def test_the_lines_of_handbooks_are_those_of_their_extremes(like, low, high, tmp
     assert mine.uncertainty["loss_factor"] == pytest.approx(math.log(high / low) / math.sqrt(12.0), rel=0.02)
 
 
-def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(tmp_path, capsys):
+def test_one_source_for_all_numbers(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text('[soft]\nlike = "glass"\nyield_strength = 1e8\nsource = "tests of {May}"')
     assert cl.read_materials(path)["soft"].source.endswith("yield strength 1e+08 Pa: tests of {May}")
-    text = "E=200GPa nu=0.3 rho=7800 hardness=62"
-    assert main(["cor", "--sphere", text, *IMPACT]) == 0
-    assert "hardness=62 is 62 Pa; HRC, HV or HB?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -111,13 +108,18 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
     [
         ("pomm", "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is"),
         ("E=2.8GPa nuu=0.35 rho=1410", "--sphere: unknown 'nuu'; did you mean nu? known: E, nu"),
-        ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu=0.35"),
+        ("E=2.8GPa", "'E=2.8GPa' lacks density and poissons_ratio, as in \"E=2.8GPa nu"),
         ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
-        ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus: got 2.8; below"),
-        ("E=2GPa E=3GPa nu=0.35 rho=1410", "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice"),
-        ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
-        ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
-        ("pmma loss_factor=handbook", "loss_factor has a frequency, too: write loss_factor = [0.03, 1e4]"),
+        ("E=2.8 nu=0.35 rho=1410", '--sphere: E=2.8 has no unit, as in "E=2.8GPa nu=0.35'),
+        ("E=70000 nu=0.35 rho=2.7 yield=276MPa", "--sphere: E=70000 has no unit"),
+        ("E=200GPa nu=0.3 rho=7800 hardness=62", "--sphere: hardness=62 has no unit"),
+        ("E=2GPa E=3GPa nu=0.35 rho=1410", "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has a key twice"),
+        ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has a key twice: leave one out"),
+        ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "--sphere: unknown material 'yeild 350MPa'"),
+        (
+            "pmma loss_factor=handbook",
+            "got 'handbook'; must be (tan delta, frequency), the frequency in Hz: write loss_factor = [",
+        ),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
@@ -149,14 +151,6 @@ def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):
     (tmp_path / "mine.toml").write_text(FILE.replace(old, new, 1))
     with pytest.raises(ValueError, match=message):
         cl.read_materials(tmp_path / "mine.toml")
-
-
-def test_numbers_in_megapascals_and_grams_draw_warnings(capsys):
-    assert main(["cor", "--sphere", "E=70000 nu=0.35 rho=2.7 yield=276", *IMPACT]) == 0
-    said = capsys.readouterr().err
-    assert "E=70000 is 70000 Pa; MPa or GPa?" in said and "rho=2.7 is 2.7 kg/m3; g/cm3?" in said
-    assert main(["cor", "--sphere", "E=2GPa nu=0.35 rho=10kg/m3", *IMPACT]) == 0
-    assert capsys.readouterr().err == ""
 
 
 def test_a_length_without_a_unit_draws_a_warning(capsys, tmp_path):

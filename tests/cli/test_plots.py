@@ -8,10 +8,12 @@ from errno import ENOSPC
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import contactlaw as cl
 from contactlaw.cli import main
+from contactlaw.cli.parts.figure import Points, draw_points
 
 R, INF = 0.9e-3, math.inf
 
@@ -98,27 +100,39 @@ def test_without_a_list_the_axis_has_the_speeds_up_to_the_one_stated(drawn, tmp_
     assert axes.get_xlim() == pytest.approx((0.5, 5.0)) and not axes.get_legend()
 
 
-def test_limits_are_dashed_and_the_yield_point_is_marked(drawn, tmp_path):
+def test_limits_are_dashed(drawn, tmp_path):
     asked = f"--radius {R} --thickness 0.3mm,1mm --speed 1,100 --law myc --no-band"
     figure = picture(drawn, tmp_path, asked)
     (axes,) = figure.axes
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     fast = 7.0 * model.pair.yield_speed
     parts = [line.get_xydata() for line in axes.lines if len(line.get_xdata()) > 1]
-    thin, thin_dashed, clear, swift = (part[np.isfinite(part[:, 1]), 0] for part in parts)
-    assert thin.size == 0 and thin_dashed[[0, -1]] == pytest.approx([1.0, 100.0])
-    assert clear[0] == pytest.approx(1.0) and swift[-1] == pytest.approx(100.0)
-    assert swift[0] <= fast <= clear[-1] * 100.0 ** (2 / 199)
-    assert [line.is_dashed() for line in axes.lines if len(line.get_xdata()) > 1] == [False, True] * 2
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["plate 0.3 mm", "plate 1 mm"]
-    marks = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "v"]
-    for mark, thickness in zip(marks, (0.3e-3, 1e-3), strict=True):
-        v = model.yield_speed(R, thickness)
-        assert mark == pytest.approx([v, model.restitution(v, R, thickness)], rel=1e-3)
+    dashed, thin, swift, clear = (part[np.isfinite(part[:, 1]), 0] for part in parts)
+    for below in (dashed, swift):  # the whole curve, over which the part inside all limits is drawn
+        assert below[[0, -1]] == pytest.approx([1.0, 100.0])
+    assert thin.size == 0 and clear[0] == pytest.approx(1.0)
+    assert clear[-1] <= fast <= clear[-1] * 100.0 ** (1 / 199)
+    assert [line.is_dashed() for line in axes.lines] == [True, False] * 2
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["thickness 0.3 mm", "thickness 1 mm"]
     said = caption(figure)
-    assert "radius 0.9 mm. Triangle: a body begins to yield. Dashed: plate thinner than" in said
+    assert "radius 0.9 mm. Dashed: plate thinner than" in said
     assert "; or faster than the impacts" in said
     assert axes.get_xscale() == "log" and axes.get_ylabel() == "coefficient of restitution [-]"
+
+
+def test_points_beyond_a_limit_are_hollow():
+    figure = Figure()
+    axes = figure.subplots()
+    flags = np.array([0, cl.Validity.THIN_PLATE])
+    draw_points(
+        axes, Points(np.array([1.0, 2.0]), np.array([0.5, 0.5]), "measured", np.array([0.1, 0.1]), flags), "blue", 1, 1
+    )
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())
+    for x, colour in ((1.0, [0, 0, 255, 255]), (2.0, [255, 255, 255, 255])):
+        column, row = axes.transData.transform((x, 0.5)).round().astype(int)
+        assert pixels[len(pixels) - row, column].tolist() == colour
 
 
 def test_a_history_is_the_force_over_time(drawn, tmp_path):
@@ -126,7 +140,7 @@ def test_a_history_is_the_force_over_time(drawn, tmp_path):
     figure = picture(drawn, tmp_path, asked)
     (axes,) = figure.axes
     contact = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc").force_history(60.0, R, 0.3e-3, 50, "solve")
-    time, force = axes.lines[-1].get_xydata().T
+    time, force = axes.lines[0].get_xydata().T
     assert (time, force) == (pytest.approx(1e6 * contact.time), pytest.approx(contact.force))
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time since touch [µs]", "contact force [N]")
     assert "Dashed: plate thinner than R/1.8" in caption(figure)
@@ -166,7 +180,7 @@ def test_the_band_is_shaded_and_explained(pair, drawn, tmp_path):
 
 def test_nothing_is_explained_that_is_not_there(drawn, tmp_path):
     figure = picture(drawn, tmp_path, f"--radius {R} --thickness 1mm --speed 1,5 --law myc --no-band")
-    assert caption(figure) == "gamma-alumina on glass, law myc, plate 1 mm, radius 0.9 mm"
+    assert caption(figure) == "gamma-alumina on glass, law myc, thickness 1 mm, radius 0.9 mm"
     assert figure.axes[0].get_xscale() == "linear" and not figure.axes[0].get_legend()
 
 
@@ -179,9 +193,9 @@ def test_nothing_is_explained_that_is_not_there(drawn, tmp_path):
             [R],
             [0.4e-3, 0.7e-3, 1e-3, 2e-3, INF],
             [0.1, 150.0],
-            ["plate 0.4 mm", "plate 0.7 mm", "plate 1 mm", "plate 2 mm", "half-space"],
+            ["thickness 0.4 mm", "thickness 0.7 mm", "thickness 1 mm", "thickness 2 mm", "half-space"],
         ),
-        ([R], [n * 1e-3 for n in range(4, 12)], [1.0, 20.0], [f"plate {n} mm" for n in range(4, 12)]),
+        ([R], [n * 1e-3 for n in range(4, 12)], [1.0, 20.0], [f"thickness {n} mm" for n in range(4, 12)]),
         ([50e-6, 0.3e-3, 0.9e-3], [1e-3], [0.01, 10.0], ["radius 50 µm", "radius 0.3 mm", "radius 0.9 mm"]),
         ([0.3e-3, 0.9e-3], [INF], [1e-25, 50.0], ["radius 0.3 mm", "radius 0.9 mm"]),
     ],

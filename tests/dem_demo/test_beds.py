@@ -89,14 +89,15 @@ def test_the_record_gives_a_constant(which, name, folder, capsys):
     record = folder / f"{(name, 'constant')[which]}.h5"
     (found,), rows = records.read(record), run.impacts
     assert rows.size > 3
-    assert np.array_equal(found.speed, rows["approach_speed"])
-    assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
-    assert set(found.thickness) == {run.scene.thickness}
+    speed, radius, thickness = (found.impacts[name] for name in ("speed", "radius", "thickness"))
+    assert np.array_equal(speed, rows["approach_speed"])
+    assert np.array_equal(radius, run.scene.radius[rows["bead"]])
+    assert set(thickness) == {run.scene.thickness}
     assert (found.pair, found.law) == (run.model.pair, run.law)
     capsys.readouterr()
     assert cli_of_contactlaw.main(["constant", str(record), "--csv"]) == 0
     (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
-    one = cl.ImpactModel(found.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
+    one = cl.ImpactModel(found.pair, law=run.law).constant(speed, radius, thickness)
     assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
 
 

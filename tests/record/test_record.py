@@ -12,7 +12,8 @@ import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
-from contactlaw.record.file import flagged, opened, read_from
+from contactlaw.record import hdf5
+from contactlaw.record.file import flagged, read_from
 
 MODELS = [
     cl.ImpactModel(cl.Pair(sphere, plate))
@@ -45,7 +46,7 @@ def test_a_flipped_bit_is_refused_or_changes_no_number():
     """Data, their types and shapes, and attributes have checksums, all but the texts of attributes."""
 
     def numbers(content):
-        with opened(content) as file:
+        with hdf5.opened(content) as file:
             record = read_from(file)
         return record.rows.tobytes(), [
             [dataclasses.astuple(body)[1:5] for body in one.pair.given] for one in record.bodies
@@ -54,7 +55,7 @@ def test_a_flipped_bit_is_refused_or_changes_no_number():
     random, rows = np.random.default_rng(23), np.zeros(40, [(name, IMPACT[name]) for name in ("time", "x", "flags")])
     rows["time"], rows["x"] = np.sort(random.random((2, 40)))
     content = cl.Record(rows, [cl.Bodies(MODELS[3].pair, "fem")]).content()
-    with opened(content) as file:
+    with hdf5.opened(content) as file:
         places = [file["impacts"][name].id.get_chunk_info(0).byte_offset for name in ("time", "x", "flags", "bodies")]
     for place in places:
         with pytest.raises(ValueError, match="is damaged: "):
@@ -110,7 +111,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
     text = (tmp_path / "out/summary.txt").read_text()
     for plate, name in enumerate(("glass", "carbon-steel-1020")):
         for sphere, count in (("gamma-alumina", 1), ("glass", 2)):
-            wall = f"{plate}: 1 mm {name}, {sphere}"
+            wall = f"wall {plate}, 1 mm of {name}, beads of {sphere}"
             own = next(one for one in text.splitlines() if one.startswith(wall))
             assert own.removeprefix(wall).split()[0] == str(count)
     capsys.readouterr()
@@ -126,7 +127,7 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
         best = np.sqrt(np.average(rows["restitution"][own] ** 2, weights=weight))
         assert float(row[head.index("restitution")]) == pytest.approx(best, rel=1e-6)
     assert main(["constant", path, "--lammps"]) == 1
-    assert "has impacts of several pairs" in capsys.readouterr().err
+    assert "--lammps is for one pair, the record has " in capsys.readouterr().err
     chosen = ["--sphere", "glass", "--plate", "glass"]
     assert main(["constant", path, "--lammps", *chosen]) == 0
     assert main(["constant", path, "--sphere", "PMMA"]) == 1

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 from unittest import mock
 
+import numpy as np
 import pymunk
 
 import contactlaw as cl
@@ -18,25 +19,20 @@ BEADS, COR = 1000, 0.9
 DURATION = 0.6  # [s]; beads enter in the first third, all have hit a plate by the end
 
 
-class _Constant:
-    """One COR for all contacts, which an engine takes like an `ImpactModel`."""
+class _Constant(cl.ImpactModel):
+    """One COR for all contacts, near edges and far from them."""
 
-    restitution = COR
+    def curve(self, *_: Any) -> Callable[..., float]:
+        return lambda *impact: COR
 
-    def __init__(self, pair: cl.Pair) -> None:
-        self.pair = pair
-
-    def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
-        return lambda speed: COR
-
-    sphere_sphere_curve = curve
+    sphere_sphere_curve = edge_kernel = curve
 
 
 class _Elasticities:
     """pymunk as it comes: a constant COR, no adapter, no records."""
 
     def __init__(self, space: pymunk.Space, model: _Constant) -> None:
-        self.each = model.restitution**0.5  # pymunk multiplies the two
+        self.each = COR**0.5  # pymunk multiplies the two
 
     def add_plate(self, segment: pymunk.Segment, thickness: float, **_: object) -> None:
         segment.elasticity = self.each
@@ -44,11 +40,14 @@ class _Elasticities:
     def add_bead(self, circle: pymunk.Circle) -> None:
         circle.elasticity = self.each
 
+    def loads(self) -> tuple[float, Any]:
+        return 0.0, np.zeros((5, 7))  # of the five plates
+
 
 def rows() -> Iterator[Row]:
     """Measure the same rain with the model, with one COR, and with pymunk alone."""
     pair = cl.Pair("gamma-alumina", "glass")
-    scene, constant = drawn(beads=BEADS, duration=DURATION), _Constant(pair)
+    scene, constant = drawn(beads=BEADS, duration=DURATION), _Constant(pair, law="myc")
 
     def run(model: Any) -> None:
         rain = Rain(scene, model)

@@ -333,8 +333,8 @@ def fig27_measured() -> chart.Drawn:
         others = {name: size for name, size in source.errors.items() if name != "speed_error"}
         over = ("speed", speed, left, 1.0, others), ("thickness", thickness, right, 1e-3, source.errors)
         for name, x, axes, size, errors in over:
-            values = model_curve(model, first | {name: x}, errors)
-            draw_curve(axes, Curve(x, values["y"], "model", values["low"], values["high"]), BLUE, size, 1.0)
+            _, y, low, high = model_curve(model, first | {name: x}, errors)
+            draw_curve(axes, Curve(x, y, "model", low, high), BLUE, size, 1.0)
         draw_points(left, Points(at["speed"], cor, "measured", error), ORANGE, 1.0, 1.0)
         if unsure := source.errors.get("speed_error"):
             left.plot(at["speed"] * np.exp([-unsure, unsure]), [cor[0], cor[0]], color=INK)

@@ -1,10 +1,10 @@
-"""``contactlaw compare``: measured CORs beside the model, to which they were not fitted."""
+"""``contactlaw compare`` (measure): measured CORs beside the model, to which they were not fitted."""
 
 import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -42,13 +42,15 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    data, pair, head = chosen.of_file(arguments, arguments.data)
-    bodies = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
-    with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
-        found = compare(pair, data, arguments.law, **head.errors)
+    source = chosen.of_file(arguments, arguments.data)
+    pair = source.pair
+    model = ImpactModel(pair, arguments.law)
+    bodies = chosen.asked(arguments, model)
+    with chosen.plot_file(arguments):
+        found = compare(pair, source.rebounds, arguments.law, **source.errors)
         if arguments.plot is not None:
-            about = ": ".join(filter(None, (head.title, in_words(bodies))))
-            figure.figure(found, ImpactModel(pair, arguments.law), head.errors, about).save(arguments.plot)
+            about = ": ".join(filter(None, (source.title, in_words(bodies))))
+            figure.figure(found, model, source.errors, about).save(arguments.plot)
             return
     table = _rows(found, bodies)
     if arguments.csv:
@@ -57,38 +59,33 @@ def _run(arguments: argparse.Namespace) -> None:
     by_law = dict[str, Comparison]()
     for name in laws.names():
         with suppress(ValueError, RuntimeError):  # it cannot be used for this pair
-            by_law[name] = compare(pair, found.data, name, **head.errors)
+            by_law[name] = compare(pair, found.data, name, **source.errors)
     by_law = dict(sorted(by_law.items(), key=lambda item: item[1].if_exact))
     if arguments.json:
-        numbers = {"title": head.title, "reference": head.reference, **_numbers(found), "unknown": found.unknown}
+        numbers = {"title": source.title, "reference": source.reference, **_numbers(found), "unknown": found.unknown}
         numbers["laws"] = {name: _numbers(comparison) for name, comparison in by_law.items()}
         print(json.dumps(numbers | {"rebounds": table.records()}, indent=2))
-        return
-    for sentence in filter(None, (head.title, head.reference)):
-        print(*wrapped(sentence), sep="\n")
-    print(*table.text(), "", sep="\n")
-    for sentence in _judged(found, pair):
-        print(*wrapped(sentence), sep="\n")
-    print("", *_nearest(by_law), sep="\n")
+    else:
+        print(*wrapped(source.title), *wrapped(source.reference), *table.text(), "", sep="\n")
+        print(*_judged(found, pair), "", *_nearest(by_law), sep="\n")
 
 
 def _rows(found: Comparison, bodies: dict[str, str]) -> Table:
     """Table of the rebounds: measured COR, its error, COR of the model, its range, and flags."""
     data, ends = found.data, {"low": found.band.low, "high": found.band.high}
-    values = {"speed": data.speed, "radius": data.radius, "thickness": data.thickness}
-    columns = [column for column in impacts.COLUMNS if column.name in values]
-    columns += [Column("measured", title="measured"), Column("error", title="error")]
-    columns += [Column("restitution", title="predicted"), Column("low", title="68 %", to="high"), Column("high")]
+    values = {column.name: getattr(data, column.name) for column in impacts.COLUMNS[:3]}
     values |= {"measured": data.restitution, "error": data.restitution_error, "restitution": found.restitution}
     values |= {name: np.where(np.isfinite(end), end, np.nan) for name, end in ends.items()}
+    columns = [*impacts.COLUMNS[:3], Column("measured", title="measured"), Column("error", title="error")]
+    columns += [Column("restitution", title="predicted"), Column("low", title="68 %", to="high"), Column("high")]
     return Table(columns, values, bodies, found.flags)
 
 
 def _judged(found: Comparison, pair: Pair) -> Iterator[str]:
-    """Sentences about the range and about chi-squared."""
-    yield f"68 %: {bands.meaning(found.band, pair)}."
+    """Lines about the range and about chi-squared."""
+    yield from wrapped(f"68 %: {bands.meaning(found.band, pair)}.")
     agree = found.probability >= _UNLIKELY
-    yield (
+    yield from wrapped(
         f"Chi-squared is {found.chi_squared:.3g} for {len(found.data)} rebounds. If the model and all stated errors "
         f"are right, it is as large or larger in {100.0 * found.probability:.3g} % of cases: the data "
         f"{'agree with the model' if agree else 'differ from the model by more than the stated errors explain'}."
@@ -102,15 +99,15 @@ def _numbers(comparison: Comparison) -> dict[str, float]:
 def _nearest(by_law: Mapping[str, Comparison]) -> Iterator[str]:
     """Lines of the laws, the nearest first, and what the errors of data and materials say of the others."""
     (first, best), *others = by_law.items()
+    words = f"Law {first} is nearest to the data."
     similar = [name for name, one in others if one.if_exact - best.if_exact < _DISTINCT**2]
-    large = [name for name, one in others if name not in similar and one.probability >= _UNLIKELY]
-    said = [f"Law {first} is nearest to the data."]
     if similar:
-        said.append(f"The errors of data and materials do not distinguish it from {', '.join(similar)}.")
+        words += f" The errors of data and materials do not distinguish it from {', '.join(similar)}."
+    large = [name for name, one in others if name not in similar and one.probability >= _UNLIKELY]
     if large:
         why = "only because the stated error of the law itself is large"
-        said.append(f"{', '.join(large)} would pass the test above, too, but {why}.")
-    yield from wrapped(" ".join(said))
+        words += f" {', '.join(large)} would pass the test above, too, but {why}."
+    yield from wrapped(words)
     values = {
         "law": [*by_law],
         "difference": [one.rms for one in by_law.values()],

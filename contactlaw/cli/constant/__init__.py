@@ -1,14 +1,16 @@
-"""``contactlaw constant``: one COR for each wall and its errors, or a table of COR over speed."""
+"""``contactlaw constant`` (engines): one COR for each wall and its errors, or a table of COR over speed."""
 
 import argparse
 import functools
 import sys
+from collections.abc import Callable
 from typing import Any
+
+import numpy as np
 
 from contactlaw import laws, quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.constant import records, walls
-from contactlaw.cli.constant.lines import lines
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.table import Column, Table, in_words
 from contactlaw.model import ImpactModel
@@ -20,7 +22,6 @@ _FORMS = {
     "csv": "print a row for each wall in SI units, with every digit",
     "lammps": "print pair_coeff and fix wall/gran of LAMMPS",
     "liggghts": "print fix property/global of LIGGGHTS",
-    "yade": "print betan of YADE",
     "table": "print COR over speed as CSV, between the least and the largest --speed, for linear interpolation",
 }
 
@@ -36,7 +37,7 @@ def add(commands: Any) -> None:
         default=[],
         metavar="FILE",
         help="recorded impacts of one run: files .h5, or .npy with an engine's rows, or one text table with a column "
-        "speed_m/s and, optionally, radius_m, thickness_m, weight and plate (default: impacts at --speed)",
+        "speed_m/s and, optionally, radius_m, thickness_m and weight (default: impacts at --speed)",
     )
     what = "normal approach speeds [m/s], each of which is equally frequent"
     options.add_quantity(impacts, "--speed", SPEED, what, quantities.values, metavar="V")
@@ -45,83 +46,68 @@ def add(commands: Any) -> None:
     options.add_sizes(command, quantities.values, required=False)
     options.add_wall(command)
     options.add_law(command, default=None)
-    command.add_argument(
-        "--keep",
-        default="energy",
-        choices=["energy", "momentum"],
-        help="keep the energy that the wall takes in total, or the momentum that it gets (default: %(default)s)",
-    )
     output = command.add_mutually_exclusive_group()
     for form, what in _FORMS.items():
         output.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
-    what = f"bound the error of the COR between the rows of --table (default: {_ERROR:g})"
-    command.add_argument("--error", metavar="E", type=float, help=what)
-    command.epilog = (
-        f"{options.UNITS} {options.LISTS} If the record has a column plate, --thickness may have a value "
-        "for each plate, in the order of their numbers."
-    )
+    what = "bound the error of the COR between the rows of --table (default: %(default)g)"
+    command.add_argument("--error", metavar="E", type=float, default=_ERROR, help=what)
+    command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
-    if arguments.form == "table":
-        _print_speed_table(arguments)
-        return
-    if arguments.error is not None:
+    if arguments.error != _ERROR and arguments.form != "table":
         raise ArgumentError("error", arguments.error, "only --table takes it")
-    for_engine = arguments.form in ("lammps", "liggghts", "yade")
-    for n, recorded in enumerate(_recorded(arguments, single=for_engine)):
+    if arguments.form == "table" and arguments.files:
+        raise ValueError("--table: give the least and the largest speed, as in --speed 0.1,10, and no FILE")
+    for n, recorded in enumerate(_recorded(arguments)):
         law = arguments.law or recorded.law or laws.DEFAULT
         model = ImpactModel(chosen.pair(arguments, recorded.pair), law=law, outside=arguments.outside)
+        impacts = records.completed(recorded.impacts, radius=arguments.radius, thickness=arguments.thickness)
         plate = functools.partial(chosen.wall, arguments, model.pair.given[1])
-        found = walls.walls(model, recorded, arguments.keep, plate)
-        table = walls.table(found, arguments.keep, chosen.asked(arguments, model))
-        if for_engine:
-            print(*lines(arguments.form, model, recorded, found, arguments.keep), sep="\n")
-        elif arguments.form == "csv":
+        if arguments.form == "table":
+            _print_speed_table(arguments, model, impacts, plate)
+            continue
+        found = walls.walls(model, impacts, plate)
+        table = walls.table(found, chosen.asked(arguments, model))
+        if arguments.form == "csv":
             table.write_csv(sys.stdout, head=n == 0)
-        else:
-            print(*[""] * (n > 0), *table.text(), "", *walls.explained(found, arguments.keep), sep="\n")
+            continue
+        text = [*table.text(), "", *walls.explained(found)]
+        if arguments.form != "text":
+            text = walls.lines(arguments.form, model, impacts, found, text)
+        print(*[""] * (n > 0), *text, sep="\n")
 
 
-def _print_speed_table(arguments: argparse.Namespace) -> None:
-    if arguments.files or len({*arguments.speed}) < 2:
-        raise ValueError("--table: give the least and the largest speed, as in --speed 0.1,10, and no FILE")
-    for name in ("radius", "thickness"):
-        if len(getattr(arguments, name) or ()) != 1:
+def _print_speed_table(
+    arguments: argparse.Namespace, model: ImpactModel, impacts: records.Impacts, plate: Callable[[float], Any]
+) -> None:
+    sizes = {name: np.unique(impacts[name]).tolist() for name in ("radius", "thickness")}
+    for name, values in sizes.items():
+        if len(values) > 1:
             raise ArgumentError(name, None, "--table takes one value")
-    (radius,), (thickness,) = arguments.radius, arguments.thickness
-    ends, error = (min(arguments.speed), max(arguments.speed)), _ERROR if arguments.error is None else arguments.error
-    arguments.law = arguments.law or laws.DEFAULT
-    model = chosen.model(arguments)
+    (radius,), (thickness,), speed = *sizes.values(), impacts["speed"]
+    ends = float(speed.min()), float(speed.max())
     with wording.naming_impact(ends, radius, thickness):
-        plate = chosen.wall(arguments, model.pair.given[1], thickness)
-        rows = model.speed_table(radius, plate, error, *ends)
+        rows = model.speed_table(radius, plate(thickness), arguments.error, *ends)
     for flag, count in rows.flags.items():
         wording.print_warning(f"{flag.name}, {count} of {len(rows.speed)} rows: {explain(flag)[0]}")
     print(f"# {in_words(chosen.asked(arguments, model, radius=radius, thickness=thickness))}, error {rows.error:.2g}")
-    columns = Column("speed", "m/s"), Column("restitution")
-    Table(columns, {"speed": rows.speed, "restitution": rows.restitution}).write_csv(sys.stdout)
+    Table((Column("speed", "m/s"), Column("restitution")), rows._asdict()).write_csv(sys.stdout)
 
 
-def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recorded]:
-    """Impacts of each pair, or every combination of the given speeds, radii and thicknesses."""
-    sizes = (arguments.radius, arguments.thickness)
+def _recorded(arguments: argparse.Namespace) -> list[records.Recorded]:
+    """Impacts on plates of each pair of the record that the options choose, or at the stated speeds."""
     if not arguments.files:
-        return [records.combined(arguments.speed, *sizes)]
-    first, found = arguments.files[0], records.read(*arguments.files)
-    for left_out in dict.fromkeys(one.left_out for one in found if one.left_out):
-        wording.print_warning(f"{first}: {left_out}")
-    names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
-    for role in ("sphere", "plate") if len(found) > 1 else ():
-        if name := getattr(arguments, role):
-            found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
+        return [records.Recorded({"speed": np.array(arguments.speed)})]
+    found = records.read(*arguments.files)
+    if len(found) > 1:
+        names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
+        for role in ("sphere", "plate"):
+            if name := getattr(arguments, role):
+                found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
             if not found:
                 raise ArgumentError(role, name, f"the record has {names}")
-    if single and len(found) > 1:
-        reason = "and these lines are for one: choose it by --sphere and --plate"
-        raise ValueError(f"{first}: has impacts of several pairs, {names}, {reason}")
-    with wording.reading(first):
-        for one in found:
-            records.check_sphere(one, chosen.pair(arguments, one.pair).sphere)
-    return [records.completed(one, *sizes) for one in found]
+        if len(found) > 1 and arguments.form not in ("text", "csv"):
+            raise ValueError(f"--{arguments.form} is for one pair, the record has {names}: choose by --sphere, --plate")
+    return found

@@ -9,10 +9,9 @@ import numpy as np
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
-from contactlaw.cli.parts.table import Table
+from contactlaw.cli.parts.table import Column, Table
 from contactlaw.physical.validity import Validity
 
-SUFFIXES = ".csv", ".h5", ".hdf5"
 _FORMAT, _SCHEMA = "contactlaw-sweep", 1
 
 
@@ -30,22 +29,17 @@ def save(table: Table, axes: Mapping[str, Sequence[float]], outside: str, path: 
         return
     image = io.BytesIO()
     with h5py.File(image, "w", libver="v110") as file:
-        _fill(file, table, axes, outside)
+        about = {"format": _FORMAT, "schema": _SCHEMA, "contactlaw_version": VERSION}
+        file.attrs.update(**about, **table.asked, outside=outside)
+        shape = [len(values) for values in axes.values()]
+        for name, unit, *_ in [*table.columns, Column("flags")]:  # the axes come first
+            values = axes[name] if name in axes else np.reshape(table.values[name], shape)
+            field = file.create_dataset(name, data=values, fletcher32=True)
+            field.attrs["units"] = unit or "1"
+            if name in axes:
+                field.make_scale(name)
+                continue
+            for axis, scale in zip(field.dims, axes, strict=True):
+                axis.attach_scale(file[scale])
+        file["flags"].attrs.update({str(limit.name): int(limit) for limit in Validity})
     _atomic.write(path, image.getvalue())
-
-
-def _fill(file: h5py.File, table: Table, axes: Mapping[str, Sequence[float]], outside: str) -> None:
-    file.attrs.update(format=_FORMAT, schema=_SCHEMA, contactlaw_version=VERSION, **table.asked, outside=outside)
-    units = {column.name: column.unit or "1" for column in table.columns} | {"flags": "1"}
-    for name, values in axes.items():
-        file.create_dataset(name, data=values, fletcher32=True)
-        file[name].make_scale(name)
-    fields = {name: table.values[name] for name in units if name not in (*axes, "flags")} | {"flags": table.flags}
-    for name, values in fields.items():
-        shape = tuple(map(len, axes.values()))
-        field = file.create_dataset(name, data=np.reshape(values, shape), fletcher32=True)
-        for axis, scale in zip(field.dims, axes, strict=True):
-            axis.attach_scale(file[scale])
-    for name, unit in units.items():
-        file[name].attrs["units"] = unit
-    file["flags"].attrs.update({str(limit.name): int(limit) for limit in Validity})

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw._arrays import Array
 from contactlaw._readable import percent, rounded, scale_of, with_error
 from contactlaw.cli.parts.impacts import COLUMNS
 from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
@@ -28,9 +29,6 @@ def text(found: Fit) -> Iterator[str]:
         "error from law": [_size(found.model_errors[name], name) for name in found.unknown],
     }
     yield from Table([Column(name, title=name, shown="") for name in cells], cells).text()
-    for n, name in enumerate(found.unknown):
-        for m in range(n):
-            yield f"The errors of {found.unknown[m]} and {name} have the correlation {found.correlation[n, m]:.2f}."
     for kind, off in found.residuals.items():
         values = f"{off.size} value{'s' * (off.size > 1)}"
         yield f"{KINDS[kind].title}: {values}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
@@ -53,19 +51,19 @@ def _size(error: float, name: str) -> str:
     return f"{rounded(error / size)} {unit}".rstrip() if np.isfinite(error) else "not known"
 
 
+def impacts_of(found: Fit) -> dict[str, Array]:
+    """Speed of the bead, sizes, and the angle [deg] of oblique rebounds."""
+    data, sizes = found.data, {"thickness": found.thickness, "radius": found.radius}
+    normal, sliding = np.asarray(data.speed), np.asarray(data.sliding_speed if data.is_oblique else 0.0)
+    angle = {"angle": np.degrees(np.arctan2(sliding, normal))} if data.is_oblique else {}
+    return {"speed": np.hypot(normal, sliding)} | sizes | angle
+
+
 def rows(found: Fit) -> Table:
     """Table of the rebounds: sizes, and by how much each measured value differs from the fit."""
-    data, count = found.data, len(found.data)
-    sizes = {"speed": np.asarray(data.speed), "radius": found.radius, "thickness": found.thickness}
-    lines = np.asarray(data.line)
-    number = "line" if np.unique(lines).size == count else "rebound"
-    columns = [Column(number, title=number, digits=".0f")]
-    columns += [column for column in COLUMNS if column.name in sizes.keys() - {*found.unknown}]
-    values: dict[str, Any] = sizes | {"rebound": np.arange(count), "line": lines}
-    if data.is_oblique:
-        columns.append(Column("angle", "deg", "angle", "deg", is_input=True))
-        normal, sliding = sizes["speed"], np.asarray(data.sliding_speed)
-        values |= {"speed": np.hypot(normal, sliding), "angle": np.degrees(np.arctan2(sliding, normal))}
+    count, values = len(found.data), {"line": np.asarray(found.data.line)} | impacts_of(found)
+    columns = [Column("line", title="line", digits=".0f"), *COLUMNS[:3], Column("angle", "deg", "angle", "deg")]
+    columns = [column for column in columns if column.name in values.keys() - {*found.unknown}]
     for kind, off in found.residuals.items():
         values[kind] = np.full(count, np.nan)
         values[kind][found.rows[kind]] = off

@@ -5,13 +5,12 @@ import math
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.table import Column, Table
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
-_MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
+_MOST = 3  # causes that are named
 _ASSUMED = 0.1  # relative error of a strength whose own is not stated
 _TELLS = 0.75  # share of a cause in all others from which without it the band is narrower by a fifth
 _STRENGTHS = "yield_strength", "hardness"
@@ -28,8 +27,9 @@ def with_bands(table: Table, bands: Uncertainty | None) -> Table:
             low, high = f"{column.name}_low", f"{column.name}_high"
             shown = "68 %" if column.name == "restitution" else ""
             columns += [Column(low, column.unit, shown, to=high, digits=".3f"), Column(high, column.unit)]
-            for name, end in ((low, band.low), (high, band.high)):
-                values[name] = np.where(np.isfinite(end), end, np.nan)
+            values |= {
+                end: np.where(np.isfinite(size), size, np.nan) for end, size in ((low, band.low), (high, band.high))
+            }
     return dataclasses.replace(table, columns=columns, values=values)
 
 
@@ -39,16 +39,13 @@ def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
     The subject is a clause of the things that are in the band.
     """
     bodies = {"bead": pair.given[0], "plate": pair.given[1]}
-    strong = {role: body for role, body in bodies.items() if body.strength is not None}
-    unstated = [role for role, body in strong.items() if not _has_error(body)]
+    unstated = [role for role, body in bodies.items() if body.strength is not None and not _has_error(body)]
     if not np.isfinite(band.low).any():
         subject = "no range, because the error of this law is not known"
-    elif len(unstated) == 2:
-        subject += ", if the strengths are right; their errors are not stated"
-    elif unstated:
+    elif len(unstated) == 1:
         subject += f", if the {unstated[0]}'s strength is right; its error is not stated"
-    elif [*band.causes] == ["model"]:
-        subject += ", if the materials are right; their errors are not stated"
+    elif unstated or [*band.causes] == ["model"]:
+        subject += f", if the {'strengths' if unstated else 'materials'} are right; their errors are not stated"
     sentences = [subject]
     for role in unstated:
         if bodies[role].specified_minimum:
@@ -79,33 +76,27 @@ def measure_first(band: Band, pair: Pair) -> str:
 
     The band is that of the pair with `assumed` errors. Without such an input the answer is empty.
     """
-    sizes = {cause: float(np.sqrt(np.mean(np.square(size)))) for cause, size in band.causes.items()}
-    rest = sizes.pop("model", 0.0)
-    cause, size = max(sizes.items(), key=lambda pair: pair[1], default=("", 0.0))
-    rest = math.hypot(rest, *(other for name, other in sizes.items() if name != cause))
-    if not size > _TELLS * rest:
+    sizes = _half_widths(band)
+    law = sizes.pop("model")
+    (cause, size), *others = sizes.items() or [("", 0.0)]
+    if size <= _TELLS * math.hypot(law, *(width for _, width in others)):
         return ""
     name, _, owner = cause.partition(" of ")
-    body = pair.given[owner == "the plate"]
-    is_strength = name.replace(" ", "_") in _STRENGTHS
-    owner = {"": "the ", "both bodies": "the material's "}.get(owner, f"{owner}'s ")
-    subject = f"Measure {owner}{'hardness' if is_strength else name}"
-    if is_strength and not _has_error(body):
-        return f"{subject} first: 10 % of it changes the COR by {size:.2g}."
-    return f"{subject} better: its error changes the COR by {size:.2g}."
+    if name.replace(" ", "_") in _STRENGTHS:
+        cause = f"{owner.replace('both bodies', 'the material')}'s hardness"
+        if not _has_error(pair.given[owner == "the plate"]):
+            return f"Measure {cause} first: 10 % of it changes the COR by {size:.2g}."
+    return f"Measure the {cause.removeprefix('the ')} better: its error changes the COR by {size:.2g}."
 
 
 def causes(band: Band) -> str:
     """Name the largest causes of a band of the COR, with the half widths that they alone make."""
-    sizes = {name: np.asarray(size) for name, size in band.causes.items() if np.isfinite(size).all()}
-    most = max((size.max() for size in sizes.values()), default=0.0)
-    largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
-    named = (name for name in largest if sizes[name].max() >= _LEAST * most)
-    parts = (f"{'law' if name == 'model' else name} {_range(sizes[name])}" for name in named)
+    largest = [*_half_widths(band).items()][:_MOST]
+    parts = (f"{'law' if name == 'model' else name} {size:.2g}" for name, size in largest)
     return f"Half the width of the COR's range by cause: {', '.join(parts)}."
 
 
-def _range(sizes: Array) -> str:
-    sizes = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # smaller ones are errors of integration
-    least, most = (f"{size:.2g}" for size in (sizes.min(), sizes.max()))
-    return most if least == most else f"{least} to {most}"
+def _half_widths(band: Band) -> dict[str, float]:
+    """Half the width that each cause alone makes, rms of several impacts; the largest one is first."""
+    sizes = {cause: float(np.sqrt(np.mean(np.square(size)))) for cause, size in band.causes.items()}
+    return dict(sorted(sizes.items(), key=lambda cause: -cause[1]))

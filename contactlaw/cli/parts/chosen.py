@@ -14,14 +14,15 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.cli.parts import figure, impacts, own, rebounds, wording
-from contactlaw.fitting import Measurements
+from contactlaw.cli.parts import figure, own, rebounds, wording
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Foundation, Layers, Shell
+
+_UNITS = {"speed": "m/s", "radius": "m", "thickness": "m", "mass": "kg"}
 
 
 def model(arguments: argparse.Namespace) -> ImpactModel:
@@ -54,14 +55,10 @@ def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
 
 
-def of_file(arguments: argparse.Namespace, path: str) -> tuple[Measurements, Pair, rebounds.Conditions]:
+def of_file(arguments: argparse.Namespace, path: str) -> rebounds.Source:
     """Read a table of rebounds; options come before what the head of the file says."""
-    table = rebounds.read(path)
-    with wording.reading(path):
-        known = rebounds.conditions(table, arguments.materials)
-    bodies = pair(arguments, SimpleNamespace(**known.bodies))
     options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
-    return rebounds.completed(table, path, bodies.sphere.density, **known.values | options), bodies, known
+    return rebounds.read(path, arguments.materials, lambda known: pair(arguments, SimpleNamespace(**known)), **options)
 
 
 def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:
@@ -111,8 +108,10 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
 
 def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     """Repeat what the user asked: names of materials, wall and law, and sizes in SI units."""
-    names = impacts.asked(model, **sizes)
-    return names | {"plate": plate_in_words(arguments, names["plate"])}
+    law, (sphere, plate) = model.force_law, model.pair.given
+    name = law.family if law.from_pair else law.name
+    numbers = {f"{n}_{_UNITS[n]}": float(size) for n, size in sizes.items() if size is not None}
+    return {"sphere": sphere.name, "plate": plate_in_words(arguments, plate.name), "law": name, **numbers}
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:
@@ -152,6 +151,9 @@ def density(arguments: argparse.Namespace) -> float:
 @contextmanager
 def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
+    if arguments.plot is None:
+        yield
+        return
     with wording.writing("plot", arguments.plot):
         wording.check_suffix("path", arguments.plot, figure.SUFFIXES)
         yield

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from contactlaw import _atomic, style
-from contactlaw._arrays import Array, Integers
-from contactlaw._readable import scale_of
+from contactlaw._arrays import Array
+from contactlaw._readable import drawn, scale_of
 from contactlaw.physical.validity import Validity, limits_in_words
 
 if TYPE_CHECKING:
@@ -57,6 +57,11 @@ AXES = {
 }
 
 
+def named(name: str, size: float) -> str:
+    """Write the value of a quantity of `AXES` with its name."""
+    return drawn(size) if size == math.inf else f"{name} {drawn(size, AXES[name].unit, 4)}".rstrip(" -")
+
+
 class Curve(NamedTuple):
     """A curve in SI units, and what is known along it."""
 
@@ -65,8 +70,7 @@ class Curve(NamedTuple):
     label: str = ""
     low: Array | None = None  # ends of the band
     high: Array | None = None
-    flags: Integers | None = None  # the curve is dashed where it exceeds a limit of the model
-    overload: Array | None = None  # a triangle marks where it passes 1: a body begins to yield
+    flags: Any = 0  # the curve is dashed where it exceeds a limit of the model
 
 
 class Points(NamedTuple):
@@ -76,7 +80,7 @@ class Points(NamedTuple):
     y: Array
     label: str = ""
     error: Array | None = None  # standard errors
-    flags: Integers | None = None  # points that exceed a limit of the model are hollow
+    flags: Any = 0  # points that exceed a limit of the model are hollow
     curve: int | None = None  # number of the curve whose colour they have
 
 
@@ -88,14 +92,14 @@ class Figure:
     about: str  # bodies, law and what else is the same for all curves
     x: str  # a key of AXES
     y: str
-    curves: Sequence[Curve] = ()
+    curves: Sequence[Curve]  # of one abscissa
     points: Sequence[Points] = ()
     remarks: Sequence[str] = ()  # meaning of the band, and what else the figure does not show
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a whole file, in the format that its suffix names; matplotlib is loaded here."""
         parts: list[Curve | Points] = [*self.curves, *self.points]
-        x = np.concatenate([part.x[np.isfinite(part.x)] for part in parts])
+        x = self.curves[0].x[np.isfinite(self.curves[0].x)]
         y = np.concatenate([part.y for part in parts])
         labels = [part.label for part in parts if part.label]
         with style.applied():
@@ -113,8 +117,7 @@ class Figure:
                 axes.set(xscale="log")
                 width = math.log10(largest / least)
                 style.decades(axes.xaxis, (1.0,) if width > 4.0 else (1.0, 2.0, 5.0))
-            if self.curves:
-                axes.set_xlim(least, largest)
+            axes.set_xlim(least, largest)
             if len(labels) > _MOST_INSIDE:
                 figure.legend(loc="outside right center")
             elif len(labels) > 1:
@@ -133,51 +136,35 @@ class Figure:
     def _remarks(self) -> list[str]:
         """Sentences that say what the marks of the figure mean."""
         remarks = list(self.remarks)
-        if any(np.any(np.diff(one.overload > 1.0)) for one in self.curves if one.overload is not None):
-            remarks.append("Triangle: a body begins to yield")
-        if any(one.x[-1] == math.inf for one in self.curves):
+        if any(curve.x[-1] == math.inf for curve in self.curves):
             remarks.append("Thin line: half-space")
-        marks = dict[str, list[str]]()
-        for parts, mark in ((self.curves, "dashed"), (self.points, "hollow")):
-            flags = [np.bitwise_or.reduce(part.flags) for part in parts if part.flags is not None and part.flags.size]
-            exceeded = int(np.bitwise_or.reduce(flags or [0])) & Validity.ACCURACY
-            if exceeded:
-                marks.setdefault("; or ".join(limits_in_words(exceeded)), []).append(mark)
-        return [*remarks, *(f"{' and '.join(names).capitalize()}: {words}" for words, names in marks.items())]
+        parts: list[Curve | Points] = [*self.curves, *self.points]
+        flags = np.concatenate([np.ravel(part.flags) for part in parts])
+        if words := limits_in_words(int(np.bitwise_or.reduce(flags)) & Validity.ACCURACY):
+            remarks.append(f"{'Dashed or hollow' if self.points else 'Dashed'}: {'; or '.join(words)}")
+        return remarks
 
 
 def draw_curve(axes: Axes, curve: Curve, colour: Any, x_size: float, y_size: float) -> None:
-    """Draw a curve with its band, dashed beyond limits of the model, and the yield point."""
+    """Draw a curve with its band, dashed beyond limits of the model."""
     finite = np.isfinite(curve.x)
     x, y = curve.x[finite] / x_size, curve.y[finite] / y_size
     look = {"color": colour, "linewidth": 2.4}
     if curve.low is not None and curve.high is not None:
         low, high = curve.low[finite] / y_size, curve.high[finite] / y_size
         axes.fill_between(x, low, high, color=colour, alpha=0.22, linewidth=0.0)
-    flags = np.zeros(x.size, dtype=int) if curve.flags is None else curve.flags[finite] & Validity.ACCURACY
-    outside = flags != 0
-    axes.plot(x, np.where(outside, np.nan, y), label=curve.label or None, **look)
-    if outside.any():
-        # Dashes go to the points beside those outside, because otherwise there is a gap.
-        beside = np.convolve(outside, [1, 1, 1], "same") > 0
-        axes.plot(x, np.where(beside, y, np.nan), linestyle=(0, (3.2, 1.4)), **look)
+    inside = np.where(curve.flags & Validity.ACCURACY, np.nan, curve.y)[finite] / y_size
+    axes.plot(x, y, linestyle=(0, (3.2, 1.4)), **look)
+    axes.plot(x, inside, label=curve.label or None, **look)  # over the dashes
     if not finite.all():
         axes.axhline(curve.y[-1] / y_size, color=colour, linewidth=1.0)
-    if curve.overload is not None:
-        beyond = curve.overload[finite]
-        for n in np.flatnonzero(np.diff(beyond > 1.0)):
-            share = (1.0 - beyond[n]) / (beyond[n + 1] - beyond[n])
-            at = (part[n] + share * (part[n + 1] - part[n]) for part in (x, y))
-            axes.plot(*at, "v", color=colour, markersize=10, markeredgecolor="white", zorder=3)
 
 
 def draw_points(axes: Axes, points: Points, colour: Any, x_size: float, y_size: float) -> None:
     """Draw points with their standard errors; those beyond a limit of the model are hollow."""
-    flags = np.zeros(points.x.size, dtype=int) if points.flags is None else points.flags
-    inside, label = (flags & Validity.ACCURACY) == 0, points.label or None
-    for part, face in ((inside, colour), (~inside, "white")):
-        if part.any():
-            error = None if points.error is None else points.error[part] / y_size
-            look = {"fmt": "o", "color": colour, "markersize": 7, "markerfacecolor": face, "capsize": 3}
-            axes.errorbar(points.x[part] / x_size, points.y[part] / y_size, error, label=label, **look)
-            label = None
+    x, y = points.x / x_size, points.y / y_size
+    inside = np.where(points.flags & Validity.ACCURACY, np.nan, y)
+    error = None if points.error is None else points.error / y_size
+    look = {"color": colour, "markersize": 7}
+    axes.errorbar(x, y, error, fmt="o", markerfacecolor="white", capsize=3, **look)
+    axes.plot(x, inside, "o", label=points.label or None, zorder=3.0, **look)  # over the hollow ones

@@ -1,4 +1,4 @@
-"""Materials on the command line: a name, or numbers of one's own."""
+"""Materials on the command line and in heads of files: a name, or numbers of one's own."""
 
 import dataclasses
 import difflib
@@ -8,22 +8,7 @@ from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
-from contactlaw.physical.materials import SHORT, WRITE_LOSS, Material, UnknownMaterialError, find, number_of
-
-_NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
-
-
-_TEXTS = "kind", "name"
-_FIELDS = SHORT | {name: name for name in ("hardness", *_TEXTS)}
-
-# Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
-_BARE = re.compile(r"[\d.eE+-]+")
-_LIKELY = {
-    "E": (1e6, "Pa; MPa or GPa"),
-    "rho": (20.0, "kg/m3; g/cm3"),
-    "yield": (1e4, "Pa; MPa"),
-    "hardness": (1e6, "Pa; HRC, HV or HB"),
-}
+from contactlaw.physical.materials import SHORT, Material, find, spelled_out
 
 
 def unknown(name: str, known: Iterable[str]) -> str:
@@ -39,42 +24,47 @@ def unknown(name: str, known: Iterable[str]) -> str:
     return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"
 
 
-def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
-    """Material of an option: a name of the catalogue or of the user's own, numbers, or a name and what differs."""
+def check_keys(keys: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse a key that is not among those known."""
+    for key in {*keys} - {*known}:
+        raise ValueError(unknown(key, known))
+
+
+def material_of(option: str, value: Any, own: Mapping[str, Material]) -> Material:
+    """Material of an option or of a key in a head.
+
+    It is the name of one of the catalogue or of the user's own, numbers, or a name and what
+    differs; in a head also a table of numbers, with what they are `like`. Numbers that are replaced
+    lose their errors.
+    """
     try:
-        if "=" not in text:
-            return find(text, own)
-        given: dict[str, object] = {}
-        first = re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;")
-        for key, word in _NUMBER.findall(text):
-            if key == "loss_factor":
-                raise ValueError(f"loss_factor has a frequency, too: {WRITE_LOSS}")
-            if key not in _FIELDS:
-                raise ValueError(unknown(key, _FIELDS))
-            field = _FIELDS[key]
-            if field in given:
-                raise ValueError(f"{text!r} has {key} twice: leave one out")
-            given[field] = found = word if key in _TEXTS else number_of(field, word)
-            least, likely = _LIKELY.get(key, (0.0, ""))
-            if isinstance(found, float) and found < least and _BARE.fullmatch(word):
-                wording.print_warning(f"{key}={word} is {word} {likely}?")
-        if first:
-            try:
-                return changed(find(first, own), given)
-            except UnknownMaterialError:
-                raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_FIELDS)}") from None
-        if missing := [key for key in ("E", "nu", "rho") if _FIELDS[key] not in given]:
-            raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
-        return Material(**{"name": text} | given)  # type: ignore[arg-type]
+        table = _words(value) if isinstance(value, str) and "=" in value else value
+        if not isinstance(table, dict):
+            return find(table, own)
+        check_keys(table, [*SHORT, "like", *(field.name for field in dataclasses.fields(Material))])
+        numbers = spelled_out(table)
+        like = numbers.pop("like", "")
+        if not like:
+            if missing := {"youngs_modulus", "poissons_ratio", "density"} - numbers.keys():
+                raise ValueError(f"{value!r} lacks {' and '.join(sorted(missing))}, as in {wording.OWN}")
+            return Material(**{"name": value if isinstance(value, str) else option} | numbers)
+        body = find(like, own)
+        if "hardness" in numbers and body.hardening is None:  # it replaces the yield strength
+            numbers = {"yield_strength": None} | numbers
+        if "yield_strength" in numbers:
+            numbers = {"specified_minimum": False} | numbers
+        errors = {key: error for key, error in body.uncertainty.items() if key not in numbers}
+        return dataclasses.replace(body, **numbers | {"uncertainty": errors | numbers.get("uncertainty", {})})
     except ValueError as error:
         raise ArgumentError(option, None, wording.sentence(error, {})) from error
 
 
-def changed(body: Material, given: dict[str, Any]) -> Material:
-    """Body with other numbers, whose errors are those given; a hardness replaces its yield strength."""
-    if "hardness" in given and body.hardening is None:
-        given = {"yield_strength": None} | given
-    if "yield_strength" in given:
-        given = {"specified_minimum": False} | given
-    errors = {key: error for key, error in body.uncertainty.items() if key not in given}
-    return dataclasses.replace(body, **given | {"uncertainty": errors | given.get("uncertainty", {})})
+def _words(text: str) -> dict[str, Any]:
+    """Numbers of a text, and what they are `like`: the words before the first."""
+    if bare := re.search(r"\b((?:E|yield|hardness)\s*=\s*\d{1,6}\.?\d*)\s*(?=$|[,;]|\w+\s*=)", text):
+        raise ValueError(f"{bare[1]} has no unit, as in {wording.OWN}")
+    words = re.findall(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)", text)
+    table = dict(words)
+    if len(table) < len(words):
+        raise ValueError(f"{text!r} has a key twice: leave one out")
+    return {"like": re.split(r"\w+\s*=", text)[0].strip(" \t\n,;")} | table

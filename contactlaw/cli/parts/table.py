@@ -51,6 +51,7 @@ class Table:
     flags: Integers | None = None  # limits of the model that each row exceeds
     counts: Mapping[Validity, int] | None = None  # impacts that exceed each, if a row has several
     total: int = 0  # impacts of these counts
+    width: int = WIDTH  # of its sentences; less in comments of another program
 
     def __len__(self) -> int:
         """Count the rows."""
@@ -62,19 +63,17 @@ class Table:
         The last columns are left out if they do not fit into the width of a terminal.
         """
         shown = [column for column in self.columns if column.title]
-        alike = [column for column in shown if column.is_input and len({*self._cells(column)}) == 1]
-        named = (f"{column.title} {self._alike(column)}" for column in alike)
-        title = ", ".join([*([in_words(self.asked)] if self.asked else []), *named])
-        if title:
-            yield from wrapped(title)
+        alike = [column for column in shown if column.is_input and np.unique(self.values[column.name]).size == 1]
+        named = (f"{c.title} {in_unit(self.values[c.name][0], c.unit)}".rstrip() for c in alike)
+        yield from wrapped(", ".join([*filter(None, [in_words(self.asked)]), *named]), "", self.width)
         cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
         letters = self._letters()
-        marks = ["".join(mark for flag, (mark, _) in letters.items() if row & flag) for row in self._row_flags()]
+        marks = ["".join(mark for mark, flag, _ in letters if row & flag) for row in self._row_flags()]
         last = [["flags", "", *marks]] * any(marks)
         left_out = list[str]()
-        while max(map(len, aligned([*cells.values(), *last]))) > WIDTH and len(cells) > 1:
+        while max(map(len, lines := aligned([*cells.values(), *last]))) > WIDTH and len(cells) > 1:
             left_out.insert(0, cells.popitem()[0])
-        yield from aligned([*cells.values(), *last])
+        yield from lines
         remarks = [*self.remarks()]
         if left_out:
             remarks += wrapped(f"CSV has more columns than fit here: {', '.join(left_out)}.")
@@ -82,14 +81,14 @@ class Table:
 
     def remarks(self) -> Iterator[str]:
         """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
-        for flag, (mark, count) in self._letters().items():
+        for mark, flag, count in self._letters():
             (words,) = explain(flag)
-            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ")
+            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ", self.width)
 
-    def _letters(self) -> dict[Validity, tuple[str, int]]:
+    def _letters(self) -> list[tuple[str, Validity, int]]:
         """Letter of each flag, and its number of impacts."""
         counts = self.counts or count_flags(np.array(self._row_flags(), dtype=int))
-        return {flag: (mark, counts[flag]) for mark, flag in zip(string.ascii_lowercase, counts, strict=False)}
+        return [(mark, *flag) for mark, flag in zip(string.ascii_lowercase, counts.items(), strict=False)]
 
     def _row_flags(self) -> list[int]:
         flags: list[int] = [0] * len(self) if self.flags is None else self.flags.tolist()
@@ -98,22 +97,17 @@ class Table:
     def write_csv(self, out: TextIO, head: bool = True) -> None:
         """Write rows with every digit, below a line of names with SI units."""
         writer = csv.writer(out, lineterminator="\n")
-        last = [] if self.flags is None else ["flags"]
         if head:
+            last = [] if self.flags is None else ["flags"]
             writer.writerow([*(column.head for column in self.columns), *self.asked, *last])
-        repeated = [cell(value) for value in self.asked.values()]
-        for row, flags in self._rows():
-            texts = (cell("" if value is None else value) for value in row.values())
-            writer.writerow([*texts, *repeated, *["|".join(flags)] * len(last)])
+        for row in self._rows():
+            writer.writerow(cell("|".join(value) if isinstance(value, list) else value) for value in row.values())
 
     def records(self) -> list[dict[str, Any]]:
         """Rows for JSON, which has no inf."""
-        last = [] if self.flags is None else ["flags"]
         return [
             {name: None if value in (math.inf, -math.inf) else value for name, value in row.items()}
-            | {**self.asked}
-            | dict.fromkeys(last, flags)
-            for row, flags in self._rows()
+            for row in self._rows()
         ]
 
     def write(self, out: TextIO, form: str = "text") -> None:
@@ -126,38 +120,32 @@ class Table:
         else:
             print(*self.text(), sep="\n", file=out)
 
-    def _rows(self) -> Iterator[tuple[dict[str, Any], list[str]]]:
-        """Values of each row by name, None for one that is not known, and the names of its flags."""
+    def _rows(self) -> Iterator[dict[str, Any]]:
+        """Values of each row by name, None for one that is not known, what was asked, and the names of flags."""
         names = [column.name for column in self.columns]
         values = zip(*(np.asarray(self.values[name]).tolist() for name in names), strict=True)
         for row, flag in zip(values, self._row_flags(), strict=True):
             known = (None if isinstance(value, float) and math.isnan(value) else value for value in row)
-            yield dict(zip(names, known, strict=True)), flag_names(flag)
-
-    def _alike(self, column: Column) -> str:
-        value = next(self._cells(column._replace(digits="")))
-        return value if value == "inf" or column.shown == "-" else f"{value} {column.shown}"
+            flags = {} if self.flags is None else {"flags": flag_names(flag)}
+            yield dict(zip(names, known, strict=True)) | {**self.asked} | flags
 
     def _cells(self, column: Column) -> Iterator[str]:
-        values = np.asarray(self.values[column.name])
-        if values.dtype.kind not in "iuf":
-            return map(str, values.tolist())
-        if not column.to:
-            return (
-                "-" if math.isnan(value) else f"{value:{column.digits or '.4g'}}" for value in values * column.scale
-            )
-        ends = zip(values * column.scale, self.values[column.to] * column.scale, strict=True)
-        return (_range(low, high, column.digits or ".3g") for low, high in ends)
+        ends = [np.asarray(self.values[name]) for name in (column.name, column.to) if name]
+        if ends[0].dtype.kind not in "iuf":
+            return map(str, ends[0].tolist())
+        digits = column.digits or (".3g" if column.to else ".4g")
+        rows = zip(*(end * column.scale for end in ends), strict=True)
+        return (_joined(["" if math.isnan(number) else f"{number:{digits}}" for number in row]) for row in rows)
 
 
-def _range(low: float, high: float, digits: str) -> str:
-    """Write a range, one end of which may be NaN: not known."""
-    if math.isnan(low):
-        return "-" if math.isnan(high) else f"<{high:{digits}}"
-    return f">{low:{digits}}" if math.isnan(high) else f"{low:{digits}}-{high:{digits}}"
+def _joined(texts: list[str]) -> str:
+    """Write a number, or both ends of a range; one that is not known is empty."""
+    if any(texts) and not all(texts):
+        return f">{texts[0]}" if texts[0] else f"<{texts[1]}"
+    return "-".join(texts) or "-"
 
 
-def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
+def aligned(columns: Sequence[Sequence[str]]) -> list[str]:
     """Pad columns to equal width; numbers and their heads end, and texts begin, at one place.
 
     Examples
@@ -170,14 +158,15 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
     """
     padded = []
     for column in columns:
-        width, is_text = max(map(len, column)), column[1] == ""  # a column of texts has no unit
-        padded.append([text.ljust(width) if is_text else text.rjust(width) for text in column])
-    yield from filter(None, ("  ".join(row).rstrip() for row in zip(*padded, strict=True)))  # units may be missing
+        width, pad = max(map(len, column)), str.rjust if column[1] else str.ljust  # a column of texts has no unit
+        padded.append([pad(text, width) for text in column])
+    lines = ("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+    return [*filter(None, lines)]  # units may be missing
 
 
-def wrapped(text: str, indent: str = "") -> list[str]:
+def wrapped(text: str, indent: str = "", width: int = WIDTH) -> list[str]:
     """Break a text into lines for a terminal; lines after the first are indented."""
-    return textwrap.wrap(text, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return textwrap.wrap(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def in_words(asked: Mapping[str, Any]) -> str:
@@ -188,15 +177,12 @@ def in_words(asked: Mapping[str, Any]) -> str:
     >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
     'glass on pom, law fem, radius 1 mm'
     """
-    sphere, plate, law, *sizes = asked.items()
-    words = (f"{name.replace('_', ' ')} {size}" for name, size in (_sized(*size) for size in sizes))
-    return line(", ".join([f"{sphere[1]} on {plate[1]}, law {law[1]}", *words]))
-
-
-def _sized(name: str, size: float) -> tuple[str, str]:
-    """Name and size of an argument; its SI unit follows an underscore in its key."""
-    bare, _, unit = name.rpartition("_")
-    return bare, in_unit(size, unit)
+    if not asked:
+        return ""
+    sphere, plate, law, *sizes = asked.values()
+    parts = zip((key.split("_") for key in [*asked][3:]), sizes, strict=True)  # the unit follows the name
+    words = [f"{name} {in_unit(size, unit)}" for (name, unit), size in parts]
+    return line(", ".join([f"{sphere} on {plate}, law {law}", *words]))
 
 
 def flag_names(flags: int) -> list[str]:

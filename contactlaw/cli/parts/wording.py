@@ -26,6 +26,7 @@ _OTHER_NAMES = {
     "path": "plot",
     "priors": "prior",
     "restitution": "cor",
+    "slowest": "speed",
     "stiffness": "foundation",
 }  # arguments whose options have other names
 _NEAREST = 4  # names that are suggested in place of an unknown one

@@ -28,28 +28,34 @@ Materials
 Handlers of the user
     Handlers for `bead_type` and `plate_type`, for any type (``None``) and for other types are
     called as before. A ``pre_solve`` may change the engine's friction, or switch a contact off so
-    that it is no impact. The restitution is the model's, as is friction on a plate with
-    ``friction=``: a handler that sets it is an error.
+    that it is no impact. The restitution is the model's: a handler that sets it is an error. On a
+    plate with ``friction=`` the friction is the model's, too: leave ``arbiter.friction`` alone
+    there. Contacts of two plates are the user's.
 Strangers
     A bead that hits a shape nobody registered stops dead unless both have an elasticity or a
     handler sets a restitution. The first time, a warning names the shape. Only shapes of the
-    collision type 0, and of types for which there are handlers, are watched.
+    collision type 0 are watched.
 Time
     The time in the record is the sum of all steps since `attach`, including that of the impact.
 Errors
     ``space.step`` raises an error of a callback after the step: the engine has finished that step,
-    with restitution 0 in the contact that failed, and may be stepped on. Tunnelling and numbers
+    with restitution 0 in the contact that failed, and may be stepped on. That holds for handlers
+    that were set after `attach`. pymunk prints the errors of earlier ones. It also prints a Ctrl-C
+    that comes while it prepares a callback, and goes on: press it again. Tunnelling and numbers
     that are not finite are found before the step, and the space and the clock are unchanged.
     Copying or pickling the space is refused until ``detach``.
 Settings
-    A step is safe while the largest speed times dt is below the smallest bead radius. Keep 10
-    iterations or more where several beads touch. ``collision_slop`` is a length, 0.1 by default: a
-    value above a tenth of a bead's radius is lowered to that until ``detach``, because beads that
-    come to rest stay in each other by that length. With a thousand falling beads pymunk's default
-    tree takes 0.5 to 6 ms a step, ``space.use_spatial_hash`` (cells of some radii) 0.14 ms.
+    A step is safe while the largest speed times dt is below the smallest bead radius. In longer
+    steps the adapter looks for plates on the path of each fast bead, and refuses the step where it
+    finds one. Keep 10 iterations or more where several beads touch. ``collision_slop`` is a length,
+    0.1 by default: a value above a tenth of a bead's radius is lowered to that until ``detach``,
+    because beads that come to rest stay in each other by that length. With a thousand falling beads
+    pymunk's default tree takes 0.5 to 6 ms a step, ``space.use_spatial_hash`` (cells of some radii)
+    0.14 ms.
 What pymunk cannot express
-    The simulation is two-dimensional and has no force history. A bead in a corner hits both plates,
-    and each row of the record is about one of them. A step's gravity has no part in a rebound.
+    The simulation is two-dimensional and has no force history. A circle of a rigid body with other
+    shapes is no bead. A bead in a corner hits both plates, and each row of the record is about one
+    of them. A step's gravity has no part in a rebound.
     Beads that jump over each other are not detected. Gravity by a ``velocity_func`` does not count
     in the speed of resting contacts, nor motion by a ``position_func`` in the search for
     tunnelling. Plates that overlap, or meet elsewhere than at their ends, are hit separately.

@@ -1,57 +1,43 @@
-"""Edges of plates: how far from the nearest one an impact is, along plates that continue."""
+"""Edges of plates, and plates that share ends: the distance of an impact from an edge, and which plate it hits."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import knows
-from contactlaw.engines.pymunk.models import KnownEdge, ModelsByBead
-from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
-from contactlaw.engines.pymunk.seams import SAME_END, place
+from contactlaw.engines.pymunk.models import ModelsByBead
+from contactlaw.engines.pymunk.record import FAR, KnownEdge
+from contactlaw.engines.pymunk.registry import Edges, PlateShape, Side, Vector, ends, may_meet
 from contactlaw.physical.impacts import check_kind
+from contactlaw.walls.edges import SMOOTH
 
-# Plates that meet at a smaller angle than 30 degrees are one plate; a sharper fold holds both.
-SMOOTH = math.cos(math.radians(30.0))
+if TYPE_CHECKING:
+    import pymunk
+
+# Ends closer than this are one end [m]: far below any bead's size, far above a drawing's rounding.
+SAME_END = 1e-7
+# A bead touches a plate's end if the end is farther than the plate's nearest point by at most this
+# share of the bead's radius; the distances have rounding errors of 1e-13 of the radius.
+AT_END = 1e-9
 # No wave comes back from more than this many thicknesses within a contact.
 FARTHEST = 1000.0
 
 
-class Side(NamedTuple):
-    """A straight piece of a plate, in coordinates of its body [m]."""
-
-    start: Vector
-    along: Vector  # of length 1, from the start
-    length: float
-    edges: tuple[KnownEdge, KnownEdge]  # beyond the start and the end; the distances are from there
-
-
-class PlateEdges:
-    """Sides of the plates of a space; each is measured at the first impact."""
-
-    def __init__(self) -> None:
-        self._sides: dict[int, list[Side]] = {}  # by index of the plate
-
-    def forget(self) -> None:
-        """Measure again, because plates have come or gone."""
-        self._sides.clear()
-
-    def near(self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float) -> KnownEdge | None:
-        """Kind of the nearest edge and its distance [m]; None if it is too far to matter."""
-        sides = self._sides.get(plate.index)
-        if sides is None:
-            sides = self._sides[plate.index] = _sides(plate)
-        u, v = plate.mount.local(*at)
-        least, found = math.inf, ("", math.inf)
-        for (u0, v0), (du, dv), length, (before, after) in sides:
-            s = min(max((u - u0) * du + (v - v0) * dv, 0.0), length)
-            off = math.hypot(u - u0 - s * du, v - v0 - s * dv)
-            if off < least:
-                least, one, other = off, before[1] + s, after[1] + length - s
-                found = (before[0], one) if one <= other else (after[0], other)
-        reach = plate.models.reach(bead.kind, plate.thickness, speed)
-        return found if found[1] < reach else None
+def near(plate: PlateShape, at: Vector) -> KnownEdge:
+    """Kind of the nearest edge and its distance [m]."""
+    plate.sides = plate.sides or _sides(plate)
+    u, v = plate.mount.local(*at)
+    least, nearest = math.inf, FAR
+    for (u0, v0), (du, dv), length, (before, after) in plate.sides:
+        s = min(max((u - u0) * du + (v - v0) * dv, 0.0), length)
+        off = math.hypot(u - u0 - s * du, v - v0 - s * dv)
+        if off < least:
+            least, start, end = off, before[1] + s, after[1] + length - s
+            nearest = (before[0], start) if start <= end else (after[0], end)
+    return nearest
 
 
 def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) -> Edges | None:
@@ -86,7 +72,7 @@ def _beyond(plate: PlateShape, came: int, corner: int) -> KnownEdge:
 
     The way to it comes to the corner from another one, and goes on where plates turn least.
     """
-    distance, seen, limit = 0.0, set(), FARTHEST * plate.thickness
+    distance, seen, limit = 0.0, set(), FARTHEST * plate.wall
     while (plate.index, came, corner) not in seen and distance <= limit:
         seen.add((plate.index, came, corner))
         corners = _corners(plate)
@@ -120,3 +106,56 @@ def _direction(one: Vector, other: Vector) -> tuple[Vector, float]:
     """Vector of length 1 from one point to another, and their distance."""
     length = math.dist(one, other)
     return ((other[0] - one[0]) / length, (other[1] - one[1]) / length), length
+
+
+def join(plates: Iterable[PlateShape]) -> None:
+    """Find the ends that plates on the same rigid body share, after plates have come or gone."""
+    from scipy.spatial import KDTree
+
+    places, owners = [], []
+    for plate in plates:
+        plate.joints, plate.sides = [], []
+        shape: Any = plate.shape()
+        for end in ends(shape) if shape is not None and shape.body is not None else ():
+            rigid, (x, y) = place(end, shape.body)
+            if math.isfinite(x) and math.isfinite(y):
+                places.append((rigid, x, y))
+                owners.append((plate, end))
+    for i, j in KDTree(places).query_pairs(SAME_END) if places else ():
+        (one, end), (two, its_end) = owners[i], owners[j]
+        if one is not two:
+            one.joints.append((*end, two))
+            two.joints.append((*its_end, one))
+
+
+def belongs_to_neighbour(radius: float, plate: PlateShape, circle: Any, shape: Any, x: float, y: float) -> bool:
+    """Whether a contact of a bead at x, y belongs to another plate that shares the touched end.
+
+    It belongs to the nearest plate, and of equally near plates to the one registered first.
+    """
+    u, v = plate.mount.local(x, y)
+    reach = radius + shape.radius
+    mine = math.inf
+    for end_u, end_v, other in plate.joints:
+        away = math.hypot(u - end_u, v - end_v)
+        if away > reach:
+            continue
+        if mine == math.inf:
+            mine = shape.point_query((x, y)).distance
+        if away - shape.radius > mine + AT_END * radius:
+            continue  # the bead touches the side of this plate, not the end
+        there = other.shape()
+        if there is not None and may_meet(circle, there):
+            its = there.point_query((x, y)).distance
+            if (its, other.index) < (mine, plate.index):
+                return True
+    return False
+
+
+def place(end: pymunk.Vec2d, body: pymunk.Body) -> tuple[int, Vector]:
+    """Rigid body of an end, and its coordinates there; all static bodies count as one."""
+    import pymunk
+
+    if body.body_type == pymunk.Body.STATIC:
+        return -1, body.local_to_world(end)
+    return body.id, end

@@ -2,49 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from contactlaw._errors import ArgumentError
-from contactlaw.equation.tangential import POINT
-from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
-
-# Sliding speed afterwards by normal and sliding speed before [m/s]
-Slide = Callable[[float, float], float]
 
 SOLID = 2.0 / 5.0  # moment of inertia of a solid sphere over m R^2
 SAME_MOMENT = 1e-3
 # Coulomb's limit, which the model's answer has in it, is this many times looser for the engine. Its
 # normal impulse has a step's gravity in it, which is half of the slowest impact's.
 LOOSE = 2.0
-
-
-def slide_of(model: Any, radius: float, thickness: Any, friction: float) -> Slide:
-    """Sliding speed after impacts of beads of a radius [m] on a plate of a thickness [m].
-
-    One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
-    impacts that it does not know, ``oblique`` answers, or says what is wrong.
-    """
-    try:
-        collide: Any = getattr(model, "collide_kernel", None) if sheet_of(thickness) is thickness else None
-    except RuntimeError:  # numba is switched off
-        collide = None
-    rest, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-
-    def slide(speed: float, sliding_speed: float) -> float:
-        if collide is not None:
-            before = (sliding_speed, 0.0, -speed)
-            (centre, _, _), _ = collide(before, rest, up, radius, thickness, friction, rest)
-            if centre == centre:
-                return sliding_speed - POINT * (sliding_speed - float(centre))
-        found = model.oblique(speed, sliding_speed, radius, thickness, friction)
-        return float(found.sliding_speed)
-
-    return slide
 
 
 def check_moment(body: Any, radius: float) -> None:
@@ -72,39 +41,15 @@ def sliding(arbiter: pymunk.Arbiter) -> float:
     return float(nx * (vy - uy) - ny * (vx - ux))
 
 
-def belt(arbiter: pymunk.Arbiter, nx: float, ny: float) -> float:
+def belt(arbiter: pymunk.Arbiter, normal: tuple[float, float]) -> float:
     """Sliding speed that the ``surface_velocity`` of the shapes takes away [m/s]."""
-    x, y = arbiter.surface_velocity
+    (nx, ny), (x, y) = normal, arbiter.surface_velocity
     return float(nx * y - ny * x)
 
 
-class Rubbing(NamedTuple):
-    """An impact whose sliding the engine decides, so that it is known after the step."""
-
-    body: Any  # of the bead
-    shapes: tuple[Any, Any]  # the bead, and what it hits
-    before: float  # sliding speed before [m/s]
-    belt: float  # [m/s]
-    mass: float  # of the bead in the record [kg]
-    normal: tuple[float, float] | None = None  # of a rigid body: speed of approach [m/s] and COR
-
-    def outcome(self) -> tuple[float, float, float]:
-        """Sliding speed [m/s], spin [rad/s], and work of friction over the bead's mass [m2/s2].
-
-        The first is below 0 if it has turned round. Where the bead or what it hit has left the
-        space within the step, the speed and the work are NaN.
-        """
-        body, found = self.body, [(math.nan, math.nan, math.nan)]
-
-        def look(arbiter: pymunk.Arbiter) -> None:
-            if arbiter.shapes == self.shapes:  # those of this body come first
-                (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse
-                found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx, abs(nx * jx + ny * jy)))
-
-        body.each_arbiter(look)
-        after, impulse, push = found[-1]
-        work = -impulse * (self.before + after) / 2.0 / self.mass
-        if self.normal:  # friction changes the normal impulse, of which the record takes m (1 + e) u
-            u, e = self.normal
-            work += 0.5 * (1.0 - e) * u * (push / self.mass - (1.0 + e) * u)
-        return math.copysign(1.0, self.before) * after, body.angular_velocity, work
+def pushed(body: Any, at: tuple[float, float], impulse: tuple[float, float]) -> tuple[float, float]:
+    """Change of the velocity [m/s] of a point [m] of a body that an impulse [N s] there makes."""
+    (hub_x, hub_y), (jx, jy) = body.local_to_world(body.center_of_gravity), impulse
+    x, y = at[0] - hub_x, at[1] - hub_y
+    spin = (x * jy - y * jx) / body.moment
+    return jx / body.mass - y * spin, jy / body.mass + x * spin

@@ -5,16 +5,12 @@ from __future__ import annotations
 import importlib.metadata
 import math
 import os
-import sys
-import threading
 import warnings
-from collections import Counter
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
-from weakref import KeyedRef, ref
+from weakref import WeakKeyDictionary, WeakValueDictionary, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,24 +18,24 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import RestitutionModel, knows
 from contactlaw.engines.pymunk.contacts import Contacts
-from contactlaw.engines.pymunk.edges import edges_of
+from contactlaw.engines.pymunk.edges import edges_of, join
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models, plate_of
+from contactlaw.engines.pymunk.models import Models, materials_of
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
+    MARK,
     BeadKind,
     BeadShape,
     Mount,
     PlateShape,
     body_of,
+    check_alone,
     check_mass,
-    check_solid,
     ends,
-    friction_of,
+    forget,
     radius_of,
 )
-from contactlaw.engines.pymunk.seams import Seams
 from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.physical.plates import Foundation, Shell, check_wall, sheet_of
 from contactlaw.physical.scaling import swing_of
@@ -75,18 +71,17 @@ class PymunkImpacts:
         self._space = space
         self._models = models
         self._contacts = Contacts()
-        self._bodies: dict[int, list[BeadShape]] = {}  # by id of the body
-        self._mounts: dict[int, Mount] = {}  # by id of a body with plates
-        self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
-        self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
         self._asked = 0.0  # time at which loads were asked [s]
-        self._seams = Seams()
-        self._attached = True
-        self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
+        self._attached, self._warned = True, False  # the latter of a shape that is not registered
+        # Shapes keep their beads and plates alive, and bodies their mounts.
+        self._beads: WeakValueDictionary[int, BeadShape] = WeakValueDictionary()  # by id of the body
+        self._plates: WeakValueDictionary[int, PlateShape] = WeakValueDictionary()  # by index
+        self._kinds: WeakValueDictionary[tuple[float, int], BeadKind] = WeakValueDictionary()
+        self._mounts: WeakKeyDictionary[pymunk.Body, Mount] = WeakKeyDictionary()
+        self._joined = True  # whether the plates know which ends they share
+        self._lookahead = LookAhead(space, self._beads, self._plates, self._mounts)
         self._slop = space.collision_slop
-        # Bounded: a thousand different beads make half a million pairs.
-        self._sphere_curve = lru_cache(maxsize=65536)(models.sphere_curve)
         self._replaced = vars(space).get("step")
         self._engine_step = space.step
         vars(space)["step"] = self._step
@@ -110,10 +105,7 @@ class PymunkImpacts:
         circle : pymunk.Circle
             A circle of collision type 0, centred on a dynamic body of its own. The body's mass
             should be the sphere's, ``4/3 pi radius**3 density`` [kg]; a warning says if it is not.
-            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction. A
-            circle of a body that has others, or with an offset, is a part of a rigid body: the mass
-            that answers on plates is the body's, from its mass and moment, friction on plates the
-            engine's, and beads are met as by a sphere alone.
+            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction.
         material : Material or str, optional
             Material of spheres in one of the attached models; by default that of the first model.
 
@@ -125,9 +117,9 @@ class PymunkImpacts:
         Raises
         ------
         TypeError, ValueError, RuntimeError
-            If the circle is no such circle, is registered already, or has a radius above 1 m, as
-            in pixels; if no attached model is for the material; if a plate with friction is there
-            and the moment is not a sphere's; after `detach`.
+            If the circle is no such circle, is a part of a rigid body, is registered already, or
+            has a radius above 1 m, as in pixels; if no attached model is for the material; after
+            `detach`.
 
         Examples
         --------
@@ -161,40 +153,21 @@ class PymunkImpacts:
         """
         import pymunk
 
-        body = self._admit(circle, [pymunk.Circle], self.bead_type)
+        body = self._admit(circle, (pymunk.Circle,))
         radius, number = radius_of(circle), self._models.bead(material)
         if body.body_type != pymunk.Body.DYNAMIC:
             raise ArgumentError("circle.body", body, "a bead needs a dynamic body")
-        of_body = len([shape for shape in body.shapes if not shape.sensor]) > 1 or circle.offset != (0, 0)
-        if not of_body and body.center_of_gravity != (0, 0):
-            reason = "a bead needs it at (0, 0)"
-            raise ArgumentError("circle.body.center_of_gravity", body.center_of_gravity, reason)
-        alone = [str(bead) for bead in self._bodies.get(body.id, []) if not bead.of_body]
-        if alone:
-            reason = f"carries {alone[0]} already, a sphere; of a rigid body make all circles before the first add_bead"
-            raise ArgumentError("circle.body", None, reason)
-        for known in self._models.all if of_body else ():
-            if not knows(known, "solve"):
-                raise TypeError(f"circle: a part of a rigid body, and {known!r} knows no mass; give an ImpactModel")
+        check_alone(circle, body)
         warn_of_metres("radius", radius, stacklevel=2)
-        if not of_body:
-            check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
-            plates = self._contacts.plates.values()
-            check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
-        key, kind = id(circle), (radius, number)
-        noted = self._gone.append
-        shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
-        index = self._register.bead(number, radius)
-        bead = BeadShape(index, shape, owner, body.id, radius, kind, of_body, self._sphere_curve)
-        self._contacts.beads[key] = bead
-        self._bodies.setdefault(body.id, []).append(bead)
-        if of_body:
-            self._lookahead.of_bodies.append(bead)
-        self._kinds[kind] += 1
+        check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        kind = self._kinds.setdefault((radius, number), BeadKind(radius, number))
+        bead = BeadShape(self._register.bead(number, radius), ref(circle), kind, self._models)
+        setattr(circle, MARK, bead)
+        self._beads[body.id] = bead
         circle.collision_type = self.bead_type
         self._lookahead.reach = min(self._lookahead.reach, radius)
         self._space.collision_slop = min(self._space.collision_slop, 0.1 * radius)
-        return index
+        return bead.index
 
     def add_plate(
         self,
@@ -243,11 +216,13 @@ class PymunkImpacts:
         """
         import pymunk
 
-        body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
+        body = self._admit(shape, (pymunk.Segment, pymunk.Poly))
         wall, thickness = thickness, float(scalars(thickness=sheet_of(thickness))[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
-        if len(set(ends(shape))) < 2:
-            reason = f"has no length, all of it is at {tuple(ends(shape)[0])}"
+        friction = friction if friction is None else float(scalars(friction=friction)[0][0])
+        corners = ends(shape)
+        if len(set(corners)) < 2:
+            reason = f"has no length, all of it is at {tuple(corners[0])}"
             raise ArgumentError("shape", None, reason)
         if model is not None and material is not None:
             reason = "a plate with a model of its own has that one's material"
@@ -258,23 +233,21 @@ class PymunkImpacts:
             if sheet_of(wall) is not wall:
                 if not knows(one, "pair", "oblique"):
                     raise TypeError(f"thickness: {one!r} knows no plate that swings back; give an ImpactModel")
-                wall = wall if swing_of(plate_of(one), wall)[1] else sheet_of(wall)
-        if friction is not None:
-            friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
-        edges = edges_of(edge, chosen, len(ends(shape)), thickness)
-        key = id(shape)
-        index = self._register.plate(chosen, wall)
-        mount = self._mounts.get(id(body))
-        if mount is None or mount.body() is not body:
-            mount = self._mounts[id(body)] = Mount(id(body), ref(body))
-        noted = KeyedRef(shape, self._gone.append, key)
+                wall = wall if swing_of(materials_of(one)[1], wall)[1] else sheet_of(wall)
+            if friction is not None and not knows(one, "oblique"):
+                raise TypeError(
+                    f"friction: {one!r} knows none, it has no oblique(); leave friction=None, which is pymunk's own, "
+                    "or give an ImpactModel"
+                )
+        edges = edges_of(edge, chosen, len(corners), thickness)
+        mount = self._mounts.setdefault(body, Mount(ref(body)))
+        mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
         swings = thickness if sheet_of(wall) is wall else wall
-        plate = PlateShape(index, noted, mount, thickness, swings, chosen, friction, edges)
-        mount.plates[index] = plate
+        index = self._register.plate(chosen, wall)
+        plate = PlateShape(index, ref(shape, self._part), mount, swings, chosen, friction, edges)
+        setattr(shape, MARK, plate)
+        self._plates[index], self._joined = plate, False
         self._contacts.borne.extend([0.0] * NUMBERS)
-        self._contacts.plates[key] = plate
-        self._seams.join(plate, shape, body)
-        self._contacts.edges.forget()
         shape.collision_type = self.plate_type
         return index
 
@@ -289,10 +262,9 @@ class PymunkImpacts:
         circle : pymunk.Circle
             Circle that `add_bead` was given, else a ValueError; it stays in the space if there.
         """
-        if id(circle) not in self._contacts.beads:
+        if circle.collision_type != self.bead_type:
             raise ArgumentError("circle", None, f"{circle!r} is no bead of this attachment")
-        self._forget_bead(id(circle))
-        circle.collision_type = 0
+        forget(circle)
 
     def remove_plate(self, shape: pymunk.Segment | pymunk.Poly) -> None:
         """Forget a plate, as `remove_bead` forgets a bead.
@@ -302,10 +274,10 @@ class PymunkImpacts:
         shape : pymunk.Segment or pymunk.Poly
             Shape that `add_plate` was given, else a ValueError; it stays in the space if there.
         """
-        if id(shape) not in self._contacts.plates:
+        if shape.collision_type != self.plate_type:
             raise ArgumentError("shape", None, f"{shape!r} is no plate of this attachment")
-        self._forget_plate(id(shape))
-        shape.collision_type = 0
+        forget(shape)
+        self._part(shape)
 
     def beads(self) -> NDArray[np.void]:
         """All beads that were ever registered, by their index in the record.
@@ -388,18 +360,16 @@ class PymunkImpacts:
         state = vars(self._space)
         if not self._attached:
             return
-        if state.get("step") != self._step:
-            raise RuntimeError("space.step has been replaced since attach(); undo that first")
-        if self._handlers.replaced():
-            raise RuntimeError("space.on_collision has been replaced since attach(); undo that first")
+        for name, own in (("step", self._step), ("on_collision", self._handlers.on_collision)):
+            if state.get(name) != own:
+                raise RuntimeError(f"space.{name} has been replaced since attach(); undo that first")
         self._handlers.detach()
         del state["step"]
         if self._replaced:
             state["step"] = self._replaced
-        beads, plates = self._contacts.beads.values(), self._contacts.plates.values()
-        for shape in [bead.shape() for bead in beads] + [plate.shape() for plate in plates]:
-            if shape is not None:
-                shape.collision_type = 0
+        registered: list[BeadShape | PlateShape] = [*self._beads.values(), *self._plates.values()]
+        for shape in filter(None, [one.shape() for one in registered]):
+            forget(shape)
         self._space.collision_slop = self._slop
         self._attached = False
 
@@ -408,88 +378,29 @@ class PymunkImpacts:
             "a space with an impact model cannot be copied or pickled: detach() first, and attach to the copy"
         )
 
-    def _admit(self, shape: Any, kinds: Sequence[type], collision_type: int) -> pymunk.Body:
-        self._clean()
+    def _admit(self, shape: Any, kinds: tuple[type, ...]) -> Any:
         if not self._attached:
             raise RuntimeError("this attachment is detached: call attach(space, model) again")
-        if id(shape) in self._contacts.beads or id(shape) in self._contacts.plates:
-            raise ValueError(f"{shape!r} is registered already")
-        return body_of(shape, kinds, self._space, collision_type)
+        return body_of(shape, kinds, self._space, (self.bead_type, self.plate_type))
 
-    def _clean(self) -> None:
-        """Forget beads and plates whose shape or body no longer exists.
-
-        Their ids, Python's and pymunk's, may be given to new shapes and bodies.
-        """
-        while self._gone:
-            gone = self._gone.pop()
-            key = gone.key
-            bead, plate = self._contacts.beads.get(key), self._contacts.plates.get(key)
-            if bead is not None and (gone is bead.shape or gone is bead.body):
-                self._forget_bead(key)
-            elif plate is not None and gone is plate.shape:
-                self._forget_plate(key)
-
-    def _forget_plate(self, key: int) -> None:
-        plate = self._contacts.plates.pop(key)
-        self._seams.part(plate)
-        self._contacts.edges.forget()
-        mount = plate.mount
-        del mount.plates[plate.index]
-        if not mount.plates and self._mounts.get(mount.key) is mount:
-            del self._mounts[mount.key]
-
-    def _forget_bead(self, key: int) -> None:
-        bead = self._contacts.beads.pop(key)
-        self._bodies[bead.body_id].remove(bead)
-        if not self._bodies[bead.body_id]:
-            del self._bodies[bead.body_id]
-        if bead.of_body:
-            self._lookahead.of_bodies.remove(bead)
-        self._kinds[bead.kind] -= 1
-        if not self._kinds[bead.kind]:
-            del self._kinds[bead.kind]
-            for plate in self._contacts.plates.values():
-                plate.curves.pop(bead.kind, None)
-                plate.slides.pop(bead.kind, None)
-            if bead.radius == self._lookahead.reach:
-                self._lookahead.reach = min((r for r, _ in self._kinds), default=math.inf)
+    def _part(self, shape: Any) -> None:
+        """Let the others find their shared ends again, because a plate has gone."""
+        self._joined = False
 
     def _step(self, dt: float) -> None:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
             raise ArgumentError("dt", dt, "must be positive and finite [s]")
-        self._contacts.error = None
-        self._clean()
-        self._handlers.check()
+        if not self._joined:
+            join(self._plates.values())
+            self._joined = True
         self._lookahead.check(dt, self._contacts.time)
         self._contacts.begin(dt, self._space.gravity, self._lookahead.reach)
-        # cffi passes exceptions in callbacks to this hook: those of the user's own handlers, and a
-        # Ctrl-C, which usually arrives in pymunk's Python code around a callback and not in ours.
-        # It is set in the main thread only, because that gets the signals and the hook is global.
-        if threading.current_thread() is threading.main_thread():
-            self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
-            try:
-                self._advance(dt)
-            finally:
-                sys.unraisablehook = self._hook
-        else:
-            self._advance(dt)
+        self._engine_step(dt)
+        self._contacts.end()
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
-        stranger, self._contacts.stranger = self._contacts.stranger, None
-        if stranger is not None:
-            self._handlers.ignore_strangers()
-            warnings.warn(stranger, stacklevel=2)
-
-    def _advance(self, dt: float) -> None:
-        self._engine_step(dt)
-        self._contacts.end()
-
-    def _unraisable(self, report: sys.UnraisableHookArgs) -> None:
-        here = threading.current_thread() is threading.main_thread()
-        if here and report.exc_value and "cffi callback" in (report.err_msg or ""):
-            self._contacts.keep(report.exc_value)
-        else:
-            self._hook(report)
+        if self._contacts.stranger and not self._warned:
+            self._warned = True
+            warnings.warn(self._contacts.stranger, stacklevel=2)

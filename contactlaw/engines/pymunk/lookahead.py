@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlaw.engines.pymunk.registry import BeadShape, Mount, PlateShape, ends, may_meet
+from contactlaw.engines.pymunk.registry import MARK, BeadShape, Mount, PlateShape
 
 if TYPE_CHECKING:
     import pymunk
-    import pymunk.batch
-
-    from contactlaw.engines.pymunk.registry import Face
-
-Array = NDArray[np.float64]
 
 
 class TunnellingError(RuntimeError):
@@ -53,138 +46,72 @@ class TunnellingError(RuntimeError):
         )
 
 
-class Line(NamedTuple):
-    """Centre line of a plate in the plane, and its rigid motion."""
-
-    start: tuple[float, float]  # ends [m]
-    end: tuple[float, float]
-    pivot: tuple[float, float]  # centre of rotation [m]
-    velocity: tuple[float, float]  # velocity of the pivot [m/s]
-    spin: float  # [rad/s]
-
-
 class LookAhead:
     """Checks of one space; the caller sets `reach`, the radius of the smallest bead [m]."""
 
     def __init__(
         self,
         space: pymunk.Space,
-        beads: dict[int, list[BeadShape]],
-        plates: dict[int, PlateShape],
-        mounts: dict[int, Mount],
+        beads: Mapping[int, BeadShape],
+        plates: Mapping[int, PlateShape],
+        mounts: Mapping[pymunk.Body, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 
         self.reach = math.inf
-        self.of_bodies: list[BeadShape] = []  # parts of bodies that are no spheres
-        self._space = space
-        self._beads = beads  # by id of the body
-        self._plates = plates
-        self._mounts = mounts
+        self._space, self._beads, self._plates, self._mounts = space, beads, plates, mounts
         self._buffer = Buffer()
-        self._motion = BodyFields.POSITION | BodyFields.VELOCITY
-        self._body_id = BodyFields.BODY_ID
+        self._fields = BodyFields.BODY_ID | BodyFields.POSITION | BodyFields.VELOCITY
 
     def check(self, dt: float, time: float) -> None:
         """Raise if the step from `time` on would lose an impact, or starts from a NaN."""
-        plate_speed = max((mount.watch(dt) for mount in self._mounts.values()), default=0.0)
-        plate_speed += max((bead.turning() for bead in self.of_bodies), default=0.0)
-        reach = self.reach - plate_speed * dt
-        self._read(self._motion)
-        motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
-        if not len(motion):
-            return
-        # No speed exceeds sqrt(2) times the largest component. With a NaN this is false.
-        if math.sqrt(2) * dt * max(motion.max(), -motion.min()) < reach:
-            return
-        travel = (np.hypot(motion[:, 2], motion[:, 3]) + plate_speed) * dt
-        finite = np.isfinite(motion)
-        if finite.all() and travel.max() < self.reach:
-            return
-        motion = motion.copy()  # the next line reuses the buffer
-        self._read(self._body_id)
-        ids = np.frombuffer(self._buffer.int_buf(), np.uintp).tolist()
-        for n in np.flatnonzero(~finite.all(axis=1)):
-            self._refuse(ids[n], motion[n])
-        fast = [n for n in np.flatnonzero(travel >= self.reach) if ids[n] in self._beads]
-        some = [(n, bead) for n in fast for bead in self._beads[ids[n]]]
-        found = motion[[n for n, _ in some]]
-        for row, (_, bead) in zip(found, some, strict=True):
-            if bead.of_body and (circle := bead.shape()) is not None:
-                row[:] = np.ravel(bead.at(circle))
-        if some:
-            self._cross([bead for _, bead in some], found, dt, time)
-
-    def _read(self, fields: pymunk.batch.BodyFields) -> None:
         from pymunk.batch import get_space_bodies
 
+        fastest = max((mount.watch(dt) for mount in self._mounts.values()), default=0.0)
+        reach = self.reach - fastest * dt
         self._buffer.clear()
-        get_space_bodies(self._space, fields, self._buffer)
-
-    def _refuse(self, key: int, motion: Array) -> None:
-        """Raise if a body whose position or velocity is not finite carries a bead or plate."""
-        names = []
-        for plate in self._plates.values():
-            shape = plate.shape()
-            if shape is not None and shape.body is not None and shape.body.id == key:
-                names.append(f"plate {plate.index}")
-        names += [f"bead {bead.index}" for bead in self._beads.get(key, [])]
-        if names:
-            x, y, vx, vy = motion.tolist()
-            raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")
-
-    def _cross(self, beads: list[BeadShape], motion: Array, dt: float, time: float) -> None:
-        """Raise if beads would cross plates, for the bead that needs the smallest step."""
-        found = []
-        for plate in self._plates.values():
-            shape = plate.shape()
-            if shape is None or shape.body is None or shape.space is not self._space:
-                continue
-            for line in _lines(shape, shape.body):
-                distance, speed = approach(motion[:, :2], motion[:, 2:], line, dt)
-                for n in np.flatnonzero(speed):
-                    circle = beads[n].shape()
-                    if circle is not None and may_meet(circle, shape):
-                        reach = beads[n].radius + shape.radius
-                        safe_step = min(reach, distance[n]) / speed[n]
-                        found.append((safe_step, beads[n].index, plate.index, speed[n]))
+        get_space_bodies(self._space, self._fields, self._buffer)
+        motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
+        # No speed exceeds sqrt(2) times the largest component. With a NaN this is false.
+        if not len(motion) or math.sqrt(2) * dt * max(motion.max(), -motion.min()) < reach:
+            return
+        if not np.isfinite(motion).all():
+            self._refuse()
+        found: list[TunnellingError] = []
+        speeds, ids = np.hypot(motion[:, 2], motion[:, 3]), np.frombuffer(self._buffer.int_buf(), np.uintp)
+        for n in np.flatnonzero(speeds * dt >= reach):
+            bead = self._beads.get(int(ids[n]))
+            if bead is not None:
+                found += self._crossed(bead, (speeds[n] + fastest) * dt, dt, time)
         if found:
-            safe_step, bead, plate_index, velocity = min(found)
-            raise TunnellingError(bead, plate_index, time + dt, float(velocity), float(safe_step))
+            raise min(found, key=lambda error: error.safe_step or 0.0)
 
+    def _refuse(self) -> None:
+        """Raise if the position or velocity of a bead or plate is not finite."""
+        owners: list[BeadShape | PlateShape] = [*self._beads.values(), *self._plates.values()]
+        for owner in owners:
+            shape = owner.shape()
+            if shape is not None and shape.space is self._space and shape.body is not None:
+                (x, y), (vx, vy) = shape.body.position, shape.body.velocity
+                if not math.isfinite(abs(x) + abs(y) + abs(vx) + abs(vy)):
+                    raise ValueError(f"{owner}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")
 
-def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
-    """Sides of a plate: one of a segment, of a polygon as many as it has corners."""
-    import pymunk
+    def _crossed(self, bead: BeadShape, far: float, dt: float, time: float) -> Iterator[TunnellingError]:
+        """Errors for the plates, up to a distance [m], through which the centre of a bead would pass."""
+        import pymunk
 
-    still = body.body_type == pymunk.Body.STATIC  # the engine never moves it, whatever its speed
-    pivot = body.local_to_world(body.center_of_gravity)
-    velocity, spin = ((0.0, 0.0), 0.0) if still else (body.velocity, body.angular_velocity)
-    corners = [body.local_to_world(end) for end in ends(shape)]
-    for start, end in pairwise(corners if len(corners) == 2 else [*corners, corners[0]]):
-        yield Line(start, end, pivot, velocity, spin)
-
-
-def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
-    """Distance and speed of beads that cross a plate's centre line within a step of length dt [s].
-
-    Positions [m] and the line are those at the start of the step, and so is the distance [m]. The
-    speed is the mean normal one in the step [m/s]; 0 for beads that do not cross the line between
-    its two ends.
-    """
-    (ax, ay), (bx, by), (px, py), (vx, vy), spin = line
-    length = math.hypot(bx - ax, by - ay)
-    tx, ty = (bx - ax) / length, (by - ay) / length
-    x, y = positions.T
-    before = tx * (y - ay) - ty * (x - ax)  # signed distance: positive on the left
-    # Seen from the plate only the bead moves: its end point with the plate's motion undone.
-    dx, dy = x + (velocities[:, 0] - vx) * dt - px, y + (velocities[:, 1] - vy) * dt - py
-    c, s = math.cos(spin * dt), math.sin(spin * dt)
-    end_x, end_y = px + c * dx + s * dy, py - s * dx + c * dy
-    after = tx * (end_y - ay) - ty * (end_x - ax)
-    crosses = (before != 0.0) & (before * after <= 0.0)
-    if crosses.any():
-        share = before / np.where(crosses, before - after, 1.0)
-        place = tx * (x + share * (end_x - x) - ax) + ty * (y + share * (end_y - y) - ay)
-        crosses &= (place >= 0.0) & (place <= length)
-    return np.abs(before), np.where(crosses, np.abs(before - after) / dt, 0.0)
+        circle: Any = bead.shape()
+        if circle is None or circle.space is None or circle.sensor:
+            return
+        start, radius = circle.body.position, bead.kind.radius
+        shape: Any
+        for shape in self._space.bb_query(pymunk.BB.newForCircle(start, far), circle.filter):
+            plate, velocity = getattr(shape, MARK, None), circle.body.velocity
+            if not isinstance(plate, PlateShape) or shape.sensor:
+                continue
+            if not plate.mount.static:
+                velocity -= shape.body.velocity_at_world_point(start)
+            hit = shape.segment_query(start, start + velocity * dt) if velocity.length * dt >= radius else None
+            if hit and hit.alpha:  # else it starts on the plate or in it
+                speed = abs(velocity.dot(hit.normal))
+                yield TunnellingError(bead.index, plate.index, time + dt, speed, min(radius / speed, hit.alpha * dt))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import cache, cached_property, lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -13,9 +13,9 @@ from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
+from contactlaw.equation.tangential import POINT
+from contactlaw.physical.plates import sheet_of
 from contactlaw.physical.rate import flow_with_rate
-
-KnownEdge = tuple[str, float]  # kind of an edge, and the distance from it [m]
 
 
 class ModelsByBead(dict[int, RestitutionModel]):
@@ -25,8 +25,6 @@ class ModelsByBead(dict[int, RestitutionModel]):
         super().__init__()
         self._spheres = spheres
         self.plate = _name(plate)
-        self._reaches: dict[tuple[float, ...], float] = {}
-        self._kernels: dict[tuple[int, str], Callable[..., float] | None] = {}
 
     def __missing__(self, number: int) -> NoReturn:
         """Raise for a pair of materials that no model is for."""
@@ -37,59 +35,66 @@ class ModelsByBead(dict[int, RestitutionModel]):
             "attach(space, [model, ...]) takes one for each pair of materials that meets",
         )
 
-    def reach(self, bead: tuple[float, int], thickness: float, speed: float) -> float:
-        """Distance [m] from which on edges do not matter; found once per doubling of the speed."""
-        (radius, number), octave = bead, math.frexp(speed)[1]
-        found = self._reaches.get((radius, number, thickness, octave))
-        if found is None:
-            model: Any = self[number]
-            # Slower impacts last longer, so the slowest of these speeds has the longest reach.
-            time = model.solve(math.ldexp(0.5, octave), radius, thickness).contact_time
-            found = float(edge_distance(model.pair.plate, thickness, time))
-            self._reaches[radius, number, thickness, octave] = found
-        return found
 
-    def near(self, bead: tuple[float, int], thickness: float, near: KnownEdge) -> CorBySpeed:
-        """COR by speed near an edge."""
-        (radius, number), (kind, distance) = bead, near
-        model: Any = self[number]
-        if (number, kind) not in self._kernels:
-            slow = model.force_law.yields and flow_with_rate(model.pair, model.force_law)
-            self._kernels[number, kind] = None if slow else model.edge_kernel(kind)
-        kernel = self._kernels[number, kind]
+class Answers:
+    """What a model answers for beads of a radius [m] on a plate: a thickness [m], or what swings back."""
 
-        def curve(speed: float) -> float:
-            cor = math.nan if kernel is None else kernel(speed, radius, thickness, distance)
-            # The kernel knows no rate of strain, and cannot say what is wrong with an impact.
-            if cor != cor:
-                return float(model.restitution(speed, radius, thickness, kind, distance))
-            return float(cor)
+    def __init__(self, model: Any, radius: float, wall: Any, friction: float | None) -> None:
+        self._model, self._radius, self._wall, self._friction = model, radius, wall, friction
+        # COR by speed far from edges
+        self.cor: CorBySpeed = model.curve(radius, wall) if sheet_of(wall) is wall else self._swinging
+        self._reach, self._kernel, self._octave = cache(self._reach_of), cache(self._kernel_of), cache(self._corners)
 
-        return curve
+    def _swinging(self, speed: float) -> float:
+        try:
+            return float(np.interp(speed, *self._octave(math.frexp(speed)[1])))
+        except ValueError:  # some of the speeds are refused, perhaps this one
+            return float(self._model.restitution(speed, self._radius, self._wall))
 
-    def swinging(self, bead: tuple[float, int], wall: Any) -> CorBySpeed:
-        """COR by speed on a plate that swings back, from 33 impacts in each doubling of the speed."""
-        radius, number = bead
-        model: Any = self[number]
+    def _corners(self, octave: int) -> Any:
+        """Compute 33 CORs in a doubling of the speed [m/s]."""
+        speeds = np.ldexp(np.linspace(0.5, 1.0, 33), octave)
+        return speeds, self._model.restitution(speeds, self._radius, self._wall)
 
-        @functools.cache
-        def octave(n: int) -> Any:
-            speeds = np.ldexp(np.linspace(0.5, 1.0, 33), n)
-            return speeds, model.restitution(speeds, radius, wall)
+    def reach(self, speed: float) -> float:
+        """Distance [m] from which on edges do not matter."""
+        return self._reach(math.frexp(speed)[1])
 
-        def curve(speed: float) -> float:
-            try:
-                return float(np.interp(speed, *octave(math.frexp(speed)[1])))
-            except ValueError:  # some of the speeds are refused, perhaps this one
-                return float(model.restitution(speed, radius, wall))
+    def _reach_of(self, octave: int) -> float:
+        # Slower impacts last longer, so the slowest of these speeds has the longest reach.
+        time = self._model.solve(math.ldexp(0.5, octave), self._radius, self._wall).contact_time
+        return float(edge_distance(self._model.pair.plate, self._wall, time))
 
-        return curve
+    def near(self, speed: float, kind: str, distance: float) -> float:
+        """COR at a distance [m] from an edge."""
+        kernel = self._kernel(kind)
+        cor = math.nan if kernel is None else kernel(speed, self._radius, self._wall, distance)
+        # The kernel knows no rate of strain, and cannot say what is wrong with an impact.
+        return float(self._model.restitution(speed, self._radius, self._wall, kind, distance) if cor != cor else cor)
 
-    def of_body(self, bead: tuple[float, int], thickness: Any, near: KnownEdge | None, mass: float) -> CorBySpeed:
-        """COR by speed of a point of a rigid body that answers as this mass [kg], perhaps near an edge."""
-        (radius, number), edge = bead, near or ()
-        model: Any = self[number]
-        return lambda speed: float(model.restitution(speed, radius, thickness, *edge, mass=mass))
+    def _kernel_of(self, kind: str) -> Any:
+        law = self._model.force_law
+        return None if law.yields and flow_with_rate(self._model.pair, law) else self._model.edge_kernel(kind)
+
+    def slide(self, speed: float, sliding_speed: float) -> float:
+        """Sliding speed afterwards [m/s].
+
+        One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
+        impacts that it does not know, ``oblique`` answers, or says what is wrong.
+        """
+        if self._collide is not None:
+            before, rest, up = (sliding_speed, 0.0, -speed), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+            (centre, _, _), _ = self._collide(before, rest, up, self._radius, self._wall, self._friction, rest)
+            if centre == centre:
+                return sliding_speed - POINT * (sliding_speed - float(centre))
+        return float(self._model.oblique(speed, sliding_speed, self._radius, self._wall, self._friction).sliding_speed)
+
+    @cached_property
+    def _collide(self) -> Any:
+        try:
+            return getattr(self._model, "collide_kernel", None) if sheet_of(self._wall) is self._wall else None
+        except RuntimeError:  # numba is switched off
+            return None
 
 
 class Models:
@@ -97,11 +102,12 @@ class Models:
 
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
+        # Bounded: a thousand different beads make half a million pairs.
+        self.sphere_curve = lru_cache(maxsize=65536)(self._sphere_curve)
         self.spheres: list[Any] = []
         self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
-        seen: list[tuple[Any, Any]] = []
         for model in self.all:
-            pair = sphere_of(model), plate_of(model)
+            sphere, plate = pair = materials_of(model)
             if len(self.all) > 1 and None in pair:
                 raise ArgumentError(
                     "model",
@@ -109,41 +115,44 @@ class Models:
                     f"several are told apart by their pairs, but {model!r} has none; give it one "
                     "(an attribute `pair`, a contactlaw.Pair), or attach it alone",
                 )
-            if pair in seen:
-                names = f"{_name(pair[0])} on {_name(pair[1])}"
-                raise ArgumentError("model", None, f"two are for {names}; give one for each pair")
-            seen.append(pair)
-            if pair[0] not in self.spheres:
-                self.spheres.append(pair[0])
-            number = self.spheres.index(pair[0])
-            models = next((own for plate, own in self._plates if plate == pair[1]), None)
+            if sphere not in self.spheres:
+                self.spheres.append(sphere)
+            models = next((models for known, models in self._plates if known == plate), None)
             if models is None:
-                models = ModelsByBead(self.spheres, pair[1])
-                self._plates.append((pair[1], models))
+                models = ModelsByBead(self.spheres, plate)
+                self._plates.append((plate, models))
+            number = self.spheres.index(sphere)
+            if number in models:
+                reason = f"two are for {_name(sphere)} on {_name(plate)}; give one for each pair"
+                raise ArgumentError("model", None, reason)
             models[number] = model
 
     def bead(self, material: Material | str | None) -> int:
         """Return the number of a bead's material, by default that of the first model."""
-        if material is None:
-            return 0
-        for number, sphere in enumerate(self.spheres):
-            if _is(material, sphere):
-                return number
-        raise self._missing("spheres", material, self.spheres)
+        return self._number("spheres", material, self.spheres)
 
     def plate(self, material: Material | str | None) -> ModelsByBead:
         """Models for a plate of a material, by default that of the first model."""
-        for plate, models in self._plates:
-            if material is None or _is(material, plate):
-                return models
-        raise self._missing("plates", material, [plate for plate, _ in self._plates])
+        return self._plates[self._number("plates", material, [plate for plate, _ in self._plates])][1]
+
+    def _number(self, kind: str, material: Material | str | None, known: list[Any]) -> int:
+        for number, one in enumerate(known):
+            if material is None or _is(material, one):
+                return number
+        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
+        raise ArgumentError(
+            "material",
+            None,
+            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
+            "attach(space, [model, ...]) takes one for each pair of materials",
+        )
 
     def own_models(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ModelsByBead:
         """Models of a plate that was given its own."""
         models = _listed(given)
-        found = ModelsByBead(self.spheres, plate_of(models[0]))
+        found = ModelsByBead(self.spheres, materials_of(models[0])[1])
         for model in models:
-            sphere = sphere_of(model)
+            sphere, _ = materials_of(model)
             known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
             if not known:
                 names = ", ".join(_name(s) for s in self.spheres)
@@ -155,13 +164,13 @@ class Models:
     def of_bead(self, number: int) -> RestitutionModel:
         """First model for beads of a material, which answers where they meet other beads."""
         sphere = self.spheres[number]
-        return next(model for model in self.all if sphere_of(model) == sphere)
+        return next(model for model in self.all if materials_of(model)[0] == sphere)
 
     def extra_arguments(self, number: int, other: int) -> tuple[Any, ...]:
         """Further argument of that model's methods: the other bead's material if it differs."""
         return () if number == other else (self.spheres[other],)
 
-    def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
+    def _sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
         """Restitution by speed of two beads, each of a radius [m] and a material."""
         (radius, number), (other_radius, other) = one, two
         model: Any = self.of_bead(number)
@@ -180,24 +189,11 @@ class Models:
         """Names of the bead materials, "" for a model without a pair."""
         return [_name(sphere) for sphere in self.spheres]
 
-    def _missing(self, kind: str, material: Any, known: list[Any]) -> ValueError:
-        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
-        return ArgumentError(
-            "material",
-            None,
-            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
-            "attach(space, [model, ...]) takes one for each pair of materials",
-        )
 
-
-def sphere_of(model: RestitutionModel) -> Any:
-    """Material of a model's beads, None if it has no pair."""
-    return getattr(getattr(model, "pair", None), "sphere", None)
-
-
-def plate_of(model: RestitutionModel) -> Any:
-    """Material of a model's plates, None if it has no pair."""
-    return getattr(getattr(model, "pair", None), "plate", None)
+def materials_of(model: RestitutionModel) -> tuple[Any, Any]:
+    """Materials of a model's beads and plates, None if it has no pair."""
+    pair = getattr(model, "pair", None)
+    return getattr(pair, "sphere", None), getattr(pair, "plate", None)
 
 
 def _listed(given: Any) -> list[RestitutionModel]:

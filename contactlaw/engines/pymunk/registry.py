@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 import warnings
 import weakref
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from contactlaw._errors import ArgumentError
-from contactlaw.engines.needs import CorBySpeed, knows
-from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
-from contactlaw.engines.pymunk.models import ModelsByBead
+from contactlaw.engines.needs import CorBySpeed
+from contactlaw.engines.pymunk.models import Answers, Models, ModelsByBead
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
-from contactlaw.physical.plates import sheet_of
 
 if TYPE_CHECKING:
     import pymunk
@@ -24,189 +21,149 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 Edges = tuple[str | None, str | None]  # kinds of a plate's edges, at its start and its end
-BeadKind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
 # a shared end [m], in the body's coordinates, and the other plate
 Joint = tuple[float, float, "PlateShape"]
-# entry of `BeadShape.touched` for a plate that the bead has not touched
-NOT_TOUCHED = (-1, 0.0, 0.0)
-TOUCHED_KEPT = 8  # entries of `BeadShape.touched` beyond which old ones are deleted
+# Attribute of a registered shape with its `BeadShape` or `PlateShape`. The shape alone keeps them alive, because
+# otherwise all beads that have ever been in a space would stay in memory. pymunk copies no attributes with _.
+MARK = "_contactlaw"
 LARGEST = 1.0  # radius [m] of a boulder; a larger one was given in pixels
 # Allows for porosity and for a density that is not quite the material's. A disc, a mass of 1 or a
 # diameter taken for the radius are far outside.
 MASS_RATIO = 1.5
 
 
-# The attachment holds weak references to shapes and bodies, because otherwise all beads that have
-# ever been in a space would stay in memory.
-@dataclass(slots=True, eq=False)
+class BeadKind:
+    """Beads that rebound alike."""
+
+    def __init__(self, radius: float, material: int) -> None:
+        self.radius, self.material = radius, material  # [m]; number in the models
+        self.answers: dict[int, Answers] = {}  # by index of the plate
+
+
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class BeadShape:
     """A registered sphere, which hits plates and other spheres."""
 
     index: int
     shape: weakref.ref[pymunk.Circle]
-    body: weakref.ref[pymunk.Body]
-    body_id: int  # pymunk may give it to another body after this one
-    radius: float
     kind: BeadKind
-    of_body: bool  # whether it is a part of a body that is no sphere, see `at` and `answering`
-    # COR by speed of two beads, the smaller first
-    pair_curve: Callable[[BeadKind, BeadKind], CorBySpeed]
-    # by plate: the last step in which it touched, and the normal then
-    touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
-    # by plate: the last step in which a neighbour of the plate had the contact
-    ceded: dict[int, int] = field(default_factory=dict)
-    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `PlateShape`
+    models: Models
+    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Mount`
 
     def __str__(self) -> str:
         return f"bead {self.index}"
 
-    def at(self, circle: Any) -> tuple[Vector, Vector]:
-        """Place [m] and velocity [m/s] of the bead's centre."""
-        body = circle.body
-        if not self.of_body:
-            return body.position, body.velocity
-        place = body.local_to_world(circle.offset)
-        return place, body.velocity_at_world_point(place)
+    def velocity_at(self, circle: Any, at: Vector, normal: Vector) -> Vector:
+        """Velocity of its surface [m/s] where a bead with this normal touches it."""
+        (ux, uy), (nx, ny), speed = circle.body.velocity, normal, self.kind.radius * circle.body.angular_velocity
+        return ux + speed * ny, uy - speed * nx
 
-    def answering(self, body: Any, x: float, y: float, nx: float, ny: float) -> float:
-        """Mass [kg] of its body that answers at a point to a force along n."""
-        u, v = body.local_to_world(body.center_of_gravity)
-        across = (x - u) * ny - (y - v) * nx
-        mass: float = 1.0 / (1.0 / body.mass + across * across / body.moment)
-        return mass
-
-    def turning(self) -> float:
-        """Speed of its centre in a body that turns [m/s]."""
-        circle, body = self.shape(), self.body()
-        if circle is None or body is None:
-            return 0.0
-        return float(abs(body.angular_velocity) * (circle.offset - body.center_of_gravity).length)
-
-    def curve(self, bead: BeadShape, shape: pymunk.Circle) -> CorBySpeed:
+    def curve(self, bead: BeadShape) -> CorBySpeed:
         """COR by speed of a bead on this one."""
-        if shape.radius != self.radius:
-            raise changed(self, shape)
-        return self.pair_curve(*sorted((bead.kind, self.kind)))
+        return self.models.sphere_curve(*sorted((kind.radius, kind.material) for kind in (bead.kind, self.kind)))
+
+    def check(self, circle: pymunk.Circle) -> None:
+        """Refuse a circle that is no longer what was registered."""
+        if circle.radius != self.kind.radius:
+            raise ArgumentError(
+                "radius",
+                None,
+                f"{self} was registered with {self.kind.radius!r} m and has {circle.radius!r} m now; "
+                "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
+                "mass that belongs to the radius",
+            )
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class PlateShape:
-    """A registered plate, and its state from step to step."""
+    """A registered plate."""
 
     index: int
     shape: weakref.ref[Face]
     mount: Mount
-    thickness: float
-    wall: Any  # the thickness, or what swings back
+    wall: Any  # the thickness [m], or what swings back
     models: ModelsByBead
     friction: float | None = None  # None: the engine's own
     edge: Edges | None = None  # None: endless
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
-    curves: dict[BeadKind, CorBySpeed] = field(default_factory=dict)
-    slides: dict[BeadKind, Slide] = field(default_factory=dict)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
-    change: float = 0.0  # change of that velocity in the last step [m/s]
-    shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
+    sides: list[Side] = field(default_factory=list)  # measured at the first impact
 
     def __str__(self) -> str:
         return f"plate {self.index}"
 
-    def curve(self, bead: BeadShape, shape: pymunk.Shape) -> CorBySpeed:
-        """COR by speed of beads of this kind; made once."""
-        curve = self.curves.get(bead.kind)
-        if curve is None:
-            radius, material = bead.kind
-            curve = self.models[material].curve(radius, self.thickness)
-            if sheet_of(self.wall) is not self.wall:
-                curve = self.models.swinging(bead.kind, self.wall)
-            self.curves[bead.kind] = curve
-        return curve
+    @property
+    def shake(self) -> float:
+        """Change of its speed in each step [m/s]."""
+        return self.mount.shake
 
-    def slide(self, bead: BeadShape) -> Slide:
-        """Sliding speed after impacts of beads of this kind on a plate with friction; made once."""
-        slide = self.slides.get(bead.kind)
-        if slide is None:
-            radius, material = bead.kind
-            model: Any = self.models[material]
-            slide = slide_of(model, radius, self.wall, self.friction or 0.0)
-            self.slides[bead.kind] = slide
-        return slide
+    def answers(self, bead: BeadShape) -> Answers:
+        """Answers for beads of this kind; made once."""
+        kind = bead.kind
+        if self.index not in kind.answers:
+            model = self.models[kind.material]
+            kind.answers[self.index] = Answers(model, kind.radius, self.wall, self.friction)
+        return kind.answers[self.index]
 
-    def velocity_at(self, shape: pymunk.Shape, x: float, y: float) -> Vector:
-        """Return the plate's velocity [m/s] at the point [m] where a bead touches it."""
-        mount = self.mount
-        if mount.still:
+    def curve(self, bead: BeadShape) -> CorBySpeed:
+        """COR by speed of a bead on this plate, far from its edges."""
+        return self.answers(bead).cor
+
+    def velocity_at(self, shape: Any, at: Vector, normal: Vector) -> Vector:
+        """Velocity of the plate [m/s] where a bead touches it."""
+        if self.mount.still:
             return 0.0, 0.0
-        body: Any = shape.body
-        if mount.still is None:
-            mount.still = not any(body.velocity) and not body.angular_velocity
-        velocity: Vector = body.velocity_at_world_point((x, y))
+        velocity: Vector = shape.body.velocity_at_world_point(at)
         return velocity
 
-    def passed(self, bead: BeadShape, nx: float, ny: float, step: int) -> bool:
-        """Whether a touching bead has been pressed through: its normal is reversed."""
-        last, old_nx, old_ny = bead.touched.get(self.index, NOT_TOUCHED)
-        if len(bead.touched) > TOUCHED_KEPT:
-            bead.touched = {n: seen for n, seen in bead.touched.items() if seen[0] >= step - 1}
-        bead.touched[self.index] = (step, nx, ny)
-        return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
-    def watch(self, body: pymunk.Body, dt: float) -> float:
-        """Update `shake` of a kinematic plate; return the speed of its fastest point [m/s]."""
-        import pymunk
+class Side(NamedTuple):
+    """A straight piece of a plate, in coordinates of its body [m]."""
 
-        shape = self.shape()
-        if shape is None:
-            return 0.0
-        (vx, vy), spin = body.velocity, body.angular_velocity
-        centre = body.center_of_gravity
-        extent = max((end - centre).length for end in ends(shape))
-        if body.body_type == pymunk.Body.KINEMATIC:  # a dynamic one is moved by the impacts
-            old_vx, old_vy, old_spin = self.velocity
-            turning = extent * (abs(spin - old_spin) + spin**2 * dt)
-            change = math.hypot(vx - old_vx, vy - old_vy) + turning
-            # The smaller change of two steps: a plate that jumps to its speed does not shake.
-            self.shake = min(change, self.change)
-            self.velocity, self.change = (vx, vy, spin), change
-        return math.hypot(vx, vy) + abs(spin) * extent
+    start: Vector
+    along: Vector  # of length 1, from the start
+    length: float
+    # Kinds of the edges beyond the start and the end, and how far from there they are.
+    edges: tuple[tuple[str, float], tuple[str, float]]
 
 
 @dataclass(slots=True, eq=False)
 class Mount:
-    """A rigid body that carries plates, with its pose in the present step."""
+    """A rigid body that carries plates, with its motion in the present step."""
 
-    key: int  # id of the body
     body: weakref.ref[pymunk.Body]
-    plates: dict[int, PlateShape] = field(default_factory=dict)
-    # Whether the body has no velocity; None for a static body, until that is looked up. To ask
-    # pymunk for the velocity of a point takes a tenth of the time of a collision.
-    still: bool | None = False
-    free: bool = False  # whether impacts move the body
-    frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of angle
+    extent: float = 0.0  # largest distance of a plate's corner from its centre of gravity [m]
+    # To ask pymunk for the velocity of a point takes a tenth of the time of a collision.
+    still: bool = True  # whether it has no velocity
+    static: bool = True  # whether the engine never moves it
+    free: bool = False  # whether impacts move it
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
+    change: float = 0.0  # change of that velocity in the last step [m/s]
+    shake: float = 0.0  # the change per step of a body that keeps changing, else about 0 [m/s]
 
     def watch(self, dt: float) -> float:
         """Prepare for a step; return the speed of the fastest point of its plates [m/s]."""
         import pymunk
 
-        body = self.body()
-        self.frame = None
-        if body is None or body.body_type == pymunk.Body.STATIC:
-            if self.still is False:
-                for plate in self.plates.values():
-                    plate.shake = plate.change = 0.0
-            self.still, self.free = None, False
+        body: Any = self.body()
+        if body is None:
             return 0.0
-        self.still = False
-        self.free = body.body_type == pymunk.Body.DYNAMIC
-        return max((plate.watch(body, dt) for plate in self.plates.values()), default=0.0)
+        (vx, vy), spin = body.velocity, body.angular_velocity
+        self.still = not (vx or vy or spin)
+        self.static = body.body_type == pymunk.Body.STATIC
+        self.free = body.body_type == pymunk.Body.DYNAMIC  # its change is the impacts' work
+        old_vx, old_vy, old_spin = self.velocity
+        turning = self.extent * (abs(spin - old_spin) + spin**2 * dt)
+        change = 0.0 if self.static or self.free else math.hypot(vx - old_vx, vy - old_vy) + turning
+        # The smaller change of two steps: a plate that jumps to its speed does not shake.
+        self.shake = min(change, self.change)
+        self.velocity, self.change = (vx, vy, spin), change
+        return 0.0 if self.static else math.hypot(vx, vy) + abs(spin) * self.extent
 
     def local(self, x: float, y: float) -> Vector:
         """Point in coordinates of the body [m]."""
-        if self.frame is None:
-            body: Any = self.body()
-            self.frame = (*body.local_to_world((0.0, 0.0)), *body.rotation_vector)
-        u, v, c, s = self.frame
-        return c * (x - u) + s * (y - v), c * (y - v) - s * (x - u)
+        body: Any = self.body()
+        point: Vector = body.world_to_local((x, y))
+        return point
 
 
 def ends(shape: Face) -> list[pymunk.Vec2d]:
@@ -226,22 +183,23 @@ def may_meet(circle: pymunk.Circle, shape: pymunk.Shape) -> bool:
     return not (grouped or masked)
 
 
-def body_of(shape: Any, kinds: Sequence[type], space: pymunk.Space, collision_type: int) -> pymunk.Body:
+def body_of(shape: Any, kinds: tuple[type, ...], space: pymunk.Space, collision_types: tuple[int, int]) -> Any:
     """Body of a shape that may be registered."""
-    if not isinstance(shape, tuple(kinds)):
+    if not isinstance(shape, kinds):
         expected = " or ".join(f"pymunk.{kind.__name__}" for kind in kinds)
         raise TypeError(f"expected a {expected}, got {shape!r}")
     shape_of: Any = shape
-    body: pymunk.Body | None = shape_of.body
-    if body is None or shape_of.sensor:
+    if shape_of.collision_type in collision_types and hasattr(shape, MARK):
+        raise ValueError(f"{shape!r} is registered already")
+    if shape_of.body is None or shape_of.sensor:
         raise ValueError(f"{shape!r} has no body, or is a sensor: it would never rebound")
     if shape_of.space not in (None, space):
         raise ValueError(f"{shape!r} belongs to another space")
-    if shape_of.collision_type not in (0, collision_type):  # a copied shape has the adapter's type
+    if shape_of.collision_type not in (0, *collision_types):  # a copied shape has the adapter's type
         remedy = "leave it 0 and make handlers for impacts.bead_type and impacts.plate_type"
         reason = f"the attachment needs its own for {shape!r}; {remedy}"
         raise ArgumentError("collision_type", shape_of.collision_type, reason)
-    return body
+    return shape_of.body
 
 
 def radius_of(circle: pymunk.Circle) -> float:
@@ -257,15 +215,16 @@ def radius_of(circle: pymunk.Circle) -> float:
     return radius
 
 
-def changed(bead: BeadShape, circle: pymunk.Circle) -> ValueError:
-    """Make the error for a circle that is no longer what was registered."""
-    return ArgumentError(
-        "radius",
-        None,
-        f"{bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "
-        "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the "
-        "mass that belongs to the radius",
-    )
+def check_alone(circle: pymunk.Circle, body: pymunk.Body) -> None:
+    """Refuse a circle that is a part of a rigid body."""
+    solid = [shape for shape in body.shapes if not shape.sensor]
+    if len(solid) > 1 or any(circle.offset) or any(body.center_of_gravity):
+        raise ArgumentError(
+            "circle.body",
+            None,
+            "has other shapes, or its centre of gravity is not that of the circle; a bead is a single sphere: give "
+            "each circle a body of its own, or simulate clumps with LAMMPS's fix rigid/small",
+        )
 
 
 def check_mass(mass: float, radius: float, density: float | None, name: str) -> None:
@@ -282,29 +241,10 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
         )
 
 
-def check_solid(circle: Any, radius: float, rough: Iterable[Any]) -> None:
-    """Refuse a bead without a sphere's moment that may meet a plate with friction."""
-    try:
-        check_moment(circle.body, radius)
-    except ValueError:
-        if any(shape is not None and may_meet(circle, shape) for shape in rough):
-            raise
-
-
-def friction_of(friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]) -> float:
-    """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
-    friction = float(scalars(friction=friction)[0][0])
-    for model in models.values():
-        if not knows(model, "oblique"):
-            raise TypeError(
-                f"friction: {model!r} knows none, it has no oblique(); leave friction=None, which "
-                "is pymunk's own, or give an ImpactModel"
-            )
-    for bead in beads if friction else ():
-        circle = bead.shape()
-        if circle is not None:
-            check_solid(circle, bead.radius, [shape])
-    return friction
+def forget(shape: Any) -> None:
+    """Make a registered shape an ordinary one again."""
+    delattr(shape, MARK)
+    shape.collision_type = 0
 
 
 def unregistered(shape: Any) -> ValueError:

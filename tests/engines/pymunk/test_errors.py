@@ -1,16 +1,14 @@
 """Whatever goes wrong in a callback reaches the caller of `space.step`."""
 
 import math
-import signal
-import sys
+import re
 import threading
 from types import SimpleNamespace
 
+import pymunk
 import pymunk_room as room
 import pytest
-from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
-
-from contactlaw.engines.pymunk import attach
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead
 
 
 @pytest.mark.parametrize("error", [KeyError("x"), ZeroDivisionError(), KeyboardInterrupt()])
@@ -57,16 +55,18 @@ def test_the_first_of_several_errors_or_the_interrupt_is_raised(errors, raised):
 @pytest.mark.parametrize("answer", [math.nan, -0.1, 1.0001, math.inf])
 def test_bad_restitution_never_reaches_the_engine(answer):
     space, body, impacts = drop(Stub(answer), speed=2.0, gravity=0.0)
-    with pytest.raises(ValueError, match=rf"\[0, 1\].*{answer}.*bead 0 on plate 0 at 2 m/s"):
+    with pytest.raises(ValueError, match=rf"\[0, 1\].*{answer}") as caught:
         space.step(DT)
+    assert "bead 0 on plate 0 at 2 m/s" in caught.value.__notes__[0]
     assert body.velocity.y == pytest.approx(0.0, abs=EXACT)
     assert len(impacts.collisions()) == 0
 
 
 def test_bad_restitution_between_beads():
     space, _, _ = room.meet(Stub(math.nan))
-    with pytest.raises(ValueError, match=r"bead \d on bead \d at 2 m/s"):
+    with pytest.raises(ValueError) as caught:
         space.step(DT)
+    assert re.search(r"bead \d on bead \d at 2 m/s", caught.value.__notes__[0])
 
 
 def test_beads_meet_without_a_law_for_them():
@@ -91,62 +91,20 @@ def test_exception_in_a_worker_thread():
     assert len(caught) == 1
 
 
-def test_exception_in_a_handler_of_the_user():
+@pytest.mark.parametrize("phase", ["begin", "pre_solve", "post_solve", "separate"])
+@pytest.mark.parametrize("error", [LookupError("mine"), KeyboardInterrupt()])
+def test_exception_in_a_handler_of_the_user(phase, error):
     space, _, impacts = drop(Stub())
-    seen = sys.unraisablehook
 
-    def begin(arbiter, space, data):
-        raise LookupError("mine")
-
-    space.on_collision(impacts.bead_type, impacts.plate_type, begin=begin)
-    with pytest.raises(LookupError, match="mine"):
-        space.step(DT)
-    assert sys.unraisablehook is seen
-
-
-def test_exception_in_another_thread_is_left_alone(monkeypatch):
     def fail(arbiter, space, data):
-        raise LookupError("not ours")
+        raise error
 
-    other, _, elsewhere = drop(Stub())
-    elsewhere.detach()
-    other.on_collision(0, 0, pre_solve=fail)
-
-    def answer(speed):
-        thread = threading.Thread(target=other.step, args=(DT,))
-        thread.start()
-        thread.join()
-        return 0.5
-
-    reports = []
-    monkeypatch.setattr(sys, "unraisablehook", lambda report: reports.append(report.exc_value))
-    space, _, _ = drop(Stub(answer))
-    space.step(DT)
-    assert [type(error) for error in reports] == [LookupError]
-
-
-@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no interval timer here")
-def test_interrupt_is_never_lost():
-    """A signal arrives mostly between pymunk's C code and our callback, where cffi swallows it."""
-    space = make_space(0.0)
-    impacts = attach(space, Stub(0.0))
-    impacts.add_plate(make_plate(space), 1e-3)
-    for k in range(300):
-        impacts.add_bead(make_bead(space, (3 * k * R, 0.99 * R), (0, -1)))
-    space.step(1e-6)
-
-    def interrupt(number, frame):
-        raise KeyboardInterrupt
-
-    old = signal.signal(signal.SIGALRM, interrupt)
-    try:
-        for k in range(40):
-            with pytest.raises(KeyboardInterrupt):
-                signal.setitimer(signal.ITIMER_REAL, 1e-3 + 5e-5 * k)
-                room.steps(space, 1000, 1e-6)  # 2 ms each
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, old)
+    space.on_collision(impacts.bead_type, impacts.plate_type, **{phase: fail})
+    with pytest.raises(type(error)) as caught:
+        room.steps(space, 20)
+    assert caught.value is error
+    space.on_collision(impacts.bead_type, impacts.plate_type, **{phase: pymunk.empty_callback})
+    room.steps(space, 20)
 
 
 @pytest.mark.parametrize("dt", [0.0, -1e-4, math.nan, math.inf])

@@ -211,34 +211,13 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
     space = make_space(0.0)
     impacts = attach(space, model)
     plate, bead = make_plate(space), make_bead(space, (0, 1.02 * R), (1, -2))
-    right, wrong = bead.body.moment, moment * bead.body.mass * R**2
-    bead.body.moment = wrong
+    bead.body.moment = moment * bead.body.mass * R**2
     impacts.add_bead(bead)
-    with pytest.raises(ValueError, match=message):
-        impacts.add_plate(plate, H, friction=MU)
-    bead.filter = plate.filter = pymunk.ShapeFilter(group=1)
-    impacts.add_plate(plate, H, friction=MU)  # they never meet
-    impacts.remove_bead(bead)
-    bead.filter = pymunk.ShapeFilter()
-    with pytest.raises(ValueError, match=message):
-        impacts.add_bead(bead)
-    bead.body.moment = right
-    impacts.add_bead(bead)
-    bead.body.moment = wrong
+    impacts.add_plate(plate, H, friction=MU)
     with pytest.raises(ValueError, match=message) as caught:
         room.steps(space, 100, 1e-5)
-    assert "for bead 1 on plate 0" in caught.value.__notes__[0]
+    assert "for bead 0 on plate 0" in caught.value.__notes__[0]
     assert len(impacts.collisions()) == 0
-
-
-@pytest.mark.parametrize("late", [False, True])
-def test_a_friction_of_the_users_is_refused_where_the_model_answers(model, late):
-    space, _, _, impacts = scene(model)
-
-    kinds = (None, None) if late else (impacts.bead_type, impacts.plate_type)
-    space.on_collision(*kinds, pre_solve=room.setting(friction=0.25))
-    with pytest.raises(RuntimeError, match=r"arbiter.friction to 0.25 .*friction=\.\.\."):
-        space.step(DT)
 
 
 # --- the engine's friction, and the record --------------------------------------------------------
@@ -309,12 +288,9 @@ def test_a_second_impact_within_one_overlap_is_struck(model):
 # --- shapes that nobody registered ----------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", [0, 5])
-def test_a_shape_that_nobody_registered_is_told_once(kind):
+def test_a_shape_that_nobody_registered_is_told_once():
     space, bead, plate, impacts = scene(Stub(0.5), friction=None)
     impacts.remove_plate(plate)
-    plate.collision_type = kind
-    space.on_collision(5, 7)
     with pytest.warns(UserWarning, match=r"bead 0 hits a Segment .*nobody registered.*add_plate"):
         room.steps(space, 3)
     bead.position, bead.velocity = (0, 1.01 * R), (0, -2)

@@ -20,19 +20,10 @@ def key(request):
     return KEYS[request.param]
 
 
-def past_the_instance(space, *args, **kwargs):
-    pymunk.Space.on_collision(space, *args, **kwargs)
-
-
-def as_usual(space, *args, **kwargs):
-    space.on_collision(*args, **kwargs)
-
-
-@pytest.mark.parametrize("register", [as_usual, past_the_instance])
-def test_a_users_pre_solve_and_the_model_are_both_heard(key, register):
+def test_a_users_pre_solve_and_the_model_are_both_heard(key):
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
     seen = []
-    register(space, *key(impacts), pre_solve=lambda arbiter, space, data: seen.append(data), data="mine")
+    space.on_collision(*key(impacts), pre_solve=lambda arbiter, space, data: seen.append(data), data="mine")
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert impacts.collisions()["restitution"].tolist() == [0.6]
@@ -69,7 +60,7 @@ def test_a_handler_for_any_type_that_was_there_before():
     assert seen == [7]
     override.append(0.25)
     circle.body.velocity = (0, -2)
-    with pytest.raises(RuntimeError, match=r"\(None, None\).* 0.25"):
+    with pytest.raises(RuntimeError, match=r"restitution to 0.25 .* the model answers"):
         space.step(DT)
 
 
@@ -185,3 +176,20 @@ def test_detach_leaves_the_users_handlers(key):
     space.step(DT)
     assert seen == [3] and body.velocity.y == pytest.approx(2 * 0.25, abs=EXACT)
     assert len(impacts.collisions()) == 0
+
+
+@pytest.mark.parametrize(
+    ("values", "speed"),
+    [({"process_collision": False}, -1.0), ({"friction": 0.3}, 0.0), ({"restitution": 0.25}, 0.25)],
+    ids=str,
+)
+def test_contacts_of_two_plates_are_the_users(values, speed):
+    space, body = make_space(0.0), pymunk.Body(1e-3, 1e-6)
+    body.position, body.velocity = (0, 0.999 * R), (0, -1)
+    lid = pymunk.Poly.create_box(body, (4 * R, 2 * R))
+    space.add(body, lid)
+    impacts = room.registered(space, Stub(0.6), [], [make_plate(space), lid])
+    space.on_collision(None, None, pre_solve=room.setting(**values))
+    space.step(DT)
+    assert body.velocity.y == pytest.approx(speed, abs=0.01)  # it also turns
+    assert not len(impacts.collisions())

@@ -59,6 +59,21 @@ def test_a_fast_plate_is_reported(motion):
     assert caught.value.speed == pytest.approx(100.0, rel=1e-2)  # the arc against its chord
 
 
+@pytest.mark.parametrize("share", [0.45, 0.6])
+def test_what_bead_and_plate_travel_counts_together(share):
+    """They move towards each other, each by less than a radius, and a bit of overlap is left."""
+    space, speed = make_space(0.0), share * R / DT
+    body = room.moving_body(space, velocity=(0, speed))
+    bead = make_bead(space, (0, R), (0, -speed))
+    impacts = room.registered(space, Stub(), [bead], [make_plate(space, body=body)])
+    if share > 0.5:
+        with pytest.raises(TunnellingError):
+            space.step(DT)
+        return
+    space.step(DT)
+    assert len(impacts.collisions()) == 1
+
+
 def test_the_worst_of_several_is_named():
     space = make_space(0.0)
     impacts = attach(space, Stub())
@@ -70,7 +85,7 @@ def test_the_worst_of_several_is_named():
         space.step(DT)
     error = caught.value
     assert (error.bead, error.plate) == (1, 1)
-    assert error.safe_step == pytest.approx(2 * R / 90, rel=EXACT)  # the plate has a radius too
+    assert error.safe_step == pytest.approx(R / 90, rel=EXACT)
 
 
 def test_what_is_no_tunnelling():
