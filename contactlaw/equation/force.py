@@ -213,7 +213,7 @@ def _blended_loading(law: BlendedLaw, q: float) -> float:
 def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
-        return _blended_loading(law, q)
+        return float(_blended_loading(law, q))
     last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
     slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
     return float(last + slope * (q * q - law.end))

@@ -10,7 +10,7 @@ from oracle import ALL_LAWS
 
 import contactlaw as cl
 from contactlaw import laws, table
-from contactlaw.equation import outcome, zener
+from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.table import file, grid, lookup, splines, sweep
@@ -182,7 +182,7 @@ def test_impacts_that_turn_next_to_a_kink_are_found():
     law = with_strengths(pair, cl.ImpactModel(pair).force_law)
     lam, strength = np.geomspace(0.5, 6.0, 100), np.full(100, 0.087)
     elastic = grid.elastic_compressions(law, lam, strength)
-    found = np.log(grid._overloads(law, grid._end(law.at_any_strength, 0.087), lam, elastic, strength))
+    found = np.log(grid._overloads(law, force.at_strength(law.at_any_strength, 0.087).end, lam, elastic, strength))
     assert np.abs(np.diff(found, 3)).max() < 1e-5
 
 
