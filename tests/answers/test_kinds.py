@@ -33,7 +33,7 @@ def test_tables_are_certified(kind):
             errors = np.abs(ours - true) / np.maximum(np.abs(true), 1e-12)
             assert errors[clear].max() < most.get(field, 1e-3 if rated else 1e-5), field
     shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
-    assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-5)
+    assert shares == pytest.approx(1.0 - found.restitution**2, abs=2e-4 if rated else 1e-5)
     assert np.count_nonzero(found.flags != exact.flags) <= (2 if rated else 0)  # some lie on a limit
 
 
