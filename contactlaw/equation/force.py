@@ -222,7 +222,7 @@ def loading(law: BlendedLaw, q: float) -> float:
 @kernel(inline=True)
 def lossless(law: BlendedLaw) -> float:
     """Largest compression from which a contact unloads without a loss."""
-    return max(law.low[int(law.low[FAMILY_STARTS])], law.high[int(law.high[FAMILY_STARTS])])
+    return float(max(law.low[int(law.low[FAMILY_STARTS])], law.high[int(law.high[FAMILY_STARTS])]))
 
 
 @kernel(inline=True)
