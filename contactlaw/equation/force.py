@@ -213,7 +213,7 @@ def _blended_loading(law: BlendedLaw, q: float) -> float:
 def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
-        return _blended_loading(law, q)
+        return float(_blended_loading(law, q))
     last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
     slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
     return float(last + slope * (q * q - law.end))
@@ -222,7 +222,7 @@ def loading(law: BlendedLaw, q: float) -> float:
 @kernel(inline=True)
 def lossless(law: BlendedLaw) -> float:
     """Largest compression from which a contact unloads without a loss."""
-    return max(law.low[int(law.low[FAMILY_STARTS])], law.high[int(law.high[FAMILY_STARTS])])
+    return float(max(law.low[int(law.low[FAMILY_STARTS])], law.high[int(law.high[FAMILY_STARTS])]))
 
 
 @kernel(inline=True)
