@@ -70,10 +70,7 @@ FILES = {
     ),
 }
 FILES = {folder: names.split() for folder, names in FILES.items()}
-KERNELS = [
-    *(ROOT / "equation").glob("[a-z]*.py"),
-    *(ROOT / f"table/{name}.py" for name in ("lookup", "grid")),
-]
+KERNELS = [*(ROOT / "equation").glob("[a-z]*.py"), *(ROOT / f"table/{name}.py" for name in ("lookup", "grid"))]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # The size of each room, which may only fall. Of Python tokens count, without comments, docstrings and
 # line breaks, so that neither longer lines nor missing explanations save any. Other text of the

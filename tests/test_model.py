@@ -24,9 +24,7 @@ NOT_POSITIVE += [np.ma.masked_array([5.0, 6.0], mask=[0, 1])]
 
 @pytest.fixture(scope="module")
 def small_table():
-    return table.build(
-        laws.law("myc"), table.Settings(largest_inelasticity=1.0, largest_overload=5.0)
-    )
+    return table.build(laws.law("myc"), table.Settings(largest_inelasticity=1.0, largest_overload=5.0))
 
 
 def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
