@@ -199,14 +199,19 @@ def grid(law: Law, settings: Settings) -> Grid:
         found = _overloads(law, x, w, 0.0, law.range[1])
         after = found.min() < most
         end = found if after else end
-    window = x[[0, -1]]
-    series = [np.polynomial.Polynomial.fit(x, one**0.25, DEGREE, window=window).coef for one in (w, end / unit)]
+    series = [_powers_of(x, one**0.25) for one in (w, end / unit)]
     head = np.zeros(lookup.HEADER)
     slowest = _SLOWEST if law.is_hertz else max(_SLOWEST, 1.001 * (law.range[0] / unit) ** 0.25)
     head[: lookup.PAIR] = (x_max, 0, 0, 0, after, 0, 0, 1, (most / unit) ** 0.25 * after, unit, slowest)
     head[lookup.ELASTIC : lookup.END], head[lookup.END :] = series
     made = Grid(head, np.empty(0)).with_cells(settings.rows, BELOW, settings.columns, AFTER)
     return made.on_ladder(law, np.zeros(1))
+
+
+def _powers_of(x: Array, values: Array) -> Array:
+    """Coefficients of a polynomial in x, fitted in Chebyshev's polynomials: powers are nearly alike."""
+    fitted = np.polynomial.Chebyshev.fit(x, values, DEGREE)
+    return np.asarray(fitted.convert(kind=np.polynomial.Polynomial).coef)
 
 
 def ladder_of(law: Law, widest: float) -> Array:

