@@ -80,7 +80,7 @@ class Solutions:
         place = "a half-space" if math.isinf(at) else f"{at / size:.4g} {unit}"
         return (
             f"no {self.unknown}: {place} gives {self.attainable[over]:.4g}, the "
-            f"{'largest' if over else 'least'} COR; the range is {least:.2g} to {most:.4g}"
+            f"{'largest' if over else 'least'} COR; the range is {least:.4g} to {most:.4g}"
         )
 
 

@@ -42,7 +42,9 @@ MISUSED = {  # status 2
     f"{HIT} --plot cor.png --csv": "not allowed with argument",
     f"{HIT} --out cor.csv --json": "--json: not allowed with argument --out",
     f"{HIT} --history --samples many": "invalid int value: 'many'",
-    f"{HIT} --materials no.toml": "no.toml: No such file or directory",
+    f"{HIT} --materials no.toml": "--materials: no.toml: No such file or directory",
+    f"{HIT} --materials .": "--materials: .: it is no regular file",
+    "export yade": "got 'yade'; choose from header, lammps, liggghts",
 }
 REFUSED = {  # status 1
     f"{HIT} --sphere steel": "--sphere: unknown material 'steel': did you mean 'carbon-steel-1020' or ",
@@ -65,6 +67,8 @@ REFUSED = {  # status 1
     f"{SIZES} --speed 1:9:1000 --thickness 1mm:2mm:2000": "--speed: every combination is 2000000 impacts",
     f"{HIT} --mass -1g": "--mass: got '-1g'; must lie between",
     f"{HIT} --angle 30": "--angle: needs --friction, too",
+    f"{HIT} --angle 30 --friction inf": "--friction: got 'inf'; must lie between 0 and 1000\n",
+    f"{HIT} --angle 0 --friction 0.1,0.2 --plot a.png": "--angle: got '0'; without a speed along the plate there is",
     f"{HIT} --friction 0.1": "--friction: needs --angle, too",
     f"{HIT} --angle 90 --friction 0.1": "--angle: got '90'; must lie between 0 and 89.999 degrees",
     f"{HIT} --angle 30,-5 --friction 0.1": "--angle: got '-5'",
@@ -75,7 +79,12 @@ REFUSED = {  # status 1
     f"{HIT} --law herz": "unknown law; did you mean 'hertz'?",
     f"{HIT} --law ''": "--law: got ''; unknown law",
     f"{HIT} --on steel": "expected a material and a thickness, as steel-s235:3mm",
-    f"{HIT} --on steel-s235:thick": "got 'thick', expected a length",
+    f"{HIT} --on steel-s235:thick": "--on: got 'steel-s235:thick'; got 'thick', expected a length",
+    f"{HIT} --on steel-s235:-1mm": "--on: got 'steel-s235:-1mm'; the thickness of a layer must be positive and finite",
+    f"{HIT} --on steel-s235:inf": "--on: got 'steel-s235:inf'; the thickness of a layer must be positive and finite",
+    f"{HIT} --on steel-s235:nan": "--on: got 'steel-s235:nan'; the thickness of a layer must be positive and finite",
+    f"{HIT} --thickness inf --on glass:1mm": "--thickness: got 'inf'; a half-space has no layer below it: leave out",
+    f"{HIT} --plate 鋼": "--plate: unknown material '鋼': `contactlaw materials` lists all",
     f"{HIT} --cylinder 0": "--cylinder: got '0'; must be larger than the bead's radius",
     f"{HIT} --foundation -1": "--foundation: got '-1'; must lie between",
     f"{SIZES} --speed 5 --bowl 5cm --causes": "--causes: does not go with --bowl: leave out one of them",
@@ -84,7 +93,7 @@ REFUSED = {  # status 1
     f"{SIZES} --speed 5 --plate-error yeld=5%": "got 'yeld'; unknown",
     f"{SIZES} --speed 5 --plate-error hardness=20%": "--plate-error: got 'hardness'; 'glass' has none",
     f"{HIT} --plot cor.xyz": "--plot: got 'cor.xyz'; must end in .png, .svg or .pdf",
-    f"{HIT} --plot ''": "--plot: got ''; must end in",
+    f"{HIT} --plot ''": "--plot: got ''; expected the name of a file",
     f"{HIT} --plot nowhere/cor.png": "--plot: there is no folder nowhere",
     f"{PLOT} --radius 1mm --thickness 1mm:9mm:9 --speed 1:2:9": "--speed, --thickness: got 9, 9 values; a plot has one",
     f"{PLOT} --radius 1mm,2mm --thickness 1mm,2mm --speed 1,2": "got 2, 2, 2 values; a plot has one list as its axis",
@@ -97,6 +106,9 @@ REFUSED = {  # status 1
     f"{HIT} --history --samples 1": "--samples: got 1; must be an integer from 2",
     f"{SIZES} --speed 5 --history --causes": "--causes: does not go with --history",
     f"{HIT} --samples 5": "--samples: needs --history, too",
+    f"explore {PAIR} --out ''": "--out: got ''; expected the name of a file",
+    f"export header {PAIR} --out ''": "--out: got ''; expected the name of a file",
+    f"export lammps {PAIR} --out ''": "--out: got ''; expected the name of a folder",
 }
 # Command lines of 0.3: what the answer says to type.
 OLD = {
@@ -110,6 +122,7 @@ OLD = {
     f"speed-table {PAIR} --slowest 1 --csv": "type: contactlaw constant --table --speed 0.1,10 ...",
     "constant --record=hits.npy": "type: contactlaw constant hits.npy",
     "constant --record hits.npy --csv": "type: contactlaw constant hits.npy --csv",
+    "constant --record": "type: contactlaw constant FILE",
     "bounces drop.wav": "the app phyphox hears bounces",
     f"experiment {PAIR}": "`experiment` is gone",
 }
