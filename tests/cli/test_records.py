@@ -172,7 +172,7 @@ def test_a_column_called_kind_in_another_table(tmp_path):
         ("a.csv", "speed,radius_mm\n1,900000000\n", "radius: got 900000.0"),
         ("a.csv", "speed [mph]\n1\n", r"no column of speeds in its first line, 'speed \[mph\]': call one speed_m/s"),
         ("a.csv", "speed,normal speed\n1,2\n", "two columns of speed, 'speed' and 'normal speed'"),
-        ("a.csv", b"\xff\xfe\x00\x01speed", "no text in UTF-8, nor HDF5"),
+        ("a.csv", b"\xff\xfe\x00\x01speed", "a binary file, expected a table of text"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
         ("a.h5", None, "no contactlaw record of schema 1, but format None, schema None: run it again"),
