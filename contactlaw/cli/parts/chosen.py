@@ -36,7 +36,7 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
             raise ArgumentError(f"{role}_error", None, str(error)) from error
         for name in errors:
             if name not in changed.uncertainty:
-                raise ArgumentError(f"{role}_error", name, f"{body.name!r} has none to be wrong")
+                raise ArgumentError(f"{role}_error", name, f"{body.name!r} has no such number")
         bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
