@@ -31,7 +31,7 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Name the choice nearest to an unknown one."""
         if action.choices is not None and value not in action.choices:
-            near = difflib.get_close_matches(str(value), action.choices, n=1)
+            near = difflib.get_close_matches(str(value), action.choices, n=1, cutoff=0.65)
             hint = f", did you mean {near[0]}?" if near else f"; choose from {', '.join(action.choices)}"
             raise argparse.ArgumentError(action, f"got {value!r}{hint}")
 

@@ -93,8 +93,9 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     )
     made = Figure(figsize=(width, height), layout=layout)
     left = 0.15 / width
-    made.text(left, 1.0 - 0.15 / height, "\n".join(head), fontsize=16, fontweight="bold", color=INK, va="top")
-    made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
+    plain: dict[str, Any] = {"va": "top", "parse_math": False}  # names of materials may have a $
+    made.text(left, 1.0 - 0.15 / height, "\n".join(head), fontsize=16, fontweight="bold", color=INK, **plain)
+    made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, **plain)
     return made
 
 

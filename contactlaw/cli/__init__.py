@@ -21,6 +21,7 @@ from contactlaw.cli import old_names
 from contactlaw.parser import Parser
 
 _ABOUT = re.compile(r'"""``contactlaw (\w+)`` \((\w+)\): (.*)\.')
+_ORDER = {"ask": 0, "measure": 1, "engines": 2}  # of groups in the help; the others follow
 _DONE, _REFUSED, _MISUSED, _INTERRUPTED = 0, 1, 2, 130
 
 
@@ -82,7 +83,7 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     called = next((word for word in words or () if not word.startswith("-")), None)
     if words and (answer := old_names.answer([*words])):
         made.exit(_MISUSED, f"contactlaw: {answer}\n")
-    subcommands = sorted(_subcommands())
+    subcommands = sorted(_subcommands(), key=lambda row: (_ORDER.get(row[0], len(_ORDER)), row))
     names = [name for _, name, _ in subcommands]
     if words is None or called in names:
         for name in names if words is None else [called]:

@@ -38,7 +38,7 @@ def answer(words: Sequence[str]) -> str:
     if command in _MOVED:
         start = _MOVED[command]
         return f"`{command}` is now part of `{start.split()[0]}`; type: contactlaw {start} {typed}".rstrip()
-    if command == "constant" and "--record" in typed:
-        files = typed.replace("--record=", "").replace("--record ", "")
-        return f"files are arguments now; type: contactlaw constant {files}"
+    files = [word.removeprefix("--record=") for word in rest if word != "--record"]
+    if command == "constant" and files != rest:
+        return f"files are arguments now; type: contactlaw constant {shlex.join(files or ['FILE'])}"
     return _REPLACED.get(command, "")

@@ -18,7 +18,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "report", "a page with figures about a run", _run)
     add = command.add_argument
     add(
-        "record",
+        "files",
         nargs="+",
         metavar="FILE",
         help="record of a run, or several files of one run: written by an engine's `save` (.h5), or rows of impacts "
@@ -38,8 +38,8 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    record = read_record(*arguments.record)
-    with wording.reading(arguments.record[0]):
+    record = read_record(*arguments.files)
+    with wording.reading(arguments.files[0]):
         Run(record)  # refuses what no report can be made of
     meshes = [_mesh(path, arguments.scale) for path in arguments.mesh]
     with wording.writing("out", arguments.out, folder=True):

@@ -234,7 +234,7 @@ def _check_sliding(name: str, flat: dict[str, Array]) -> None:
     still = np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)
     if still.any():
         n = int(np.argmax(still))
-        reason = "its bead came without sliding: give NaN there, or its angle"
+        reason = "its bead came without sliding: leave this value out, or state the angle"
         raise ArgumentError(name, flat[name][n], reason, n)
 
 

@@ -36,7 +36,7 @@ _LIMITS = {
     "mass": (1e-30, 1e15, "kilograms"),
     "contact_time": (1e-12, 1e6, "seconds"),
     "sliding_speed": (-lookup.V_MAX, lookup.V_MAX, "m/s, of the contact point along the plate"),
-    "friction": (0.0, ROUGHEST, "Coulomb's coefficient"),
+    "friction": (0.0, ROUGHEST, ""),
     "weights": (0.0, 1e300, "relative frequencies"),
 }
 

@@ -221,7 +221,7 @@ def test_help_comes_at_once():
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     groups = re.findall(r"^(\w+):\n((?:  .*\n)+)", shown.stdout.partition("exit\n")[2], re.MULTILINE)
     listed = {title: re.findall(r"^  ([a-z]+) ", lines, re.MULTILINE) for title, lines in groups}
-    assert [*listed] == ["ask", "engines", "measure", "pages"]
+    assert [*listed] == ["ask", "measure", "engines", "pages"]
     whole = re.findall(r"^    ([a-z-]+)\b", cli.parser().format_help(), re.MULTILINE)
     assert sum(listed.values(), []) == whole and len(whole) == 10
     assert max(map(len, shown.stdout.splitlines())) <= 80
@@ -397,6 +397,13 @@ def test_messages_never_go_where_results_do():
 def test_an_output_that_is_full():
     done = shell(f"{sys.executable} -m contactlaw materials > /dev/full")
     assert (done.returncode, done.stderr) == (1, "contactlaw: No space left on device\n")
+
+
+def test_an_output_that_lacks_a_letter():
+    bead = "'E=2GPa nu=0.3 rho=1000 kind=ceramic name=Öl'"
+    asked = f"cor --sphere {bead} --plate glass --radius 1mm --thickness 1mm --speed 1 --no-band"
+    done = shell(f"PYTHONIOENCODING=ascii {sys.executable} -m contactlaw {asked}")
+    assert (done.returncode, done.stdout) == (1, "") and "set PYTHONIOENCODING=utf-8" in done.stderr
 
 
 HISTORY = ["cor", "--history", *IMPACT[1:]]

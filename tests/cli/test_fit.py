@@ -235,6 +235,17 @@ def test_friction_from_a_table_with_angles(table, capsys, tmp_path, figures):
     refused(wrong, "with angles the speed is that of the bead", capsys=capsys)
 
 
+def test_a_rebound_straight_down_stands_at_the_angle_0(table, capsys, tmp_path, figures):
+    rows = "3,0,0.9921,", "3,15,0.9922,0.62", "3,40,0.9929,0.70", "3,60,0.9938,0.85"
+    path = table("speed,angle,COR,tangential restitution", *rows)
+    words = "--sphere glass --plate glass --radius 1mm --thickness 10mm --unknown friction".split()
+    assert main(["fit", path, *words, "--plot", f"{tmp_path}/it.png"]) == 0
+    assert capsys.readouterr().err == ""
+    ((curve,), (points,)) = figures[0].curves, figures[0].points
+    assert (figures[0].x, figures[0].y, points.x[0]) == ("angle", "restitution", 0.0)
+    assert curve.x[0] < 0.1 and np.isfinite(curve.y).all()
+
+
 def test_columns_that_are_not_used_are_named(table, capsys):
     assert main(["fit", table("speed,COR,COR_eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
     assert "columns that are not used: COR_eror" in capsys.readouterr().err

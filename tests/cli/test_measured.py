@@ -95,7 +95,7 @@ ODD = {
     "fit none.h5 --unknown thickness": (1, "none.h5: No such file or directory"),
     "fit folder --unknown thickness": (1, "folder: it is no regular file"),
     "fit empty.csv --unknown thickness": (1, "empty.csv: no column of speeds in its first line, ''"),
-    "fit binary.csv --unknown thickness": (1, "binary.csv: no text in UTF-8"),
+    "fit binary.csv --unknown thickness": (1, "binary.csv: a binary file, expected a table of text"),
     "fit binary.h5 --unknown thickness": (1, "binary.h5: no HDF5 file, or a damaged one"),
     "fit unit.csv --unknown thickness": (
         1,
@@ -128,7 +128,7 @@ ODD = {
     "compare none.csv": (1, "none.csv: No such file or directory"),
     "compare folder": (1, "folder: it is no regular file"),
     "compare empty.csv": (1, "empty.csv: no column of speeds"),
-    "compare binary.csv": (1, "binary.csv: no text in UTF-8"),
+    "compare binary.csv": (1, "binary.csv: a binary file, expected a table of text"),
     "compare exact.csv": (1, "restitution_error: has to be given for each rebound"),
     "compare times.csv": (1, "radius: has to be given with heights or times"),
     "compare good.csv good.csv": (2, "unrecognized arguments: good.csv"),

@@ -108,7 +108,7 @@ def test_one_source_for_all_numbers(tmp_path):
     [
         ("pomm", "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is"),
         ("E=2.8GPa nuu=0.35 rho=1410", "--sphere: unknown 'nuu'; did you mean nu? known: E, nu"),
-        ("E=2.8GPa", "'E=2.8GPa' lacks density and poissons_ratio, as in \"E=2.8GPa nu"),
+        ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu"),
         ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
         ("E=2.8 nu=0.35 rho=1410", '--sphere: E=2.8 has no unit, as in "E=2.8GPa nu=0.35'),
         ("E=70000 nu=0.35 rho=2.7 yield=276MPa", "--sphere: E=70000 has no unit"),

@@ -100,6 +100,18 @@ def test_without_a_list_the_axis_has_the_speeds_up_to_the_one_stated(drawn, tmp_
     assert axes.get_xlim() == pytest.approx((0.5, 5.0)) and not axes.get_legend()
 
 
+@pytest.mark.parametrize("lists", ["--thickness inf,inf --speed 2", "--thickness 1mm,2mm --speed 2,2"])
+def test_a_list_of_equal_values_is_one_value(lists, drawn, tmp_path):
+    figure = picture(drawn, tmp_path, f"--radius 0.9mm --no-band {lists}")
+    assert len(figure.axes[0].lines) == 2 and ("half-space" in caption(figure)) == ("inf" in lists)
+
+
+def test_a_name_is_no_formula(tmp_path, capsys):
+    bead = "E=2GPa nu=0.3 rho=1000 kind=ceramic name=$\\foo{$"
+    words = "--plate glass --radius 1mm --thickness 1mm --speed 1 --no-band --plot".split()
+    assert main(["cor", "--sphere", bead, *words, f"{tmp_path}/it.svg"]) == 0
+
+
 def test_limits_are_dashed(drawn, tmp_path):
     asked = f"--radius {R} --thickness 0.3mm,1mm --speed 1,100 --law myc --no-band"
     figure = picture(drawn, tmp_path, asked)

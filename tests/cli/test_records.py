@@ -106,7 +106,7 @@ def test_files_of_several_ranks_are_one_run(tmp_path, capsys):
     assert one(tmp_path / "all.npy")["weights"].tolist() == [1.0, 1.0, 8.0]
     (tmp_path / "a.csv").write_text("speed_m/s,radius_mm\n1,1\n")
     assert cli_of_contactlaw.main(["constant", str(tmp_path / "a.csv"), str(tmp_path / "all.npy"), *pair]) == 1
-    assert f"{tmp_path / 'a.csv'}: no HDF5 file" in capsys.readouterr().err
+    assert f"{tmp_path / 'all.npy'}: only the files of one record are put together" in capsys.readouterr().err
 
 
 def recorded(path, kinds):
@@ -135,6 +135,13 @@ def test_what_is_no_impact_is_left_out_and_said(tmp_path, capsys):
     assert cli_of_contactlaw.main(command) == 1
     words = "it has no impact on a plate: Of 2 contacts, 100 % slid on from another wall; their COR"
     assert words in capsys.readouterr().err
+
+
+def test_a_page_of_no_impacts_is_refused(tmp_path, capsys):
+    recorded(tmp_path / "a.npy", [])
+    assert cli_of_contactlaw.main(["report", str(tmp_path / "a.npy"), "--out", str(tmp_path / "page")]) == 1
+    assert capsys.readouterr().err == "contactlaw: record: has no impact on a wall yet: simulate longer\n"
+    assert not (tmp_path / "page").exists()
 
 
 def test_rows_with_beads_of_two_materials_are_refused(tmp_path, capsys):
@@ -172,7 +179,7 @@ def test_a_column_called_kind_in_another_table(tmp_path):
         ("a.csv", "speed,radius_mm\n1,900000000\n", "radius: got 900000.0"),
         ("a.csv", "speed [mph]\n1\n", r"no column of speeds in its first line, 'speed \[mph\]': call one speed_m/s"),
         ("a.csv", "speed,normal speed\n1,2\n", "two columns of speed, 'speed' and 'normal speed'"),
-        ("a.csv", b"\xff\xfe\x00\x01speed", "no text in UTF-8, nor HDF5"),
+        ("a.csv", b"\xff\xfe\x00\x01speed", "a binary file, expected a table of text"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
         ("a.h5", None, "no contactlaw record of schema 1, but format None, schema None: run it again"),

@@ -25,7 +25,7 @@ def test_layers_are_those_of_the_model(solve, capsys):
     assert [float(row["restitution"]) for row in found] == pytest.approx(hit.restitution.tolist(), abs=1e-6)
     assert [row["thickness_m"] for row in found] == ["0.0005", "0.001"]
     assert {row["plate"] for row in found} == {"aluminium-6061-t6 on steel-s235:2mm"}
-    assert all(float(row["yield_speed_m/s"]) > 0.0 and row["restitution_low"] for row in found)
+    assert all(row["restitution_low"] for row in found)
 
 
 @pytest.mark.parametrize(

@@ -58,7 +58,7 @@ def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     if arguments.error != _ERROR and arguments.form != "table":
         raise ArgumentError("error", arguments.error, "only --table takes it")
-    if arguments.form == "table" and arguments.files:
+    if arguments.form == "table" and (arguments.files or len({*arguments.speed}) < 2):
         raise ValueError("--table: give the least and the largest speed, as in --speed 0.1,10, and no FILE")
     for n, recorded in enumerate(_recorded(arguments)):
         law = arguments.law or recorded.law or laws.DEFAULT

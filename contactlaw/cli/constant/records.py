@@ -38,7 +38,9 @@ def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
     ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness and weight are optional.
     """
     first = Path(paths[0])
-    is_text = len(paths) == 1 and first.suffix.lower() not in (*HDF5, ".npy")
+    is_text = first.suffix.lower() not in (*HDF5, ".npy")
+    if is_text and len(paths) > 1:
+        raise ValueError(f"{paths[1]}: only the files of one record are put together: give one table, with all rows")
     record = None if is_text else read_record(*paths)
     with wording.reading(first):
         found = [*_by_pair(record)] if record else [Recorded(_text(content_of(first, pipe=True)))]

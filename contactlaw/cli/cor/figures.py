@@ -42,11 +42,13 @@ def figure(arguments: argparse.Namespace, model: ImpactModel) -> Figure:
     curves, remarks = [], []
     for value in lists[varied[0]] if varied else [0.0]:
         one_curve = {axis: x.tolist()} | {name: [value] for name in varied}
-        table, known = tables.table(argparse.Namespace(**vars(arguments) | one_curve), model)
+        table, known = tables.table(argparse.Namespace(**vars(arguments) | lists | one_curve), model)
         ends = {end: table.values.get(f"{y}_{end}") for end in ("low", "high")}
         label = "".join(named(name, value) for name in varied)
         curves.append(Curve(x, table.values[y], label, **ends, flags=table.flags))
         remarks = [f"Shaded: {bands.meaning(known.restitution, model.pair)}"] if known else []
+    if all(np.isnan(curve.y).all() for curve in curves):
+        raise ArgumentError("angle", arguments.angle[0], "without a speed along the plate there is nothing to draw")
     same = [named(name, lists[name][0]) for name in lists if name not in several]
     about = ", ".join([in_words(table.asked), *same])
     return Figure(AXES[y].label.capitalize(), about, axis, y, curves, remarks=remarks)

@@ -36,7 +36,7 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
             raise ArgumentError(f"{role}_error", None, str(error)) from error
         for name in errors:
             if name not in changed.uncertainty:
-                raise ArgumentError(f"{role}_error", name, f"{body.name!r} has none to be wrong")
+                raise ArgumentError(f"{role}_error", name, f"{body.name!r} has no such number")
         bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
@@ -75,6 +75,8 @@ def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:
     """Plates of these thicknesses [m], with what the options of `options.add_wall` add to them."""
     below = [layer(text, arguments.materials) for text in arguments.on]
     if below:
+        if not np.isfinite(thickness).all():
+            raise ArgumentError("thickness", math.inf, "a half-space has no layer below it: leave out --on")
         whole = [Layers([(plate, one), *below]) for one in np.ravel(thickness).tolist()]
         thickness = whole if np.ndim(thickness) else whole[0]
     if arguments.foundation is not None:
@@ -89,12 +91,14 @@ def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float
     name, colon, thick = text.rpartition(":")
     if not colon:
         raise ArgumentError("on", text, "expected a material and a thickness, as steel-s235:3mm")
+    material = own.material_of("on", name, materials)
     try:
-        return own.material_of("on", name, materials), quantities.value(thick, quantities.LENGTH)
-    except ArgumentError:
-        raise
+        size = quantities.value(thick, quantities.LENGTH)
     except ValueError as error:
         raise ArgumentError("on", text, str(error)) from error
+    if not 0.0 < size < math.inf:
+        raise ArgumentError("on", text, "the thickness of a layer must be positive and finite")
+    return material, size
 
 
 def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:

@@ -110,7 +110,7 @@ def read(content: bytes, fields: Fields) -> Columns:
 def _lines(content: bytes) -> list[str]:
     """Lines of a text in UTF-8, or in the characters of Windows, for µ."""
     if b"\0" in content:
-        raise ValueError("no text in UTF-8, nor HDF5 (.h5), nor of np.save (.npy)")
+        raise ValueError("a binary file, expected a table of text")
     try:
         return content.decode("utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError:

@@ -105,7 +105,7 @@ class Figure:
         with style.applied():
             figure = style.figure(9.0, 6.0, self.title, ". ".join([self.about, *self._remarks()]))
             axes = figure.subplots()
-            (x_label, x_size), (y_label, y_size) = AXES[self.x].scaled(x.max()), AXES[self.y].scaled(y.max())
+            (x_label, x_size), (y_label, y_size) = AXES[self.x].scaled(x.max()), AXES[self.y].scaled(np.nanmax(y))
             axes.set(xlabel=x_label, ylabel=y_label)
             for n, curve in enumerate(self.curves):
                 draw_curve(axes, curve, self._colour(n), x_size, y_size)

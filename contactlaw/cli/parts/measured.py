@@ -13,7 +13,8 @@ from contactlaw.cli.parts.figure import MOST_CURVES, Curve, Figure, Points, name
 
 _SAMPLES = 120  # points of a curve
 _WIDER = 1.3  # ratio of a curve's ends to the extreme values of the data
-_ANGLES = 5.0, 89.0  # [deg] ends of a curve over the angle; a bead at 90 does not hit
+_ANGLES = np.linspace(0.01, 89.0, _SAMPLES)  # [deg] of a curve: a bead at 0 does not slide, one at 90 does not hit
+_LEAST = 1e-12  # any unit: an angle of 0 has no logarithm
 _ALIKE = 0.1  # ln of speeds and sizes that share a curve
 
 
@@ -54,12 +55,11 @@ def figure_of(
         x = np.minimum(sizes[axis], largest)[rows]
         return Points(x, value[rows], label, None if error is None else error[rows], flags[rows], curve)
 
-    steps = {name: np.round(np.log(size) / _ALIKE) for name, size in sizes.items()}
+    steps = {name: np.round(np.log(np.maximum(size, _LEAST)) / _ALIKE) for name, size in sizes.items()}
     axis = max(sizes, key=lambda name: np.unique(steps[name]).size)
     finite = sizes[axis][np.isfinite(sizes[axis])]
     largest = finite.max() * _WIDER
-    first, last = _ANGLES if axis == "angle" else (finite.min() / _WIDER, largest)
-    x = np.geomspace(first, last, _SAMPLES)
+    x = _ANGLES if axis == "angle" else np.geomspace(finite.min() / _WIDER, largest, _SAMPLES)
     rest = [name for name in sizes if name != axis]
     kinds, of = np.unique([steps[name] for name in rest], axis=1, return_inverse=True)
     of = of.ravel()

@@ -118,7 +118,7 @@ def _materials(path: str) -> dict[str, Material]:
     try:
         return read_materials(path)
     except (OSError, ValueError) as error:
-        raise argparse.ArgumentTypeError(wording.sentence(error, {})) from None
+        raise argparse.ArgumentTypeError(wording.sentence(error, {}).removeprefix("materials: ")) from None
 
 
 def add_sizes(command: Any, read: Reader, required: bool = True, unknown: str = "") -> None:

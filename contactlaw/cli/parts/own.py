@@ -45,8 +45,8 @@ def material_of(option: str, value: Any, own: Mapping[str, Material]) -> Materia
         numbers = spelled_out(table)
         like = numbers.pop("like", "")
         if not like:
-            if missing := {"youngs_modulus", "poissons_ratio", "density"} - numbers.keys():
-                raise ValueError(f"{value!r} lacks {' and '.join(sorted(missing))}, as in {wording.OWN}")
+            if missing := [key for key in ("E", "nu", "rho") if SHORT[key] not in numbers]:
+                raise ValueError(f"{value!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
             return Material(**{"name": value if isinstance(value, str) else option} | numbers)
         body = find(like, own)
         if "hardness" in numbers and body.hardening is None:  # it replaces the yield strength

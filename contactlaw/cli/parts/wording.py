@@ -63,10 +63,12 @@ def sentence(error: Exception, options: Mapping[str, Any]) -> str:
             near = f"did you mean {' or '.join(map(repr, error.near[:_NEAREST]))}? " if error.near else ""
             return (
                 f"unknown material {error.name!r}: {near}`contactlaw materials` lists all; one of your own "
-                f"is --materials FILE, or --sphere {OWN}"
+                f"is in --materials FILE, or numbers: {OWN}"
             )
         case NoYieldStrengthError():
             return f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the other may yield"
+        case UnicodeEncodeError():
+            return f"the output is in {error.encoding}, which lacks a character of a name: set PYTHONIOENCODING=utf-8"
         case OSError(filename=str(path), strerror=str(reason)):
             return f"{path}: {reason}"
         case OSError(strerror=str(reason)):
@@ -112,6 +114,8 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
 
     A missing folder is refused before the body of the ``with`` statement runs.
     """
+    if not os.fspath(path):
+        raise ArgumentError(option, "", f"expected the name of a {'folder' if folder else 'file'}")
     path = os.path.normpath(path) if folder else os.fspath(path)
     if os.path.lexists(path) and os.path.isdir(path) != folder:
         raise ArgumentError(option, None, f"{path} is {'no' if folder else 'a'} folder")
