@@ -186,7 +186,8 @@ def fifth_root(v: float) -> float:
     t2 = t * t
     t8 = (t2 * t2) * (t2 * t2)
     root: float = powers(c, t) + ((c[16] + c[17] * t) + (c[18] + c[19] * t) * t2) * (t8 * t8)
-    return root * _ROOTS_OF_TWO[np.uint64(np.uint64(bits) >> np.uint64(52)) & np.uint64(2047)]
+    root *= _ROOTS_OF_TWO[np.uint64(np.uint64(bits) >> np.uint64(52)) & np.uint64(2047)]
+    return root
 
 
 @kernel(inline=True)

@@ -41,7 +41,7 @@ def impacts(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, law: str = "myc"
     ratio = np.asarray(thickness_ratio, dtype=float)
     thickness = RADIUS / np.where(ratio > 0.0, ratio, 1.0)
     thickness = np.where(ratio > 0.0, thickness, math.inf)
-    return model(law).lookup(np.asarray(speed_ratio) * SPEED, RADIUS, thickness)
+    return model(law).solve(np.asarray(speed_ratio) * SPEED, RADIUS, thickness)
 
 
 def largest(values: ArrayLike) -> float:
