@@ -397,8 +397,7 @@ def test_a_changed_source_never_yields_an_old_result(code, edits, tmp_path):
     after = answers()
     assert {n for n, (old, new) in enumerate(zip(before, after, strict=True)) if old != new} >= (changed)
     # The table stores 1 - COR, which the edit halves; the edit of a force doubles it.
-    expected = [0.5 * (1.0 + value) if edits is EDITS else 2.0 * value for value in before[:2]]
-    assert after[:2] == pytest.approx(expected, rel=1e-12)
+    assert after[:2] == pytest.approx([0.5 + 0.5 * e if edits is EDITS else 2.0 * e for e in before[:2]], rel=1e-12)
     assert len(list((tmp_path / "numba").iterdir())) == 2
 
 

@@ -140,5 +140,6 @@ def test_an_edge_answers_as_the_modes_of_a_large_plate(distance):
     endless = 1.0 / (8.0 * math.sqrt(bending * areal))
     back[0] = endless
     expected = convolved(float(model.solve(speed, radius, H).inelasticity), back / endless, step)
-    near = model.solve(speed, radius, H, edge="supported", edge_distance=distance)
-    assert near.restitution == pytest.approx(expected, abs=0.002)
+    assert model.solve(speed, radius, H, edge="supported", edge_distance=distance).restitution == pytest.approx(
+        expected, abs=0.002
+    )

@@ -101,7 +101,8 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
     looked, solved = model.lookup(v, r, h), model.solve(v, r, h)
     for hit in (looked, solved):
         np.testing.assert_allclose(hit.inelasticity, units.inelasticity, rtol=1e-14)
-    np.testing.assert_allclose(looked.overload, solved.overload, rtol=1e-9)
+    # A table has w_m as a polynomial; of fields but the COR 1e-3 is promised.
+    np.testing.assert_allclose(looked.overload, solved.overload, rtol=1e-8)
     other = looked.flags ^ solved.flags
     assert not (other & BEFOREHAND).any()
     for n in np.flatnonzero(other):
