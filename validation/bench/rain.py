@@ -25,7 +25,7 @@ class _Constant(cl.ImpactModel):
     def curve(self, *_: Any) -> Callable[..., float]:
         return lambda *impact: COR
 
-    sphere_sphere_curve = edge_kernel = curve
+    sphere_sphere_curve = edge_kernel = curve  # type: ignore[assignment]
 
 
 class _Elasticities:

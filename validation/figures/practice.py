@@ -348,9 +348,9 @@ def fig27_measured() -> chart.Drawn:
             f"{source.title}: COR, model minus measured": found.restitution[0] - cor[0],
             f"{source.title}: share of cases as far off by chance": found.probability,
         }
-        over = np.asarray(model.restitution(first["speed"], first["radius"], thickness))
-        if over[0] < least < over[-1]:
-            thinnest = 1e3 * float(np.interp(least, over, thickness))
+        rising = np.asarray(model.restitution(first["speed"], first["radius"], thickness))
+        if rising[0] < least < rising[-1]:
+            thinnest = 1e3 * float(np.interp(least, rising, thickness))
             numbers[f"{source.title}: least thickness within the error, mm"] = thinnest
     return figure, numbers
 

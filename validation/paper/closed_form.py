@@ -109,7 +109,9 @@ def elastic_compression(lam: ArrayLike) -> Array:
     >>> elastic_compression([0.0, 0.5]).round(4)
     array([1.0934, 0.8257])
     """
-    return np.vectorize(lambda one: _zener.solve(HERTZ, one, 1.0, _RTOL).peak_compression, otypes=[float])(lam)
+    return np.vectorize(  # type: ignore[no-any-return]
+        lambda one: _zener.solve(HERTZ, one, 1.0, _RTOL).peak_compression, otypes=[float]
+    )(lam)
 
 
 def eq_6(lam: ArrayLike) -> Array:
