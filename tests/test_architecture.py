@@ -76,12 +76,12 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # line breaks, so that neither longer lines nor missing explanations save any. Other text of the
 # packages (sources of other languages, pages, numbers) counts in lines.
 SIZES = {
-    "contactlaw": 238_630,
+    "contactlaw": 238_545,
     "contactlaw/answers": 18_329,
     "contactlaw/cli": 24_671,
     "contactlaw/emit": 8_671,
     "contactlaw/engines": 24_235,
-    "contactlaw/equation": 16_980,
+    "contactlaw/equation": 16_895,
     "contactlaw/export": 8_942,
     "contactlaw/fitting": 15_097,
     "contactlaw/laws": 11_828,
@@ -93,8 +93,8 @@ SIZES = {
     "contactlaw/walls": 20_921,
     "dem_demo": 23_725,
     "validation": 109_387,
-    "tests": 279_689,
-    "all Python": 655_938,
+    "tests": 279_546,
+    "all Python": 655_710,
     "other text": 4_349,
 }
 FREE = {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}

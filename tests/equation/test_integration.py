@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pytest
 from oracle import ALL_LAWS, FEM, impact, yield_ratio
+from overloads import solved_at
 from staying import staying_law
 
 from contactlaw import laws
@@ -67,8 +68,7 @@ def overload(law, lam, dm):
 
 def largest_imbalance(law, lam, chi):
     """Largest imbalance of energy of the impacts, and its lambda and overload."""
-    out = outcome.at(np.array(lam), np.ones(len(lam)))
-    assert zener.solve_overloads(law.data, 1e-10, np.array(chi), out) == (zener.OK, 0)
+    out = solved_at(law, np.array(lam), np.array(chi), 1e-10)
     extremes = outcome.extremes(len(lam))
     zener.extremes(law.data, out, extremes)
     assert ((out.restitution > 0.0) & (out.restitution <= 1.0 + 1e-10)).all()

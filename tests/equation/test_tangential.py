@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from overloads import solved_at
 from springs import slide
 
 from contactlaw import laws
-from contactlaw.equation import outcome, zener
 from contactlaw.table.slides import after
 
 MYC = laws.law("myc")
@@ -16,9 +16,7 @@ PSI = np.array([0.0, 0.02, 0.1, 0.3, 0.7, 1.0, 1.5, 2.2, 3.0, 4.0, 5.0, 6.0, 7.0
 
 def solved(lam, chi, law=MYC):
     """Outcome of one impact, and its yield ratio."""
-    found = outcome.at(np.array([lam]), np.empty(1))
-    assert zener.solve_overloads(law.data, 1e-11, np.array([chi]), found) == (zener.OK, 0)
-    return found
+    return solved_at(law, np.array([lam]), np.array([chi]), 1e-11)
 
 
 @pytest.mark.parametrize("kappa", [0.8, *(pytest.param(kappa, marks=pytest.mark.long) for kappa in (0.6, 1.0))])
