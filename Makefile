@@ -95,8 +95,6 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
-	cp $(PICTURES)/report/fig29_softened.png docs/softened.png
-	cp $(PICTURES)/report/fig30_clump.png docs/clump.png
 	cp $(PICTURES)/report/fig31_walls.png docs/walls.png
 	mkdir -p $(PICTURES)/docs/examples && cp docs/examples/rebounds.csv $(PICTURES)/docs/examples
 	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \

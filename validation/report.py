@@ -18,16 +18,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import contactlaw as cl
-from contactlaw import Validity
 from validation.accuracy import compare, trust
 from validation.accuracy.trust import Score
-from validation.bench import census
-from validation.fem.census import pairs
 from validation.figures.practice import oblique_points
 from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
 
-_EACH = 100  # impacts per pair in the census
 _FOLDER = Path(__file__).parent
 _DERIVATIONS = "errata", "turning_point", "fem_law", "mobility", "losses", "edges"
 _COLOURS = {HOLDS: "#007A5A", MISPRINT: "#B34E00", LIMITED: "#8F6400", FAILS: "#B34E00", OPEN: "#6E6E6E"}
@@ -130,7 +126,6 @@ def _practice() -> dict[str, Any]:
         "where": _scores("everyday impacts", trust.where()),
         "misses": _misses(),
         "materials": _scores("bead on plate", trust.materials()),
-        "census": _census(),
         "oblique": _oblique(),
     }
 
@@ -210,30 +205,6 @@ def _misses() -> Table:
             for one in trust.misses()
         ],
     )
-
-
-def _census() -> dict[str, Any]:
-    """Count what is answered and flagged."""
-    found = {law: census.count(law, _EACH, tables=False) for law in trust.LAWS}
-    answers = [
-        (
-            f"`{law}`",
-            *(_percent(share, 1) for share in (one.refused, one.outside, one.inaccurate, one.damaging, one.inside)),
-        )
-        for law, one in found.items()
-    ]
-    flags = [
-        (f"`{flag.name}`", cl.explain(flag)[0], *(_percent(one.flags.get(flag, 0.0), 1) for one in found.values()))
-        for flag in Validity
-        if flag in Validity.ACCURACY & ~Validity.CLAMPED
-    ]
-    heads = ("refused#", "outside its table#", "accuracy in doubt#", "may break or flow#")
-    return {
-        "impacts": found["fem"].impacts,
-        "pairs": len(pairs()),
-        "answers": Table("what is answered, by law", ("law", *heads, "inside every limit#"), answers),
-        "flags": Table("flags of accuracy", ("flag", "what it says", *(f"{law}#" for law in found)), flags),
-    }
 
 
 def _derivation(name: str) -> Markup:

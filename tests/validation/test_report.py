@@ -12,7 +12,6 @@ from unrendered import blank
 from validation import figures, report
 from validation.__main__ import main
 from validation.accuracy import acceptance, trust
-from validation.fem import census
 from validation.paper.claims import ROWS, claims
 from validation.paper.verdicts import (
     AT_MOST,
@@ -245,8 +244,6 @@ def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
     only(monkeypatch, *few)
     monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
     monkeypatch.setattr("contactlaw.style.png", blank)
-    pairs = census.pairs()[::20]
-    monkeypatch.setattr(census, "pairs", lambda: pairs)
     assert main(["--out", str(tmp_path)]) == 0
     text = (tmp_path / "index.html").read_text()
     assert sorted(re.findall(r"<figure id='(\w*)'", text)) == few

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from contactlaw.parser import Parser
 
-SUBJECTS = "lookups solver fits processes rain c_header lammps scale meshes liggghts census".split()
+SUBJECTS = "lookups", "solver", "processes", "lammps"
 
 
 def main(arguments: list[str] | None = None) -> int:

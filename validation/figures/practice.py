@@ -8,9 +8,7 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import pymunk
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 import contactlaw as cl
@@ -18,14 +16,13 @@ from contactlaw import style
 from contactlaw.answers.solver import solved
 from contactlaw.cli.compare.figure import curve as model_curve
 from contactlaw.cli.parts.figure import Curve, Points, draw_curve, draw_points
-from contactlaw.engines.pymunk import attach
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path
 from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, SKY, VERMILION
-from validation import figures, softened
+from validation import figures
 from validation.accuracy import acceptance, measured
 from validation.accuracy.acceptance import Member, Row
 from validation.accuracy.edges import FILE
@@ -34,7 +31,7 @@ from validation.derivations.walls import restitution
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
 from validation.paper import setting
-from validation.paper.setting import FASTEST, RADIUS, largest, model
+from validation.paper.setting import FASTEST, RADIUS, model
 
 PART = figures.PRACTICE
 
@@ -57,8 +54,7 @@ def fig12_sensitivity() -> chart.Drawn:
 
     On thin plates thickness and radius matter most: where the radius is 1.8 times the thickness,
     one per cent of either is worth 0.9 per cent of COR at twice the yield speed. On thick ones it
-    is the yield strength, with 0.5 at 5 yield speeds and a radius of 0.3 times the thickness. Lines
-    are derivatives of the table, dots difference quotients of the solver.
+    is the yield strength, with 0.5 at 5 yield speeds and a radius of 0.3 times the thickness.
     """
     figure, panels = chart.by_thickness(
         (13.0, 5.8),
@@ -68,21 +64,13 @@ def fig12_sensitivity() -> chart.Drawn:
         SPEED.between(0, FASTEST),
         Axis("change of the COR  [% per %]"),
     )
-    v, at = np.linspace(0.1, FASTEST, 300), np.linspace(0.5, 6.7, 9)
-    worst = 0.0
+    v = np.linspace(0.1, FASTEST, 300)
     for ratio, axes in panels:
         moved = model().sensitivity(v * setting.SPEED, RADIUS, RADIUS / ratio)
         for field in dataclasses.fields(moved):
             colour, line = _INPUTS[field.name]
-            label = field.name.replace("_", " ")
-            axes.plot(v, getattr(moved, field.name), line, color=colour, label=label)
-        dots = _quotient(at, ratio)
-        axes.plot(at, dots, "o", color=INK, markersize=5)
-        table = model().sensitivity(at * setting.SPEED, RADIUS, RADIUS / ratio).speed
-        worst = max(worst, largest(dots - table))
-    first = figure.axes[0]
-    chart.key(first, "speed, by the solver", "o", markersize=5)
-    figure.legend(*first.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+            axes.plot(v, getattr(moved, field.name), line, color=colour, label=field.name.replace("_", " "))
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     thin = model().sensitivity(2.0 * setting.SPEED, RADIUS, RADIUS / 1.8)
     thick = model().sensitivity(5.0 * setting.SPEED, RADIUS, RADIUS / 0.3)
     return figure, {
@@ -90,18 +78,7 @@ def fig12_sensitivity() -> chart.Drawn:
         "radius, R/H = 1.8, 2 yield speeds": thin.radius,
         "yield strength, R/H = 0.3, 5 yield speeds": thick.yield_strength,
         "speed, R/H = 0.3, 5 yield speeds": thick.speed,
-        "largest difference to the solver, speed": worst,
     }
-
-
-def _quotient(v: np.ndarray, ratio: float) -> np.ndarray:
-    """Central difference of ln e with respect to ln V0, by integration."""
-    step = 1e-4
-    up, down = (
-        model().solve(v * setting.SPEED * np.exp(h), RADIUS, RADIUS / ratio, rtol=1e-13).restitution
-        for h in (step, -step)
-    )
-    return np.log(up / down) / (2.0 * step)
 
 
 _LOOK = {  # by the body that yields: marker, colour and words
@@ -444,140 +421,6 @@ def _hertz_time(pair: cl.Pair) -> float:
     mass = 4.0 / 3.0 * math.pi * _EDGE_RADIUS**3 * pair.sphere.density
     stiffness = 4.0 / 3.0 * pair.effective_modulus * math.sqrt(_EDGE_RADIUS)
     return float((mass / (stiffness * math.sqrt(_EDGE_SPEED))) ** 0.4)
-
-
-_WALLS = (
-    ("sieve", "1500", "0", "sieve: deck"),
-    ("drum", "100", "0", "drum: shell"),
-    ("drum", "100", "12", "drum: ends"),
-)
-_WORDS = {"wave": "bending\nwave", "plastic": "plastic\nflow", "friction": "friction", "other": "vibration"}
-_RUNS = (("sieve", "1500", "o", BLUE), ("sieve", "10000", "s", GREEN), ("drum", "100", "D", VERMILION))
-_SOFTENING = Axis("softening").between(80.0, 1250.0).log(100, 300, 1000)
-_SHARE = Axis("CPU time over that with true contacts").between(0.0, 0.32)
-
-
-def fig29_softened() -> chart.Drawn:
-    """Fig. 29: where sieve and drum of the demo lose energy, with true and with softened contacts.
-
-    Bars are means of three feeds that differ in their seed, and dots the feeds. All means agree within
-    2 % or the scatter of the feeds, but for the vibration in the sieve: where a contact is shared or
-    struck, a softened one is damped, which counts there. Right, the CPU time of these runs, which took
-    turns. It falls less than the number of steps (dashed), because an impact takes as many steps as
-    before, neighbours are sought more often, and the outcome of each impact is computed when it begins.
-    """
-    found = softened.rows()
-    figure = style.figure(
-        15.0,
-        6.2,
-        "Softened contacts take the same energy at the same walls, for a sixth to a seventh of the CPU time",
-        "energy that contacts take from the beads, by wall and cause, with true contacts and with contacts softened "
-        "300 times; bars: mean of three feeds, dots: each one; right: CPU time of these runs and of a larger one",
-    )
-    *bars, time = figure.subplots(1, 4, width_ratios=(1.0, 1.0, 1.0, 1.1))
-    numbers = {"walls and causes that differ by more than 2 % and the scatter": 0.0}
-    for axes, (*which, walls, title) in zip(bars, _WALLS, strict=True):
-        Panel(Axis(""), Axis("energy  [mJ]" if axes is bars[0] else ""), title).set_up(axes)
-        for n, cause in enumerate(_WORDS):
-            true, soft = (_by_feed(found, [*which, softening], walls, cause) for softening in ("1", "300"))
-            for side, lost, colour in ((-0.2, true, MUTED), (0.2, soft, SKY)):
-                axes.bar(n + side, lost.mean(), 0.36, color=colour)
-                places = n + side + 0.1 * np.arange(-1, 2)
-                axes.plot(places, lost, "o", color=INK, markersize=5, markeredgecolor="white", markeredgewidth=0.7)
-            change, scatter = soft.mean() / true.mean() - 1.0, true.std(ddof=1) / true.mean()
-            numbers |= {f"{title}, {cause}: change": change, f"{title}, {cause}: scatter": scatter}
-            numbers["walls and causes that differ by more than 2 % and the scatter"] += abs(change) > max(0.02, scatter)
-        axes.set_xticks(range(len(_WORDS)), list(_WORDS.values()))
-        axes.grid(visible=False, axis="x")
-    for name, colour in (("true contacts", MUTED), ("softened 300 times", SKY)):
-        bars[0].bar([0.0], [0.0], color=colour, label=name)
-    bars[0].legend(loc="upper right")
-    Panel(_SOFTENING, _SHARE, "CPU time").set_up(time)
-    for scene, beads, mark, colour in _RUNS:
-        cpu, step = (_by_softening(found, scene, beads, column) for column in ("cpu", "step"))
-        name = f"{scene}, {int(beads):,} beads"
-        time.plot(list(cpu), list(cpu.values()), mark, linestyle="-", color=colour, markersize=9, label=name)
-        numbers |= {f"{name}, softened {softening:g} times: CPU time": share for softening, share in cpu.items()}
-    time.plot(list(step), [1.0 / share for share in step.values()], "--", color=INK, label="number of steps")
-    time.legend(loc="upper right")
-    return figure, numbers
-
-
-def _by_feed(found: list[dict[str, str]], which: list[str], walls: str, cause: str) -> NDArray[np.float64]:
-    """Energy that some walls took by a cause in each of three feeds [mJ]."""
-    lost = np.zeros(3)
-    for row in found:
-        if [row["scene"], row["beads"], row["softening"]] == which and row["wall"] in walls:
-            lost[int(row["seed"]) - 1] += 1e3 * float(row[cause])
-    return lost
-
-
-def _by_softening(found: list[dict[str, str]], scene: str, beads: str, column: str) -> dict[float, float]:
-    """Mean of a column over that with true contacts, for each softening."""
-    values: dict[float, list[float]] = {}
-    for row in found:
-        if (row["scene"], row["beads"], row["wall"]) == (scene, beads, "0"):
-            values.setdefault(float(row["softening"]), []).append(float(row[column]))
-    true = np.mean(values.pop(1.0))
-    return {softening: float(np.mean(some) / true) for softening, some in sorted(values.items())}
-
-
-_TURN = Axis("axis from the vertical  [degrees]")
-
-
-def fig30_clump() -> chart.Drawn:
-    """Fig. 30: a dumbbell bounces on a thin plate; and its COR by the angle at which it lands.
-
-    Left, a run in pymunk, two circles on one body. Right, where the contact is not below the centre of
-    mass, the body turns aside and answers with less mass, so that the plate takes less.
-    """
-    figure, (path, cor) = chart.sheet(
-        (14.0, 4.9),
-        "A clump answers a plate with the mass at its contact, between that of one bead and of all",
-        "two glass beads of 2 mm in one rigid body on 1 mm of glass; left: its bounce, every 5 ms; "
-        "right: COR at 1 m/s, by the angle at which it lands",
-        Panel(Axis("place  [mm]").between(-3.0, 57.0), Axis("height  [mm]").between(-1.0, 17.5)),
-        Panel(_TURN.between(0.0, 90.0), RESTITUTION.between(0.64, 0.78)),
-        width_ratios=(2.4, 1.0),
-    )
-    pair, radius, thickness = cl.Pair("soda-lime-glass", "glass"), 1e-3, 1e-3
-    mass = 4.0 / 3.0 * math.pi * radius**3 * pair.sphere.density
-    model = cl.ImpactModel(pair)
-    for centres in _tumbling(model, radius, thickness, mass):
-        for (x, y), colour in zip(1e3 * centres, (BLUE, ORANGE), strict=True):
-            path.add_patch(Circle((x, y), 1e3 * radius, facecolor=colour, edgecolor="white"))
-    path.axhspan(-1.0, 0.0, color=MUTED, linewidth=0)
-    path.set_aspect("equal")
-    angle, numbers = np.linspace(0.0, 90.0, 91), {}
-    at_contact = mass / (0.5 + np.sin(np.radians(angle)) ** 2 / 2.8)
-    lines = {
-        "with the mass of one bead": (mass, MUTED, (2.0, 0.759)),
-        "with that at the contact": (at_contact, BLUE, (35.0, 0.684)),
-        "with that of both": (2.0 * mass, MUTED, (2.0, 0.651)),
-    }
-    for name, (heavy, colour, place) in lines.items():
-        found = np.asarray(model.restitution(1.0, radius, thickness, mass=np.ones(91) * np.asarray(heavy)))
-        cor.plot(angle, found, "-" if colour == BLUE else "--", color=colour)
-        chart.note(cor, *place, name, colour)
-        numbers[f"COR at 45 degrees {name}"] = found[45]
-    return figure, numbers
-
-
-def _tumbling(model: cl.ImpactModel, radius: float, thickness: float, mass: float) -> Iterator[NDArray[np.float64]]:
-    """Centres of both circles of a dumbbell that falls on a plate, every 5 ms [m]."""
-    space, body = pymunk.Space(), pymunk.Body(2.0 * mass, 2.8 * mass * radius**2)
-    space.gravity, body.position, body.velocity, body.angle = (0.0, -9.81), (0.0, 0.015), (0.5, 0.0), 0.5
-    beads = [pymunk.Circle(body, radius, (0.0, side * radius)) for side in (1, -1)]
-    sheet = pymunk.Segment(space.static_body, (-1.0, 0.0), (1.0, 0.0), 0.0)
-    space.add(body, sheet, *beads)
-    impacts = attach(space, model)
-    impacts.add_plate(sheet, thickness, friction=0.2)
-    for bead in beads:
-        impacts.add_bead(bead)
-    for step in range(2800):
-        if step % 100 == 0:
-            yield np.array([body.local_to_world(bead.offset) for bead in beads])
-        space.step(5e-5)
 
 
 _SWINGS = Axis(r"contact time times angular frequency of the wall,  $\omega_0 T$").between(0.0, 4.0)
