@@ -174,13 +174,13 @@ def test_half_spaces_go_the_way_of_the_closed_forms():
 
 
 def test_everyday_impacts_are_answered_and_seldom_flagged():
-    """Impacts that are drawn anew, on every eighth of the everyday pairs: none is refused."""
+    """Impacts that are drawn anew, on every fifth of the everyday pairs: none is refused."""
     draw = np.random.default_rng(7)
-    pairs = census.pairs()[::8]
+    pairs = census.pairs()[::5]
     flags = []
     for sphere, plate in pairs:
-        speed, thickness = (np.exp(draw.uniform(*np.log(ends), 12)) for ends in (census.SPEED, census.THICKNESS))
+        speed, thickness = (np.exp(draw.uniform(*np.log(ends), 8)) for ends in (census.SPEED, census.THICKNESS))
         flags.append(cl.ImpactModel(cl.Pair(sphere, plate)).solve(speed, census.RADIUS, thickness).flags)
     accuracy = np.concatenate(flags) & int(Validity.ACCURACY & ~Validity.CLAMPED) != 0
-    assert accuracy.size == 12 * len(pairs) == 360
+    assert accuracy.size == 8 * len(pairs) == 384
     assert 0.0 < accuracy.mean() < MOST_FLAGGED
