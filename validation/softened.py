@@ -1,4 +1,4 @@
-"""The demo's sieve and drum with true and with softened contacts: ``python -m validation.softened``.
+"""The demo's sieve with true and with softened contacts: ``python -m validation.softened``.
 
 Writes ``data/softened.csv``, with a row for each wall of each run: the energies [J] that all its
 contacts took from the beads, the work of its motion, and the CPU time of the run [s]. True and
@@ -20,33 +20,31 @@ from typing import Any
 
 import contactlaw as cl
 from contactlaw.engines.record import Kind
-from dem_demo.drum.scene import drum
-from dem_demo.kit import lammps
-from dem_demo.kit.scene import Bed
-from dem_demo.sieve.scene import sieve
+from dem_demo.sieve import engine
+from dem_demo.sieve.deck import FORM, write_stl
+from dem_demo.sieve.scene import Sieve, sieve
 
 FILE = Path(__file__).parent / "data/softened.csv"
 _RUN = "scene", "beads", "softening", "seed"
 _CAUSES = "wave", "plastic", "other", "friction", "scheme"
 _SOFTENINGS = 1.0, 100.0, 300.0, 1000.0
 # As large as the commands make them, and small enough a sieve for three feeds.
-_SCENES: tuple[Callable[..., Bed], ...] = (
-    *(partial(drum, seed=seed) for seed in (1, 2, 3)),
-    *(partial(sieve, beads=1500, seed=seed) for seed in (1, 2, 3)),
-    partial(sieve, seed=1),
+_SCENES: tuple[Callable[..., Sieve], ...] = (
+    *(partial(sieve, beads=1500, seed=seed, sphere="gamma-alumina") for seed in (1, 2, 3)),
+    partial(sieve, seed=1, sphere="gamma-alumina"),
 )
 
 
-def measure(scene: Bed) -> Iterator[dict[str, Any]]:
+def measure(scene: Sieve) -> Iterator[dict[str, Any]]:
     """Simulate a scene under its law; a row for each wall, energies in J."""
     pair = cl.Pair(scene.sphere_material, scene.plate_material)
     model = cl.ImpactModel(pair, outside="clamp")
-    step = lammps.time_step(scene, model)
+    step = engine.time_step(scene, model)
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.filterwarnings("ignore", "softening: an impact")  # how deep is measured here
-        scene.write_files(Path(folder))
+        write_stl(Path(folder) / FORM, scene.deck.triangles())
         began = time.process_time()
-        simulation = lammps.Simulation(scene, model, scene.thickness, step, Path(folder))
+        simulation = engine.Simulation(scene, model, scene.plates[0], step, Path(folder))
         for _ in range(scene.frames):
             simulation.advance()
         cpu = time.process_time() - began

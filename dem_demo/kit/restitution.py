@@ -57,8 +57,8 @@ def draw(runs: Runs[S]) -> Figure:
 def _panel(axes: Axes, run: Run[S], plate: int, colours: ScalarMappable) -> None:
     thickness, radius = run.scene.plates[plate], run.scene.radius
     axes.set_title(label(thickness))
-    fastest = 1.05 * float(run.impacts["approach_speed"].max(initial=1.0))
-    speed = np.geomspace(0.02 * fastest, fastest, 200)
+    hit = run.impacts["approach_speed"] if run.impacts.size else np.ones(1)
+    speed = np.geomspace(0.7 * float(np.quantile(hit, 0.01)), 1.05 * float(hit.max()), 200)
     for r in (radius.min(), radius.max()):
         axes.plot(speed, run.model.restitution(speed, r, thickness), color=colours.to_rgba(r * 1e3))
     rows = run.impacts[run.impacts["plate"] == plate]

@@ -13,8 +13,7 @@ from dem_demo.kit import options
 from dem_demo.sieve.scene import Sieve, sieve
 
 if TYPE_CHECKING:
-    from contactlaw import ImpactModel
-    from dem_demo.kit.run import Run
+    from dem_demo.kit.run import Making, Run
 
 _ABOUT = {
     "beads": ("N", "number of beads; the deck is as large as they need"),
@@ -51,6 +50,8 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
         from mpi4py import MPI
 
         from dem_demo.kit import restitution, session
+        from dem_demo.kit.run import Making
+        from dem_demo.sieve import engine
         from dem_demo.sieve.constant import constant_model
         from dem_demo.sieve.figures import dissipation, energy
 
@@ -62,7 +63,8 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
         cor = getattr(arguments, "constant_cor", None)
         if cor is not None:
             constant_model(model.pair, cor)
-    begin = partial(_simulate, scene, model, command, cor)
+        making = Making(model, command, engine.time_step(scene, model))
+    begin = partial(_simulate, scene, making, cor)
     if MPI.COMM_WORLD.rank > 0:
         _, stop = begin(None)
         if stop is not None:
@@ -72,12 +74,11 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
 
 
 def _simulate(
-    scene: Sieve, law: ImpactModel, command: str, constant_cor: float | None, folder: Path | None
+    scene: Sieve, making: Making, constant_cor: float | None, folder: Path | None
 ) -> tuple[list[Run[Any]], BaseException | None]:
     """Write both records into a folder, which rank 0 knows; returns what stopped a run, if any."""
     from mpi4py import MPI
 
-    from dem_demo.kit.run import Making
     from dem_demo.sieve import constant, deck, engine
 
     first, comm = folder is not None, MPI.COMM_WORLD
@@ -85,7 +86,6 @@ def _simulate(
     if first:
         deck.write_stl(folder / deck.FORM, scene.deck.triangles())
     comm.barrier()
-    making = Making(law, command, engine.time_step(scene, law))
     run, stop = engine.simulated(scene, making, folder)
     if stop is not None:
         return [], stop

@@ -110,13 +110,16 @@ def test_softened_contacts_rebound_as_true_ones(runs, nothing_drawn, tmp_path):
         assert true.making.time_step < 0.12 * soft.making.time_step
         assert (true.record.made["softening"], soft.record.made["softening"]) == (1.0, 300.0)
         first = [run.contacts[np.unique(run.contacts["bead"], return_index=True)[1]] for run in (true, soft)]
-        # Softened, the bead of an impact beside a rim goes deeper than it is far from the rim.
-        kept = [rows[(rows["kind"] == 0) & (rows["flags"] & cl.Validity.NEAR_EDGE == 0)] for rows in first]
+        kept = [rows[rows["kind"] == 0] for rows in first]
         _, *which = np.intersect1d(kept[0]["bead"], kept[1]["bead"], return_indices=True)
         a, b = (rows[here] for rows, here in zip(kept, which, strict=True))
+        same = a["triangle"] == b["triangle"]  # not those on a rim
+        a, b = a[same], b[same]
         assert a.size >= 4
         assert b["approach_speed"] == pytest.approx(a["approach_speed"], rel=2e-3)
-        assert b["restitution"] == pytest.approx(a["restitution"], abs=1e-3)
+        # Softened, the bead of an impact beside a rim goes deeper than it is far from the rim.
+        close = a["flags"] & cl.Validity.NEAR_EDGE != 0
+        assert (abs(b["restitution"] - a["restitution"]) < np.where(close, 0.03, 1e-3)).all()
         # In mid-contact a softened spring still holds what the record says is lost or left.
         rows, since = soft.contacts, soft.time[:, None] - soft.contacts["time"]
         apart = ~((since >= 0.0) & (since < 1.5 * 300**0.4 * rows["contact_time"])).any(axis=1)
@@ -155,7 +158,7 @@ def test_each_panel_names_its_run(module, runs):
 
 def test_an_energy_has_one_colour_in_report_demo_and_page(runs, tmp_path, page):
     rows, seen = runs[0].record.rows.copy(), {}
-    rows["plastic_energy"] = rows["other_energy"] = rows["friction_energy"] = rows["wave_energy"]
+    rows["plastic_energy"] = rows["other_energy"] = rows["friction_energy"] = 0.1 * rows["wave_energy"]
     run = dataclasses.replace(runs[0], record=dataclasses.replace(runs[0].record, rows=rows))
     for figure in (of_report.draw(Run(run.record)), energy.draw([run])):
         for patch, text in zip(figure.legends[0].legend_handles, figure.legends[0].get_texts(), strict=True):
