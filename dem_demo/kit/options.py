@@ -71,7 +71,7 @@ def of(make: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any
     return {name: given[name] for name in inspect.signature(make).parameters if name in given}
 
 
-def model(scene: Scene, arguments: argparse.Namespace, outside: str) -> ImpactModel:
+def model(scene: Scene, arguments: argparse.Namespace, outside: Any) -> ImpactModel:
     """Make the model of the impacts on walls, with the law of the options."""
     from contactlaw import ImpactModel, Pair, laws
 

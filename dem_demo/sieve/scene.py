@@ -1,6 +1,6 @@
 """The scene of the sieve: a feed of beads of two sizes, and a vibrating deck.
 
-The defaults are within the limits of the law, and simulated within two minutes.
+The defaults are within the limits of the law but for the rims of the openings, and simulated within minutes.
 """
 
 from __future__ import annotations

@@ -6,6 +6,8 @@ without sliding friction, averaged over a neighbourhood.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -27,7 +29,7 @@ def draw(runs: Runs[Sieve]) -> Figure:
     about = f"{scene.subject}; dissipated in {runs[0].time[-1] * 1e3:.0f} ms"
     figure = style.figure(style.COLUMN, 9.4, title, about)
     maps = [energy_map(run.record.surface, run.dissipated) for run in runs if run.record.surface]
-    scale = Normalize(0.0, max(float(np.quantile(found.density, 0.999)) for found in maps) or 1.0)
+    scale: Any = Normalize(0.0, max(float(np.quantile(found.density, 0.999)) for found in maps) or 1.0)
     shown = panels(figure, runs)
     for (axes, _), found in zip(shown, maps, strict=True):
         drawn = sheet(axes, found.corners[:, :, :2] * MM, found.density, scale)
