@@ -101,7 +101,7 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	mkdir -p $(PICTURES)/docs/examples && cp docs/examples/rebounds.csv $(PICTURES)/docs/examples
 	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" sh -e
-	$(BIN)/dem-demo sieve --beads 300 --out $(PICTURES)/small
+	$(BIN)/dem-demo sieve --beads 300 --sphere gamma-alumina --out $(PICTURES)/small
 	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --out $(PICTURES)/small/report
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
