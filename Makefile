@@ -87,11 +87,11 @@ PICTURES := $(VENV)/pictures
 pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 minutes
 	$(BIN)/dem-demo rain --out $(PICTURES)/rain
 	$(BIN)/mpirun -np 2 $(BIN)/dem-demo sieve --out $(PICTURES)/sieve
-	$(BIN)/dem-demo drum --out $(PICTURES)/drum
 	$(BIN)/python -m validation --out $(PICTURES)/report
-	cp $(PICTURES)/rain/rain.gif $(PICTURES)/rain/restitution.png docs
+	cp $(PICTURES)/rain/restitution.png docs
+	$(BIN)/dem-demo rain --plate aluminium-6061-t6 --beads 1000 --out $(PICTURES)/metal
+	PYTHONPATH=tests/shared $(BIN)/python docs/film.py $(PICTURES)/metal/index.html docs/rain.gif
 	cp $(PICTURES)/sieve/dissipation.png docs/sieve.png
-	cp $(PICTURES)/drum/load.png docs/drum.png
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
@@ -99,7 +99,7 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	mkdir -p $(PICTURES)/docs/examples && cp docs/examples/rebounds.csv $(PICTURES)/docs/examples
 	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" sh -e
-	$(BIN)/dem-demo sieve --beads 300 --out $(PICTURES)/small
+	$(BIN)/dem-demo sieve --beads 300 --sphere gamma-alumina --out $(PICTURES)/small
 	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --out $(PICTURES)/small/report
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png

@@ -58,7 +58,7 @@ def scenes() -> list[str]:
     Examples
     --------
     >>> scenes()
-    ['drum', 'rain', 'sieve']
+    ['rain', 'sieve']
     """
     found = pkgutil.iter_modules(dem_demo.__path__)
     return sorted(module.name for module in found if module.ispkg and module.name != "kit")

@@ -306,7 +306,7 @@ def test_the_demo_has_layers(path):
     """The kit knows no scene, a scene no other; of contactlaw they import public modules only."""
     home = path.relative_to(DEMO).parts[0]
     scenes = {folder.parent.name for folder in DEMO.glob("*/command.py")}
-    assert {"drum", "rain", "sieve"} <= scenes
+    assert {"rain", "sieve"} <= scenes
     for name in imported(path):
         package, *parts = name.split(".")
         if package == "contactlaw":

@@ -376,9 +376,8 @@ COMMANDS = [
     f"dem-demo rain {DEMO} 5 --plates 1mm --duration 0.05",
     "contactlaw report RAIN/rain.h5 --out OUT",
     f"dem-demo sieve {DEMO} 12 --duration 0.004 --speed 2.5",
-    f"dem-demo drum {DEMO} 4 --duration 0.01 --speed 2.5",
 ]
-IN_LAMMPS = COMMANDS[-2:]
+IN_LAMMPS = COMMANDS[-1:]
 # Runs each of the commands that it is given; tells their status, and the kernels that they compile.
 COUNTED = """
 import json, sys

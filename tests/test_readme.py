@@ -35,7 +35,7 @@ STATED = {
     "laws": 12,
     "materials": 4,
     "measure": 2,
-    "tutorial": 3,
+    "tutorial": 6,
     "walls": 4,
 }
 SAID = " ".join(PAGES["theory"].split())

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contactlaw import quantities
 from contactlaw.quantities import Quantity
 from dem_demo.kit import signals
 
+if TYPE_CHECKING:
+    from contactlaw import ImpactModel
+    from dem_demo.kit.scene import Scene
+
 # Parameters that may have units.
 _QUANTITIES = {"speed": quantities.SPEED}
-_QUANTITIES |= dict.fromkeys(
-    ("radius", "thickness", "plates", "opening", "amplitude", "drum", "length"), quantities.LENGTH
-)
-LAMMPS = "demo,lammps"  # the extras that beds need
+_QUANTITIES |= dict.fromkeys(("radius", "thickness", "plates", "opening", "amplitude"), quantities.LENGTH)
 _RANGE, _LIST = "MIN,MAX", "H,..."  # placeholders of options that take two values, or any number
 # Placeholder and help of the options that scenes share; a scene may have words of its own.
 _ABOUT = {
@@ -71,6 +71,14 @@ def of(make: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any
     return {name: given[name] for name in inspect.signature(make).parameters if name in given}
 
 
+def model(scene: Scene, arguments: argparse.Namespace, outside: Any) -> ImpactModel:
+    """Make the model of the impacts on walls, with the law of the options."""
+    from contactlaw import ImpactModel, Pair, laws
+
+    pair = Pair(scene.sphere_material, scene.plate_material)
+    return ImpactModel(pair, getattr(arguments, "law", laws.DEFAULT), outside=outside)
+
+
 def add_scene(
     commands: Any,
     make: Callable[..., Any],
@@ -86,8 +94,8 @@ def add_scene(
     """
     name = make.__name__
     what = (
-        f"Writes {name}.h5, index.html, figures (PNG), {name}.gif and summary.txt. What has been computed is kept "
-        "if it is stopped. All numbers are in SI units."
+        f"Writes {name}.h5, index.html, figures (PNG) and summary.txt. What has been computed is kept if it is "
+        "stopped. All numbers are in SI units."
     )
     command: argparse.ArgumentParser = commands.add_parser(
         name, help=help, description=f"{description} {what}", formatter_class=argparse.ArgumentDefaultsHelpFormatter
@@ -107,29 +115,6 @@ def add_scene(
     command.add_argument("--out", type=Path, metavar="DIR", default=Path(name), help="folder for the results")
     command.set_defaults(start=start)
     return command
-
-
-def add_bed(commands: Any, make: Callable[..., Any], *, description: str, **scene: Any) -> None:
-    """Add a scene that runs twice in LAMMPS; the file `dissipation` of its folder draws a figure."""
-
-    def start(arguments: argparse.Namespace, command: str) -> int:
-        with needing(LAMMPS):
-            from dem_demo.kit import comparison
-
-            own = importlib.import_module(f"{make.__module__.rpartition('.')[0]}.dissipation")
-        return comparison.start(make, arguments, command, own)
-
-    twice = (
-        f"{description} It is simulated twice: under the law, and with one COR for all impacts on the walls, which "
-        "constant.h5 records. Writes a dump for OVITO, too. Works under mpirun."
-    )
-    add_scene(commands, make, start=start, description=twice, **scene).add_argument(
-        "--constant-cor",
-        type=float,
-        metavar="E",
-        default=argparse.SUPPRESS,
-        help="COR of the other run (default: the law's for a thick block, at the speed of --speed)",
-    )
 
 
 def _read(quantity: Quantity, metavar: str, words: str) -> float | tuple[float, ...]:

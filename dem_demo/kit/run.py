@@ -22,11 +22,10 @@ from tqdm import tqdm
 from contactlaw import ImpactModel, Pair, Record, _atomic
 from contactlaw.record.file import bodies_of, write
 from dem_demo.kit import signals
-from dem_demo.kit.scene import GRAVITY, Bed, Floats, Scene
+from dem_demo.kit.scene import GRAVITY, Floats, Scene
 from dem_demo.kit.signals import Interrupted
 
 S = TypeVar("S", bound=Scene)
-B = TypeVar("B", bound=Bed)
 
 
 class Frame(NamedTuple):
@@ -37,7 +36,6 @@ class Frame(NamedTuple):
     spin: Floats  # shape (N, 3) [rad/s]; in two dimensions (N, 1), counterclockwise
     status: NDArray[np.uint8]  # shape (N,)
     elapsed: float  # computing time so far [s]
-    borne: Floats  # force, torque and power of each wall, as of `Loads`, since the frame before; shape (walls, 7)
 
 
 # Type, unit and description of the dataset for each field of a frame.
@@ -47,7 +45,6 @@ _DATASETS = {
     "spin": ("f4", "rad/s", "angular velocity; in two dimensions counterclockwise seen from the front"),
     "status": ("u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
     "elapsed": ("f8", "s", "computing time so far"),
-    "borne": ("f4", "N, N m, W", "by wall: force, torque and power, means since the frame before; at first 0"),
 }
 
 
@@ -85,7 +82,6 @@ class Run(Generic[S]):
     spin: NDArray[np.float32]
     status: NDArray[np.uint8]
     elapsed: Floats
-    borne: NDArray[np.float32]
 
     @property
     def time(self) -> Floats:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -16,12 +15,10 @@ from contactlaw import ArgumentError
 
 if TYPE_CHECKING:
     from contactlaw import Material
-    from contactlaw.walls import Cylinder, Disc, Mesh
     from dem_demo.kit.run import Run
 
 Floats = NDArray[np.float64]
 Facts = list[tuple[str, str]]
-Corners = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 GRAVITY = 9.80665  # [m/s2], standard gravity
 WAITING, FLYING, GONE = 0, 1, 2  # a bead's status in a frame
@@ -34,12 +31,12 @@ class Scene(ABC):
     NAME: ClassVar[str]
     FRAME_RATE: ClassVar[float]  # recorded frames per second [1/s]
     WALL: ClassVar[str]  # what the beads hit, in words
-    # Texts of the page: heading, lede, alt (of the film), others (files beside the page).
-    PAGE: ClassVar[Mapping[str, str]]
+    PAGE: ClassVar[Mapping[str, str]]  # texts of the page: heading, lede, others (files beside the page)
 
     radius: Floats  # of the beads, shape (N,) [m]
     position: Floats  # of their centres at the start, shape (N, d) [m]; the last axis points up
     velocity: Floats  # at the start, shape (N, d) [m/s]
+    plates: tuple[float, ...]  # thickness of each wall [m]; inf is a half-space
     sphere_material: Material
     plate_material: Material
     friction: float  # Coulomb's coefficient
@@ -67,7 +64,15 @@ class Scene(ABC):
     @property
     def sheet(self) -> str:
         """What the walls are made of, in words."""
-        return self.plate_material.name
+        from contactlaw.reporting.limits import label
+
+        thickness = f"{label(self.plates[0])} " if len(self.plates) == 1 else ""
+        return f"{thickness}{self.plate_material.name}"
+
+    @property
+    def subject(self) -> str:
+        """Beads and walls, for the subtitles of figures."""
+        return f"{self.radius.size} beads of {self.sphere_material.name} on {self.sheet}"
 
     @property
     @abstractmethod
@@ -81,75 +86,6 @@ class Scene(ABC):
     @abstractmethod
     def facts(self, run: Run[Any]) -> Facts:
         """Names and values of what only this kind of scene counts."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Bed(Scene):
-    """Beads on moving walls of sheet metal, in three dimensions."""
-
-    FLAT: ClassVar[str]  # where impacts have no COR of their own: "at a rim or a wall"
-    FILM_RATE: ClassVar[float]  # frames per second of the film [1/s]
-    DRIVE: ClassVar[tuple[str, str, int, float]] = "power", "mW", 6, 1e3  # of walls: column and factor of `Run.borne`
-
-    thickness: float  # of the walls [m]
-    softening: float  # by which the modulus of all contacts is divided; 1: true contacts
-
-    @property
-    def sheet(self) -> str:
-        """What the walls are made of, in words."""
-        from contactlaw.reporting.limits import label
-
-        return f"{label(self.thickness)} {self.plate_material.name}"
-
-    @property
-    def groups(self) -> list[tuple[str, NDArray[np.bool_]]]:
-        """Smaller and larger beads: words, and a mask of the beads."""
-        small, size = self.small, self.radius * 1e3
-        found = []
-        for name, which in (("smaller", small), ("larger", ~small)):
-            ends = sorted({f"{end:.2g}" for end in (size[which].min(), size[which].max())}) if which.any() else ["-"]
-            found.append((f"{name} beads, radius {' to '.join(ends)} mm", which))
-        return found
-
-    @property
-    @abstractmethod
-    def small(self) -> NDArray[np.bool_]:
-        """Which beads are the smaller ones."""
-
-    @property
-    @abstractmethod
-    def box(self) -> Corners:
-        """Lower and upper corner [m] of the space in which beads are followed."""
-
-    @abstractmethod
-    def meshes(self, thickness: float, folder: Path) -> Sequence[Mesh | Cylinder | Disc]:
-        """Make the moving walls, of a thickness [m], from the mesh files in a folder if any."""
-
-    def write_files(self, folder: Path) -> None:
-        """Write the mesh files of the walls, if the scene has any."""
-        return
-
-    @abstractmethod
-    def on_faces(self, rows: NDArray[np.void]) -> NDArray[np.bool_]:
-        """Mask of contacts with a single wall, away from rims and seams.
-
-        At a rim or a seam a bead may have several contacts at once, none of which has a COR of its
-        own.
-        """
-
-    @property
-    @abstractmethod
-    def window(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top [m] of what is drawn, seen along y."""
-
-    @property
-    @abstractmethod
-    def slice(self) -> tuple[float, float]:
-        """Middle and half of the width [m] along y of what is drawn."""
-
-    @abstractmethod
-    def outline(self, time: float) -> Sequence[Floats]:
-        """Lines (k, 2) [m] of the walls at a time [s], as seen along y."""
 
 
 def check(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 import sys
 import traceback
@@ -31,7 +30,6 @@ class Show(NamedTuple):
     """What draws a scene, and what its page has beside that of other scenes."""
 
     figures: Sequence[ModuleType]  # each has `draw(runs)`; its docstring is the caption
-    film: Callable[[Any], bytes]
     package: str = "dem_demo.kit"  # that has the template page.html
     data: Callable[[Any], Mapping[str, Any]] = lambda runs: {}  # for the template
 
@@ -93,8 +91,6 @@ def make(show: Show, runs: Runs[Any], text: str, folder: Path) -> None:
         with style.applied():
             pictures[name] = style.png(module.draw(runs))
         (folder / f"{name}.png").write_bytes(pictures[name])
-    film = show.film(runs)
-    (folder / f"{runs[0].scene.NAME}.gif").write_bytes(film)
     run, (what, how) = runs[0], title(runs[0])
     made, engine = run.record.made, run.record.made["engine"]
     page = common.template(show.package, "page.html").render(
@@ -102,7 +98,6 @@ def make(show: Show, runs: Runs[Any], text: str, folder: Path) -> None:
         title=f"{run.scene.PAGE['heading']}: what contactlaw gives a particle simulation",
         facts=(what, f"{how}."),
         name=run.scene.NAME,
-        film=f"data:image/gif;base64,{base64.b64encode(film).decode('ascii')}",
         measured=_columns(runs),
         impacts=of_any_run.Run(run.record),
         summary=tables,
@@ -162,7 +157,6 @@ def facts(run: Run[Any]) -> Facts:
         ("  lost at the contact", written(energy.plastic[-1])),
         (f"friction on the {wall}", written(energy.friction[-1])),
         ("beads on beads", written(energy.others[-1])),
-        (f"mean force on the {wall}", f"{-1e3 * run.borne[1:, :, run.position.shape[-1] - 1].sum(1).mean():z.1f} mN"),
         (f"work of the {wall} on the beads", written(energy.walls[-1])),
         ("work of gravity on the beads", written(energy.gravity[-1])),
         ("kinetic energy at the start", written(energy.start[-1])),

@@ -45,32 +45,30 @@ def add(commands: Any) -> None:
 
 def _start(arguments: argparse.Namespace, command: str) -> int:
     with options.needing("demo"):
-        from dem_demo.kit import session
+        from dem_demo.kit import restitution, session
         from dem_demo.kit.run import Making, simulate
-        from dem_demo.rain import picture, player
+        from dem_demo.rain import player
         from dem_demo.rain.engine import Rain
-        from dem_demo.rain.figures import constant_cor, energy, rebound_height, restitution
+        from dem_demo.rain.figures import constant_cor, energy
 
     with options.refusing(arguments):
         scene = rain(**options.of(rain, arguments))
-        model = _model(scene, arguments)
+        model = options.model(scene, arguments, arguments.outside)
+        _check(scene, model)
 
     def simulated(folder: Path) -> tuple[list[Run[Shower]], BaseException | None]:
         making = Making(model, command, scene.time_step)
         run, stop = simulate(lambda: Rain(scene, model), scene, making, folder / "rain.h5")
         return [run] if run is not None else [], stop
 
-    figures = constant_cor, energy, rebound_height, restitution
-    return session.deliver(arguments.out, session.Show(figures, picture.gif, "dem_demo.rain", player.data), simulated)
+    show = session.Show((constant_cor, energy, restitution), "dem_demo.rain", player.data)
+    return session.deliver(arguments.out, show, simulated)
 
 
-def _model(scene: Shower, arguments: argparse.Namespace) -> ImpactModel:
-    """Make the model, and refuse a scene whose hardest impact on a plate is outside it."""
-    from contactlaw import ImpactModel, Pair, laws
+def _check(scene: Shower, model: ImpactModel) -> None:
+    """Refuse a scene whose hardest impact on a plate is outside the model."""
     from contactlaw.reporting.limits import label
 
-    pair = Pair(scene.sphere_material, scene.plate_material)
-    model = ImpactModel(pair, getattr(arguments, "law", laws.DEFAULT), outside=arguments.outside)
     speed, radius = scene.top_speed, float(scene.radius.max())
     for thickness in scene.plates:
         try:
@@ -80,4 +78,3 @@ def _model(scene: Shower, arguments: argparse.Namespace) -> ImpactModel:
                 f"a bead of {scene.sphere_material.name} of radius {radius * 1e3:.3g} mm on the "
                 f"plate of {label(thickness)} at {speed:.3g} m/s: {error}"
             ) from error
-    return model

@@ -50,8 +50,7 @@ class Rain:
         self.emitted = 0
         n, self.began = scene.radius.size, time.perf_counter()
         status = np.full(n, WAITING, np.uint8)
-        borne = np.zeros((len(scene.plates), 7))
-        self.now = Frame(scene.position.copy(), scene.velocity.copy(), np.zeros((n, 1)), status, 0.0, borne)
+        self.now = Frame(scene.position.copy(), scene.velocity.copy(), np.zeros((n, 1)), status, 0.0)
 
     def advance(self) -> None:
         """Simulate one frame, emitting beads when their time has come."""
@@ -63,7 +62,6 @@ class Rain:
                 self.emitted += 1
             space.step(dt)
             self.steps += 1
-        self.now = self.now._replace(borne=np.column_stack(self.impacts.loads()[1:]))
 
     def _emit(self, n: int) -> None:
         scene = self.scene

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 
 import numpy as np
@@ -31,28 +30,15 @@ _PLACE = 5e-5  # [m], invisible difference of two positions
 _STILL = 2.0
 
 
-def hits(run: Run[Shower]) -> tuple[NDArray[np.int64], Floats, NDArray[np.int64]]:
-    """List the collisions of each bead by time, also those that are no impacts.
-
-    Returns bead, time [s] and row of the record; a collision of two beads is listed for both.
-    """
-    rows = run.record.rows
-    bead, time = np.r_[rows["bead"], rows["other"]], np.tile(rows["time"], 2)
-    order = np.lexsort((time, bead))
-    order = order[bead[order] >= 0]
-    return bead[order], time[order], order % max(1, rows.size)
-
-
-@functools.lru_cache(maxsize=1)  # shared by film and page
 def pieces(run: Run[Shower]) -> NDArray[np.void]:
     """Cut the paths of beads into parabolas, and into pieces at rest.
 
     A piece is what fits consecutive frames; the collisions between two frames say when it ends.
     """
-    (struck, times, _), found = hits(run), []
+    rows, found = run.record.rows, []
     for bead in drawn(run).tolist():
-        a, b = np.searchsorted(struck, [bead, bead + 1])
-        found += _flight(run, bead, times[a:b])
+        times = np.sort(rows["time"][(rows["bead"] == bead) | (rows["other"] == bead)])
+        found += _flight(run, bead, times)
     made = np.zeros(len(found), PIECE)
     made[list(PIECE.names or ())[:9]] = np.array(found, PIECE.descr[:9])
     turned = np.r_[0.0, np.cumsum(made["spin"] * (made["end"] - made["start"]))]
@@ -65,19 +51,6 @@ def drawn(run: Run[Shower]) -> NDArray[np.int64]:
     """Beads that are drawn: all, or an even sample of very many."""
     count = run.scene.radius.size
     return np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
-
-
-def at(made: NDArray[np.void], time: float) -> NDArray[np.void]:
-    """Pieces that cover a time [s], one for each bead that flies."""
-    now: NDArray[np.void] = made[(made["start"] <= time) & (time < made["end"])]
-    return now
-
-
-def places(made: NDArray[np.void], time: float | Floats) -> Floats:
-    """Positions (N, 2) [m] of the beads on pieces at a time [s], one for all or one for each."""
-    t = time - made["start"]
-    height = made["y"] + made["v"] * t - 0.5 * made["fall"] * t**2
-    return np.column_stack((made["x"] + made["u"] * t, height))
 
 
 def _flight(run: Run[Shower], bead: int, times: Floats) -> list[tuple[float, ...]]:

@@ -15,11 +15,19 @@ from numpy.typing import NDArray
 
 from contactlaw import edge_distance
 from contactlaw.reporting.limits import label
-from dem_demo.kit.drawing import restitution_range
 from dem_demo.kit.run import Run, Runs
-from dem_demo.rain import paths, picture
+from dem_demo.rain import paths
 from dem_demo.rain.scene import Shower
 
+# Beads are drawn this many times as large, to be visible, and with friction to show that they turn.
+_MAGNIFIED, _TURNING_MAGNIFIED = 3.0, 5.0
+_PLATES_MAGNIFIED = 4.0  # plates are drawn this many times as thick, to look different
+_TURNING = 20.0  # spins, of a thousand turns a second, are drawn this many times slower than paths
+_HAND = 1.6  # [drawn radius], length of the hand that turns with a bead
+_EXPOSURE = 2e-3  # [s]; a streak is the path of a bead in this time
+_HALF_SPACE = 3e-3  # [m], drawn depth of a plate of infinite thickness
+_SIDES, _BELOW = 0.01, 0.016  # [m] beside and below the plates
+_ABOVE = 1.08  # top of the picture over the height of the nozzles
 _SAMPLES = 96  # points of the force curve of a contact
 _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
 
@@ -32,8 +40,8 @@ def data(runs: Runs[Shower]) -> Mapping[str, Any]:
         "data": json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         "sample": f" {shown} of the {every} beads are shown." if shown < every else "",
         "cor": f"{run.mean_cor:.2f}" if run.impacts.size else "",
-        "turning": f"{picture.TURNING:g}" if run.scene.friction else "",
-        "marked": " They are ringed in the animation and in the figures.",
+        "turning": f"{_TURNING:g}" if run.scene.friction else "",
+        "marked": " They are ringed in the animation, and faint in the figure of the COR.",
     }
 
 
@@ -42,22 +50,26 @@ def _data(run: Run[Shower]) -> dict[str, object]:
     made = paths.pieces(run)
     fields = [*_FIELDS, *(("angle", "spin") if run.scene.friction else ())]
     columns = [run.scene.radius[made["bead"]], *(made[name] for name in fields)]
-    low, high = restitution_range(run)
+    # From the 2 % quantile of the COR, at most 0.9, to 1.
+    low = max(0.0, min(0.9, float(np.quantile(run.impacts["restitution"], 0.02)))) if run.impacts.size else 0.9
+    depth = [_PLATES_MAGNIFIED * min(thickness, _HALF_SPACE) for thickness in run.scene.plates]
+    bottom = min(run.scene.floor, -max(depth) - _BELOW)
+    top = _ABOVE * float(run.scene.position[:, 1].max())
     map_ = colormaps["viridis"]
     return {
         "fields": ["radius", *fields],
         "pieces": base64.b64encode(np.column_stack(columns).astype("<f4").tobytes()).decode(),
-        "window": picture.window(run.scene),
+        "window": (-_SIDES, float(run.scene.ends.max()) + _SIDES, bottom, top),
         "duration": float(run.time[-1]),
-        "magnified": picture.magnified(run),
-        "exposure": picture.EXPOSURE,
-        "turning": picture.TURNING,
-        "hand": picture.HAND,
+        "magnified": _TURNING_MAGNIFIED if run.scene.friction else _MAGNIFIED,
+        "exposure": _EXPOSURE,
+        "turning": _TURNING,
+        "hand": _HAND,
         "plates": [
-            {"x0": left, "x1": right, "y": 0.0, "depth": picture.drawn_depth(thickness), "label": label(thickness)}
-            for (left, right), thickness in zip(run.scene.ends.tolist(), run.scene.plates, strict=True)
+            {"x0": left, "x1": right, "y": 0.0, "depth": deep, "label": label(thickness)}
+            for (left, right), deep, thickness in zip(run.scene.ends.tolist(), depth, run.scene.plates, strict=True)
         ],
-        "range": [low, high],
+        "range": [low, 1.0],
         "colours": [to_hex(map_(x)) for x in np.linspace(0.0, 1.0, 33)],
         "hits": [hit for n in range(len(run.scene.plates)) if (hit := _hardest(run, n))],
     }

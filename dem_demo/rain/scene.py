@@ -46,11 +46,9 @@ class Shower(Scene):
         "lede": "How a bead rebounds from a plate depends on the plate's thickness, on the bead and on its "
         "speed. Particle simulations mostly take one number for all of it, the coefficient of "
         "restitution (COR): rebound speed over impact speed. Here every collision has its own COR.",
-        "alt": "",
         "others": "",
     }
 
-    plates: tuple[float, ...]  # thickness of each [m]; inf is a half-space
     emission_time: Floats  # when each bead leaves its nozzle [s], ascending
 
     @property

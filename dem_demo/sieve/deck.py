@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dem_demo.kit.scene import Floats
 
@@ -72,10 +71,6 @@ class Deck:
         ]
         return np.concatenate([*parts, *self._walls()])
 
-    def on_sheet(self) -> NDArray[np.bool_]:
-        """Whether each triangle belongs to the sheet, not to a wall."""
-        return np.asarray(np.ptp(self.triangles()[:, :, 2], axis=1) == 0.0)
-
     def _walls(self) -> list[Floats]:
         """Walls whose lower edges have the corners of the cells above them."""
         found = []
@@ -87,15 +82,6 @@ class Deck:
                 top = bottom + [0.0, 0.0, self.wall]
                 found += [_strip(bottom, top)]
         return found
-
-    def nearest_edge(self, x: Floats, y: Floats) -> Floats:
-        """Distance of points of the deck from the nearest opening [m]; 0 within one."""
-        cell = [
-            np.clip(np.floor(value / self.pitch), 1, count - 2) + 0.5
-            for value, count in ((x, self.columns), (y, self.rows))
-        ]
-        away = np.hypot(x - cell[0] * self.pitch, y - cell[1] * self.pitch)
-        return np.maximum(away - 0.5 * self.opening, 0.0)
 
 
 def _edge() -> Floats:

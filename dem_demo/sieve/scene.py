@@ -1,6 +1,6 @@
 """The scene of the sieve: a feed of beads of two sizes, and a vibrating deck.
 
-The defaults are within the limits of the law, and simulated within two minutes.
+The defaults are within the limits of the law but for the rims of the openings, and simulated within minutes.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ArgumentError
-from dem_demo.kit.scene import GRAVITY, Bed, Corners, Facts, Floats, check
-from dem_demo.sieve.deck import FORM, Deck, write_stl
+from dem_demo.kit.scene import GRAVITY, Facts, Floats, Scene, check
+from dem_demo.sieve.deck import FORM, Deck
 
 if TYPE_CHECKING:
     from contactlaw.walls import Mesh
@@ -28,30 +28,26 @@ _LAYERS = 8  # least number of layers of lattice sites
 _MIDDLE, _SPREAD = 0.3, 0.4  # [deck's length], centre and spread of the feed along x
 _DRIFT = 0.5  # speed of the feed along the deck, over its speed downwards
 _AROUND = 0.2  # [m], room around deck and feed in the simulation box
-_SLICE = 4.0  # [largest radius], half width of the slice that is drawn
-_ABOVE, _BELOW = 1.05, 4.0  # [feed's height], [opening]: room above and below the deck
-_RIM = 1e-4  # [m]; nearer contact points may be on a rim: the deck moves while they are softened
 LIFT = 2.0  # [amplitude], extra height of the feed, above the deck's highest position
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Sieve(Bed):
+class Sieve(Scene):
     """A feed of two sizes on a deck that vibrates about z = 0, at 45 degrees to it."""
 
-    NAME, FRAME_RATE, WALL, FLAT = "sieve", 500.0, "deck", "at a rim or a wall"
-    FILM_RATE = 8.0
+    NAME, FRAME_RATE, WALL = "sieve", 500.0, "deck"
     PAGE = {  # noqa: RUF012
         "heading": "Beads on a vibrating sieve",
         "lede": "The deck is a mesh from an STL file. Under the law the rebound of each impact "
         "follows from speed, bead, plate and the nearest opening, as does where its energy goes. "
         "For comparison, the same feed with one coefficient of restitution (COR) for all impacts.",
-        "alt": "A slice of the bed",
         "others": "; <code>deck.stl</code>",
     }
 
     deck: Deck  # at rest
     frequency: float  # [1/s]
     amplitude: float  # [m]
+    softening: float  # by which the modulus of all contacts is divided; 1: true contacts
 
     @property
     def small(self) -> NDArray[np.bool_]:
@@ -72,21 +68,13 @@ class Sieve(Bed):
         return self.amplitude * math.sqrt(0.5) * np.array([1.0, 0.0, 1.0])
 
     @property
-    def box(self) -> Corners:
+    def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Corners [m] of the space around the deck, as deep as a bead can fall."""
         bottom = -self.top_speed * self.duration - _AROUND
         top = float(self.position[:, 2].max()) + _AROUND
         return (-_AROUND, -_AROUND, bottom), (self.deck.length + _AROUND, self.deck.width + _AROUND, top)
 
-    def deck_place(self, time: float) -> Floats:
-        """Displacement of the deck at a time [m]."""
-        return self.vibration * math.sin(2.0 * math.pi * self.frequency * time)
-
-    def write_files(self, folder: Path) -> None:
-        """Write the deck's STL file."""
-        write_stl(folder / FORM, self.deck.triangles())
-
-    def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
+    def mesh(self, thickness: float, folder: Path) -> Mesh:
         """Read the deck from its STL file, as a user would.
 
         Nothing holds the sheet at the rims of its openings. Where it is folded up to a wall, no
@@ -95,34 +83,7 @@ class Sieve(Bed):
         from contactlaw.walls import Mesh, Vibration
 
         motion = Vibration(tuple(self.vibration.tolist()), self.frequency)
-        return [Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion, edges="free")]
-
-    @property
-    def window(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top [m] of what is drawn."""
-        length, top = self.deck.length, float(self.position[:, 2].max())
-        return -0.03 * length, 1.03 * length, -_BELOW * self.deck.opening, _ABOVE * top
-
-    @property
-    def slice(self) -> tuple[float, float]:
-        """Middle and half of the width [m] along y of what is drawn: a row of openings."""
-        return 0.5 * self.deck.width, _SLICE * float(self.radius.max())
-
-    def outline(self, time: float) -> list[Floats]:
-        """Lines of the deck between its openings, and of its walls, at a time [s]."""
-        half, length, high = 0.5 * self.deck.opening, self.deck.length, self.deck.wall
-        holes = (np.arange(1, self.deck.columns - 1) + 0.5) * self.deck.pitch
-        ends = np.r_[0.0, np.column_stack((holes - half, holes + half)).ravel(), length].reshape(-1, 2)
-        lines = [np.column_stack((pair, np.zeros(2))) for pair in ends]
-        lines += [np.array([[x, 0.0], [x, high]]) for x in (0.0, length)]
-        return [line + self.deck_place(time)[[0, 2]] for line in lines]
-
-    def on_faces(self, rows: NDArray[np.void]) -> NDArray[np.bool_]:
-        """Mask of contacts with the flat of the deck, away from rims and walls."""
-        moved = np.sin(2.0 * math.pi * self.frequency * (rows["time"] + rows["contact_time"]))
-        x, y = (rows[name] - self.vibration[n] * moved for n, name in enumerate("xy"))
-        flat: NDArray[np.bool_] = self.deck.on_sheet()[rows["triangle"]]
-        return flat & (self.deck.nearest_edge(x, y) > _RIM)
+        return Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion, edges="free")
 
     def title(self) -> tuple[str, str]:
         """Feed and deck; motion of the deck."""
@@ -144,17 +105,17 @@ class Sieve(Bed):
             ("undersize beads that have passed", f"{passed.sum() / max(1, passed.size):.1%}"),
         ]
         # A constant COR does not depend on the openings, which leaves nothing to compare.
-        if run.making.constant_cor is None and self.on_faces(run.impacts).any():
-            found.insert(0, ("impacts on its flat lose, by the openings", f"{self.loss_by_openings(run):+.1%}"))
+        if run.making.constant_cor is None and run.impacts.size:
+            found.insert(0, ("impacts lose, by the openings", f"{self.loss_by_openings(run):+.1%}"))
         return found
 
     def loss_by_openings(self, run: Run[Any]) -> float:
-        """Energy that impacts on the flat of the deck lose, over that without openings, less 1.
+        """Energy that the impacts lose, over that without openings, less 1.
 
         The same impacts are compared: their recorded COR, with the law's on an endless sheet.
         """
-        rows = run.impacts[self.on_faces(run.impacts)]
-        endless = run.model.restitution(rows["approach_speed"], rows["radius"], self.thickness)
+        rows = run.impacts
+        endless = run.model.restitution(rows["approach_speed"], rows["radius"], self.plates[0])
         energy = rows["mass"] * rows["approach_speed"] ** 2
         return float(energy @ (1.0 - rows["restitution"] ** 2) / (energy @ (1.0 - endless**2)) - 1.0)
 
@@ -165,7 +126,7 @@ def sieve(
     radius: tuple[float, float] = (2e-3, 3e-3),  # at most 1.5 times the thickness
     opening: float = 5e-3,  # the smaller beads pass
     thickness: float = 2e-3,
-    sphere: str = "gamma-alumina",
+    sphere: str = "bearing-steel-52100",
     plate: str = "aluminium-6061-t6",
     speed: float = 1.0,
     frequency: float = 50.0,
@@ -211,7 +172,7 @@ def sieve(
         position=position,
         velocity=np.tile(speed * np.array([_DRIFT, 0.0, -1.0]), (beads, 1)),
         deck=deck,
-        thickness=thickness,
+        plates=(thickness,),
         sphere_material=material(sphere),
         plate_material=material(plate),
         frequency=frequency,

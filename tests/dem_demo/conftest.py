@@ -4,7 +4,7 @@ import os
 import pickle
 
 import pytest
-from demos import DRUM, RAIN, SIEVE
+from demos import RAIN, SIEVE
 from filelock import FileLock
 from unrendered import blank
 
@@ -43,7 +43,6 @@ def made(name, *options, rendered=False):
 
 rain = made("rain", *RAIN, rendered=True)
 oblique = made("oblique", *RAIN, "--friction", "0.2")  # from tilted nozzles
-drum = made("drum", *DRUM)
 sieve = made("sieve", *SIEVE, rendered=True)
 
 

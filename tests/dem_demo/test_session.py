@@ -20,7 +20,7 @@ from dem_demo.kit.run import Frame, Making, simulate
 from dem_demo.rain.scene import rain
 
 FRAMES, IMPACTS = 50, 20
-FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif", "one.png", "two.png"}
+FILES = {"rain.h5", "summary.txt", "index.html", "one.png", "two.png"}
 
 
 class Dust:
@@ -41,7 +41,7 @@ class Dust:
 
     def look(self):
         noise = self.random.random((1000, 2))  # does not compress
-        return Frame(noise, 0.0 * noise, 0.0 * noise, np.ones(1000), 0.0, np.zeros((1, 7)))
+        return Frame(noise, 0.0 * noise, 0.0 * noise, np.ones(1000), 0.0)
 
     def record(self):
         rows = np.zeros(IMPACTS, IMPACT)
@@ -57,7 +57,7 @@ class Dust:
             run, stop = simulate(lambda: self, scene, making, folder / "rain.h5")
             return [run], stop
 
-        return session.deliver(arguments.out, session.Show(self.figures, lambda runs: b"film" * 10_000), simulated)
+        return session.deliver(arguments.out, session.Show(self.figures), simulated)
 
 
 @pytest.fixture
@@ -209,10 +209,3 @@ def test_help_loads_neither_an_engine_nor_what_takes_long():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize("scene", ["drum", "sieve"])
-def test_help_says_which_speed_the_constant_cor_is_for(scene, capsys):
-    with pytest.raises(SystemExit):
-        cli.main([scene, "--help"])
-    assert "at the speed of --speed)" in " ".join(capsys.readouterr().out.split())

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import warnings
+from typing import TYPE_CHECKING, Any
 
 from contactlaw import ArgumentError, ImpactModel, Pair
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.table import Settings
 
-LEAST = 0.2
+if TYPE_CHECKING:
+    from dem_demo.kit.run import Run
+
+_LEAST = 0.2
 # A coarse table is enough: the engine integrates the force, and half-spaces have lambda = 0.
 _COARSE = Settings(largest_inelasticity=1e-2, rows=5, columns=20)
 _BEGIN = 1e-7  # [R*], compression at which losses begin; 1 cm/s compresses 500 times as far
@@ -28,8 +33,8 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     >>> model.solve([0.05, 0.5], radius=1.5e-3, thickness=math.inf).restitution.round(5)
     array([0.63, 0.63])
     """
-    if not LEAST <= restitution <= 1.0:
-        raise ArgumentError("constant_cor", restitution, f"must lie between {LEAST:g} and 1")
+    if not _LEAST <= restitution <= 1.0:
+        raise ArgumentError("constant_cor", restitution, f"must lie between {_LEAST:g} and 1")
     lost = 1.0 - restitution**2
     law = Law.of(
         name="constant_cor",
@@ -42,3 +47,9 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the coarse table warns, but is not used
         return ImpactModel(pair, law, _COARSE, outside="clamp")
+
+
+def thick_cor(run: Run[Any]) -> float:
+    """COR on a thick block at the mean speed of the impacts, as one would type it for a wall."""
+    speed = run.impacts["approach_speed"].mean() if run.impacts.size else run.scene.top_speed
+    return round(max(_LEAST, float(run.model.restitution(speed, float(run.scene.radius.mean()), math.inf))), 3)

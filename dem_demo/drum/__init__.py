@@ -1,1 +1,0 @@
-"""Beads in a turning drum of thin sheet metal: ``dem-demo drum``."""
