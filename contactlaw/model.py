@@ -18,6 +18,7 @@ from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
+from contactlaw.answers.derivatives import Variants
 from contactlaw.answers.edges import with_edges
 from contactlaw.answers.histories import Histories
 from contactlaw.answers.inverse import Inverse
@@ -92,6 +93,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
         self._tabulated = TableLookup(self._bodies, table, self._border)
+        self._changed = Variants(pair.given, self._bodies.law)
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):
@@ -377,7 +379,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(moved.thickness, 3), round(moved.yield_strength, 3)
         (0.239, 0.176)
         """
-        return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
+        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
+        inside = TableLookup(self._bodies, self._tabulated.given, Border("raise")).rebounds(impacts)
+        return sensitivity(self._changed, impacts, np.ravel(inside.overload) > 1.0)
 
     def constant(
         self,

@@ -48,7 +48,7 @@ FILES = {
     ),
     "table": "lookup grid sweep shapes certificate table slides file cache",
     "answers": (
-        "few backend solver tabulated edges beads compiled constant histories loads oblique varied "
+        "few backend solver tabulated edges beads compiled constant histories loads oblique derivatives "
         "sensitivity speed_table law_errors uncertainty inverse"
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",

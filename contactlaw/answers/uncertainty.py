@@ -24,9 +24,9 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array, Places
 from contactlaw._errors import ArgumentError
+from contactlaw.answers.derivatives import solver, with_number
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.varied import solver, with_number
 from contactlaw.physical.arguments import number, shaped, within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts

@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.varied import Number, with_numbers
+from contactlaw.answers.derivatives import Number, with_numbers
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law

@@ -41,12 +41,12 @@ def changed(pair, body, field, factor):
 
 
 def assert_units_change_nothing(moved):
-    """Units of length, and of stress and density together, leave the COR as it is."""
-    assert moved.radius == pytest.approx(-moved.thickness, abs=1e-14)
+    """Units of length, and of stress and density together, leave the COR as it is, within the stated error."""
+    assert moved.radius == pytest.approx(-moved.thickness, abs=1e-5)
     stresses = moved.sphere_modulus + moved.plate_modulus + moved.yield_strength
-    assert stresses + moved.sphere_density + moved.plate_density == pytest.approx(0.0, abs=1e-13)
+    assert stresses + moved.sphere_density + moved.plate_density == pytest.approx(0.0, abs=1e-5)
     # Units of time change with V0, the root of stress over density.
-    assert moved.speed == pytest.approx(-2 * stresses, abs=1e-13)
+    assert moved.speed == pytest.approx(-2 * stresses, abs=1e-5)
 
 
 # Each of these solves with one input changed by a factor x.
@@ -196,7 +196,8 @@ def test_the_strength_is_the_whole_flow_stress(flow):
 
 def test_on_a_half_space_the_plate_does_not_bend(model):
     one = model.sensitivity(20.0, RADIUS, math.inf)
-    assert one.thickness == one.radius == 0.0 == pytest.approx(one.plate_density, abs=1e-8)
+    assert one.thickness == 0.0
+    assert (one.radius, one.plate_density) == pytest.approx((0.0, 0.0), abs=1e-8)
     v = 20.0 / model.pair.yield_speed
     q = v**-0.8
     exact = -0.8 * q * (1 - q) / (2 * (1 - (1 - q) ** 2))  # Eq. 21

@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
-from contactlaw.answers.varied import FINE
+from contactlaw.answers.derivatives import FINE
 from contactlaw.cli import main
 from contactlaw.cli.fit import printed
 from contactlaw.fitting import errors, notes

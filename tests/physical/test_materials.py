@@ -15,7 +15,7 @@ import pytest
 
 import contactlaw
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.varied import with_number
+from contactlaw.answers.derivatives import with_number
 from contactlaw.physical.materials import Material, material, materials, warn_of_softened
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
