@@ -19,7 +19,6 @@ from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.answers.derivatives import Variants
-from contactlaw.answers.edges import with_edges
 from contactlaw.answers.histories import Histories
 from contactlaw.answers.inverse import Inverse
 from contactlaw.answers.oblique import Oblique
@@ -149,8 +148,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
 
     @clamped.setter
     def clamped(self, count: int) -> None:
-        with self._border.lock:
-            self._border.clamped = count
+        self._border.clamped = count
 
     def restitution(
         self,
@@ -209,8 +207,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         if not bare or type(thickness) not in SHEETS:
             impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
             if impacts.remember is not None:
-                by = with_edges(self._tabulated, Solver(self._bodies), impacts)
-                return by.rebounds(impacts).restitution
+                return self._tabulated.rebounds(impacts).restitution
         else:
             # a short cut for engines that call this once per collision
             if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
@@ -255,7 +252,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         '28.3 N for 3.92 us'
         """
         impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
+        return self._tabulated.rebounds(impacts)
 
     def solve(
         self,
@@ -303,8 +300,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         True
         """
         impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        by = Solver.within(self._bodies, rtol)
-        return with_edges(by, by, impacts).rebounds(impacts)
+        return Solver.within(self._bodies, rtol).rebounds(impacts)
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None

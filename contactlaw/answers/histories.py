@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import Backend
-from contactlaw.answers.edges import with_edges
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
@@ -75,6 +74,6 @@ class Histories:
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
         impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        found = with_edges(by, Solver(bodies), impacts).histories(impacts, samples)
+        found = by.histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found

@@ -15,7 +15,6 @@ from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend, renumbered
-from contactlaw.answers.edges import with_edges
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
@@ -114,7 +113,7 @@ class Oblique:
         impacts = replace(bodies.given(v, r, plates, edge, near, hole, *masses, memory=True), shape=shape)
         check(sliding_speed=s, friction=mu)
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        return answer(with_edges(by, Solver(bodies), impacts), bodies, impacts, mu, s)
+        return answer(by, bodies, impacts, mu, s)
 
     def collide(
         self,

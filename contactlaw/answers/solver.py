@@ -7,26 +7,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.backend import OutsideTableError, UnsolvedError, refuse_to_yield, renumbered, too_fast, too_thin
+from contactlaw.answers.backend import (
+    Backend,
+    OutsideTableError,
+    Part,
+    UnsolvedError,
+    refuse_to_yield,
+    renumbered,
+    too_fast,
+    too_thin,
+)
 from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Impact, Numbers
-from contactlaw.equation.outcome import History, Outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.responses import REACH
 from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
-from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
-_CLOSE = 512  # samples between which the path of a sphere is a cubic
 _CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
@@ -43,7 +48,7 @@ def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> Non
 
 
 @dataclass(frozen=True, eq=False)
-class Solver:
+class Solver(Backend):
     """Integrates impacts; those outside a table of the given extent are refused as by a lookup."""
 
     bodies: SphereOnPlate
@@ -57,23 +62,8 @@ class Solver:
             raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
         return cls(bodies, rtol)
 
-    def rebounds(self, impacts: Impacts) -> Rebound:
-        """Everything about impacts."""
-        return self._integrated(impacts)[0]
-
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        hit, found, _, edges = self._integrated(impacts)
-        return hit, slid(self.bodies, found, psi, edges)
-
-    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
-        """Contacts at even times from first touch to separation."""
-        hit, found, units, edges = self._integrated(impacts)
-        contacts, path = histories_and_path(self.bodies.data, found, samples, edges)
-        return with_units(contacts, units, found.inelasticity, impacts.shape, hit.flags, path)
-
-    def _integrated(self, impacts: Impacts) -> tuple[Rebound, Outcome, Numbers, Edges | None]:
-        """Everything about impacts, and on Hertz's scale; their units, and edges near them."""
+    def far(self, impacts: Impacts) -> list[Part]:
+        """Integrate impacts."""
         bodies, count, edges = self.bodies, impacts.speed.size, None
         impact = bodies.impact(impacts)
         units = bodies.numbers(impact)
@@ -87,12 +77,13 @@ class Solver:
         few = edges is not None and count <= _FEW
         with renumbered(np.arange(count), impacts.mass):
             found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
-        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
-        hit = rebound(bodies, impacts, units.time, known, found, flags, edges)
         if impacts.frequency is not None:
-            time = np.ravel(hit.contact_time) * impacts.frequency
-            within("thickness", time, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
-        return hit, found, units, edges
+            angle = found.contact_time * units.time * impacts.frequency
+            within("thickness", angle, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
+        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
+        return [Part(slice(None), impacts, units.time, known, found, flags, edges, False)]
+
+    near = far
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -173,48 +164,17 @@ def solved(
     lam: Array,
     y: Array,
     rtol: float,
-    places: Places | None = None,
     few: bool = False,
     edges: Edges | None = None,
     strength: Array | float = 0.0,
 ) -> Outcome:
     """Outcomes at inelasticities, yield ratios and strengths, by integration.
 
-    If these are only some of the user's impacts, `places` has their indices, for errors.
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     out = outcome.at(lam, y, strength)
     status, n = zener.solve_all(law, rtol, out, few, edges)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
-        raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
+        raise UnsolvedError(int(n), where, zener.MESSAGES[status])
     return out
-
-
-def slid(bodies: SphereOnPlate, found: Outcome, psi: Array, edges: Edges | None = None) -> Array:
-    """Change of the sliding speeds psi in impacts with these outcomes [mu V0], by integration."""
-    kappa = bodies.pair.tangential_ratio
-    changed: Array = psi - slides.after(bodies.data, found, kappa, psi[:, None], edges=edges)[:, 0]
-    return changed
-
-
-def histories(law: Array, found: Outcome, samples: int) -> History:
-    """Contacts over time on Hertz's scale, by integration."""
-    return histories_and_path(law, found, samples, None)[0]
-
-
-def histories_and_path(law: Array, found: Outcome, samples: int, edges: Edges | None) -> tuple[History, Array | None]:
-    """Contacts over time on Hertz's scale, and near edges the displacement of the plate.
-
-    The plate is where the sphere would be without compression. The path of the sphere is the
-    integral of its speed, between samples that are close, by the cubic through speeds and forces.
-    """
-    every = 1 if edges is None else -(-_CLOSE // (samples - 1))
-    out = outcome.history(found.inelasticity.size, every * (samples - 1) + 1)
-    zener.histories(law, found, RTOL, out, edges)
-    if edges is None:
-        return out, None
-    step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force
-    moved = 0.5 * step * (u[:, 1:] + u[:, :-1]) + step * step / 12.0 * (f[:, 1:] - f[:, :-1])
-    path = np.pad(np.cumsum(moved, axis=1), ((0, 0), (1, 0))) - out.compression
-    return History(*(values[:, ::every] for values in out)), path[:, ::every]

@@ -10,25 +10,22 @@ import threading
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal, NamedTuple, NoReturn
+from typing import Literal, NoReturn
 
 import numpy as np
 
 from contactlaw import laws
-from contactlaw._arrays import Array, Integers, Mask
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, renumbered, too_fast, too_thin
-from contactlaw.answers.solver import RTOL, Solver, histories, refuse_rates, slid, solved
+from contactlaw.answers.backend import Backend, OutsideTableError, Part, refuse_to_yield, renumbered, too_fast, too_thin
+from contactlaw.answers.solver import RTOL, Solver
 from contactlaw.equation import outcome
-from contactlaw.equation.numbers import Numbers
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.scaling import yield_share
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.physical.validity import Validity
@@ -53,33 +50,12 @@ class Border:
             raise ArgumentError("outside", outside, "must be 'raise', 'solve' or 'clamp'")
         self.outside = outside
         self.clamped = 0
-        self.lock = threading.Lock()
+        self._lock = threading.Lock()
 
-    def look_up(self, law: Array, table: Array, units: Numbers) -> tuple[Outcome, Integers]:
-        """Look outcomes up, and flag with Validity.CLAMPED those that were taken at the border.
-
-        The dimensionless numbers of these are the border's.
-        """
-        out = outcome.at(units.inelasticity, units.yield_ratio, units.strength)
-        flags = np.zeros(out.inelasticity.size, dtype=np.int64)
-        if not lookup.fields(table, False, out):
-            return out, flags
-        beyond = np.flatnonzero(np.isnan(out.restitution))
-        found = outcome.part(out, beyond)
-        if self.outside == "raise":
-            with renumbered(beyond):
-                _refuse(table, found)
-        elif self.outside == "solve":
-            numbers = found.inelasticity, found.yield_ratio
-            found = solved(law, *numbers, RTOL, beyond, strength=found.strength)
-        else:
-            lookup.fields(table, True, found)
-            flags[beyond] = int(Validity.CLAMPED)
-            with self.lock:
-                self.clamped += beyond.size
-        for values, completed in zip(out, found, strict=True):
-            values[beyond] = completed
-        return out, flags
+    def count(self, more: int) -> None:
+        """Count impacts that were clamped."""
+        with self._lock:
+            self.clamped += more
 
 
 def _refuse(table: Array, beyond: Outcome) -> NoReturn:
@@ -99,7 +75,7 @@ def _refuse(table: Array, beyond: Outcome) -> NoReturn:
     raise OutsideTableError(0, too_fast(elastic / y, elastic / border.yield_ratio.item()))
 
 
-class TableLookup:
+class TableLookup(Backend):
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
@@ -162,52 +138,77 @@ class TableLookup:
         """COR of impacts; sizes are checked only if the kernel has no answer for one of them."""
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
         out = np.empty(v.size)
-        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
-        if lookup.restitutions(self.packed, v, r, h, mass, out):
+        if lookup.restitutions(self.packed, v, r, h, self._shares(impacts), out):
             check(speed=v, radius=r, thickness=h)
-            out = self._looked_up(impacts).outcome.restitution
+            out = np.ravel(self.rebounds(impacts).restitution)
         return out
 
-    def rebounds(self, impacts: Impacts) -> Rebound:
-        """Everything about impacts."""
+    def near(self, impacts: Impacts) -> list[Part]:
+        """Integrate impacts, whatever table there is."""
+        return Solver(self.bodies).near(impacts)
+
+    def far(self, impacts: Impacts) -> list[Part]:
+        """Look impacts up."""
         if self.instead is not None:
-            return self.instead.rebounds(impacts)
-        return self._rebound(impacts, self._looked_up(impacts))
+            return self.instead.far(impacts)
+        count = impacts.speed.size
+        found, root = outcome.empty(count), np.empty(count)
+        flags, numbers = np.zeros(count, dtype=np.int64), (found.inelasticity, found.yield_ratio)
+        sizes = impacts.speed, impacts.radius, impacts.thickness, self._shares(impacts)
+        missed = lookup.outcomes(self.packed, *sizes, found, root)
+        time = self.bodies.constants.time * impacts.radius / root
+        whole = Part(slice(None), impacts, time, numbers, found, flags, None, True)
+        return self._completed(whole) if missed else [whole]
 
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        known = self._looked_up(impacts)
-        found, changes = known.outcome, np.empty_like(psi)
-        # without the compiler a table takes hours to make, and an integration a fifth of a second
-        inside = ~known.integrated & (not switched_off())
-        for some in map(np.flatnonzero, (inside, ~inside)):
-            if not some.size:
-                continue
-            part = outcome.part(found, some)
-            if inside[some[0]]:
-                changes[some] = self._changes(part, psi[some])
-            else:
-                changes[some] = slid(self.bodies, part, psi[some])
-        return self._rebound(impacts, known), changes
-
-    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
-        """Contacts at even times from first touch to separation."""
-        known = self._looked_up(impacts)
-        found, contacts = known.outcome, outcome.history(impacts.speed.size, samples)
-        for some in map(np.flatnonzero, (~known.integrated, known.integrated)):
-            if not some.size:
-                continue
-            part = outcome.part(found, some)
-            if known.integrated[some[0]]:
-                own = histories(self.bodies.data, part, samples)
-            else:
-                own = outcome.history(some.size, samples)
-                shapes.sample(self.bodies.data, self.shapes, part, own)
-            for values, more in zip(contacts, own, strict=True):
-                values[some] = more
+    def _completed(self, whole: Part) -> list[Part]:
+        """Look up what is beyond the range of speeds and sizes, and go on beyond the table as `Border` says."""
+        found, places = whole.outcome, np.flatnonzero(np.isnan(whole.outcome.restitution))
+        impacts = whole.impacts.part(places)
         units = self.bodies.numbers(self.bodies.impact(impacts))
-        flags = self._rebound(impacts, known).flags
-        return with_units(contacts, units, found.inelasticity, impacts.shape, flags)
+        whole = whole._replace(numbers=(found.inelasticity.copy(), found.yield_ratio.copy()))
+        for values, known in zip(whole.numbers, (units.inelasticity, units.yield_ratio), strict=True):
+            values[places] = known
+        looked = outcome.at(units.inelasticity, units.yield_ratio, units.strength)
+        if lookup.fields(self.packed, False, looked):
+            beyond = np.flatnonzero(np.isnan(looked.restitution))
+            if self.border.outside == "raise":
+                with renumbered(places[beyond], whole.impacts.mass):
+                    _refuse(self.packed, outcome.part(looked, beyond))
+            if self.border.outside == "clamp":
+                lookup.fields(self.packed, True, looked)
+                whole.flags[places[beyond]] = int(Validity.CLAMPED)
+                self.border.count(beyond.size)
+        for values, completed in zip(found, looked, strict=True):
+            values[places] = completed
+        inside, beyond = (np.flatnonzero(np.isnan(found.restitution) == out) for out in (False, True))
+        if not beyond.size:
+            return [whole]
+        if not inside.size:
+            return Solver(self.bodies).far(whole.impacts)
+        with renumbered(beyond):
+            (integrated,) = Solver(self.bodies).far(whole.impacts.part(beyond))
+        arrays = whole.time, *whole.numbers, whole.flags
+        time, lam, y, flags = (values[inside] for values in arrays)
+        looked = outcome.part(found, inside)
+        kept = Part(inside, whole.impacts.part(inside), time, (lam, y), looked, flags, None, True)
+        return [kept, integrated._replace(places=beyond)]
+
+    def slid(self, part: Part, psi: Array) -> Array:
+        """Change of sliding speeds psi [mu V0]."""
+        # without the compiler a table takes hours to make, and an integration a fifth of a second
+        if not part.interpolated or switched_off():
+            return super().slid(part, psi)
+        changes = np.empty_like(psi)
+        slides.changes(self.slides, part.outcome, psi, changes)
+        return changes
+
+    def contacts(self, part: Part, samples: int) -> tuple[History, Array | None]:
+        """Contacts over time on Hertz's scale."""
+        if not part.interpolated:
+            return super().contacts(part, samples)
+        out = outcome.history(part.impacts.speed.size, samples)
+        shapes.sample(self.bodies.data, self.shapes, part.outcome, out)
+        return out, None
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -235,51 +236,14 @@ class TableLookup:
             value = at(table, speed, *known)
             if value != value:  # NaN; half the time of a call of isnan
                 one = replace(impacts, speed=scalars(speed=speed)[0])
-                return float(self._looked_up(one).outcome.restitution[0])
+                return self.restitutions(one).item()
             return value
 
         return restitution
 
-    def _changes(self, found: Outcome, psi: Array) -> Array:
-        changes = np.empty_like(psi)
-        slides.changes(self.slides, found, psi, changes)
-        return changes
-
-    def _looked_up(self, impacts: Impacts) -> _LookedUp:
-        v, r, h = impacts.speed, impacts.radius, impacts.thickness
-        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
-        found, root = outcome.empty(v.size), np.empty(v.size)
-        flags, integrated = np.zeros(v.size, dtype=np.int64), np.zeros(v.size, dtype=np.bool_)
-        lam, y = found.inelasticity, found.yield_ratio
-        if lookup.outcomes(self.packed, v, r, h, mass, found, root):
-            lam, y = lam.copy(), y.copy()
-            beyond = np.flatnonzero(np.isnan(found.restitution))
-            part = impacts.part(beyond)
-            units = self.bodies.numbers(self.bodies.impact(part))
-            lam[beyond], y[beyond] = units.inelasticity, units.yield_ratio
-            with renumbered(beyond, part.mass):
-                if self.border.outside == "solve":
-                    refuse_rates(self.bodies, part, units)
-                looked, flags[beyond] = self.border.look_up(self.bodies.data, self.packed, units)
-            for values, completed in zip(found, looked, strict=True):
-                values[beyond] = completed
-            integrated[beyond] = self.border.outside == "solve"
-        time = self.bodies.constants.time * r / root
-        return _LookedUp(found, flags, (lam, y), time, integrated)
-
-    def _rebound(self, impacts: Impacts, known: _LookedUp) -> Rebound:
-        found = known.outcome, known.flags
-        return rebound(self.bodies, impacts, known.time, known.unclamped, *found, interpolated=True)
-
-
-class _LookedUp(NamedTuple):
-    """Outcomes of impacts, and what belongs to them."""
-
-    outcome: Outcome
-    flags: Integers
-    unclamped: tuple[Array, Array]  # inelasticity and yield ratio before clamping
-    time: Array  # T_H [s]
-    integrated: Mask  # those beyond the table
+    def _shares(self, impacts: Impacts) -> Array:
+        """Masses over those of solid spheres."""
+        return NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
 
 
 @functools.cache
