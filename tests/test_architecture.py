@@ -48,8 +48,8 @@ FILES = {
     ),
     "table": "lookup grid sweep shapes certificate table slides file cache",
     "answers": (
-        "few backend solver tabulated edges beads compiled constant histories loads oblique derivatives "
-        "sensitivity speed_table law_errors uncertainty inverse"
+        "few backend solver tabulated edges beads compiled constant loads oblique derivatives "
+        "sensitivity speed_table law_errors uncertainty find"
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",

@@ -17,7 +17,7 @@ from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import History, Outcome, history
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
-from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.table import slides
 
@@ -81,6 +81,8 @@ class Backend:
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
+        if not (isinstance(samples, int | np.integer) and 2 <= samples <= 1_000_000):
+            raise ArgumentError("samples", samples, "must be an integer from 2 to 1 000 000")
         columns = []
         for part in self.parts(impacts):
             units = self.bodies.numbers(self.bodies.impact(part.impacts))
@@ -93,6 +95,7 @@ class Backend:
         flags = whole.pop("flags")
         together = ForceHistory(**whole)
         together.flags = flags
+        check_finite(self.bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in together))
         return together
 
     def slid(self, part: Part, psi: Array) -> Array:

@@ -50,8 +50,8 @@ class Variants:
     Answers are right but for the flags of pairs with a rate of strain.
     """
 
-    def __init__(self, bodies: tuple[Material, Material], law: Law) -> None:
-        self.bodies, self.law = dict(zip(("sphere", "plate"), bodies, strict=True)), law
+    def __init__(self, pair: Pair, law: Law) -> None:
+        self.pair, self.law = pair, law
         self._solver = functools.cache(self._made)
 
     def answers(self, impacts: Impacts, factors: Mapping[Number, float]) -> Rebound:
@@ -68,11 +68,10 @@ class Variants:
         values = {
             (role, name): min(x * self._value(role, name), _LARGEST.get(name, math.inf)) for (role, name), x in factors
         }
-        sphere, plate = self.bodies.values()
-        return solver(with_numbers((sphere, plate), values), self.law, 10.0 ** np.array(decades), _RTOL)
+        return solver(with_numbers(self.pair.given, values), self.law, 10.0 ** np.array(decades), _RTOL)
 
     def _value(self, role: str, name: str) -> float:
-        body = self.bodies[role]
+        body = self.pair.given[role == "plate"]
         value = getattr(body, name, 1.0)
         if name == "hardening" and body.flow is not None:  # also where it is from a hardness
             value = body.flow.hardening

@@ -14,6 +14,7 @@ from contactlaw.equation import near_edge, zener
 from contactlaw.equation.force import at_strength
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes, share_of_solid
 from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import check_kind
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path, wave_rate
 from contactlaw.table import lookup
@@ -21,6 +22,7 @@ from contactlaw.table import lookup
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
     """COR near an edge as a jitted function of speed, radius, thickness, distance and mass."""
+    check_kind(kind)
     pair, path = bodies.constants, wave_path(bodies.pair.plate)
     law = in_memory(bodies.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))

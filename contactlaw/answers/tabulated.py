@@ -246,6 +246,13 @@ class TableLookup(Backend):
         return NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
 
 
+def by_method(tabulated: TableLookup, method: str) -> Backend:
+    """Table or solver, as the user says."""
+    if method not in ("table", "solve"):
+        raise ArgumentError("method", method, "must be 'table' or 'solve'")
+    return tabulated if method == "table" else Solver(tabulated.bodies)
+
+
 @functools.cache
 def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
     """Python's entries of `solid_on_plate` and `restitution_on_plate`; each argument a float."""
