@@ -4,7 +4,7 @@
 integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, NoReturn
 
@@ -38,6 +38,9 @@ class Part(NamedTuple):
     interpolated: bool
 
 
+Ask = Callable[[Impacts], list[Part]]
+
+
 class Backend:
     """Outcomes of impacts of a sphere on plates, and what follows from them."""
 
@@ -54,16 +57,9 @@ class Backend:
     def parts(self, impacts: Impacts) -> list[Part]:
         """Outcomes of all impacts, in one part or several."""
         near = impacts.remember
-        if near is None or not near.any():
-            return self.far(impacts if near is None else impacts.forgetting)
-        if near.all():
-            return self.near(impacts)
-        parts = []
-        for which, ask, some in ((near, self.near, impacts), (~near, self.far, impacts.forgetting)):
-            places = np.flatnonzero(which)
-            with renumbered(places):
-                parts += [one._replace(places=places[one.places]) for one in ask(some.part(places))]
-        return parts
+        if near is None:
+            return self.far(impacts)
+        return split(impacts, near, self.near, lambda some: self.far(some.forgetting))
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
@@ -125,6 +121,17 @@ class Backend:
 
     def _rebounds(self, parts: list[Part], impacts: Impacts) -> Rebound:
         return Rebound(**_joined([(one.places, vars(self._rebound(one))) for one in parts], impacts))
+
+
+def split(impacts: Impacts, which: Mask, ask: Ask, ask_others: Ask) -> list[Part]:
+    """Outcomes of impacts of two kinds."""
+    if which.all() or not which.any():
+        return (ask if which.any() else ask_others)(impacts)
+    parts = []
+    for places, some in ((np.flatnonzero(which), ask), (np.flatnonzero(~which), ask_others)):
+        with renumbered(places):
+            parts += [one._replace(places=places[one.places]) for one in some(impacts.part(places))]
+    return parts
 
 
 def _joined(columns: list[tuple[Any, dict[str, Any]]], impacts: Impacts) -> dict[str, Any]:

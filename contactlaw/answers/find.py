@@ -32,10 +32,6 @@ _THICKEST = 1e4  # [radii]: the next plate is the half-space, whose COR is the s
 _SLOWEST = 1e-4  # [m/s]: slower beads of millimetres stick by adhesion
 _ROUNDING = 1e-5  # how far `ImpactModel.restitution` may be from the integrated COR
 _SHARES = 1e-6, 1.0 - 1e-6  # of a COR; nearer to the ends beads stick, or are elastic at any speed
-_EXTREMES = {  # the impact that is nearest to a table: its place in the search, and words for it
-    "thickness": (-1, "speed: even on a half-space"),
-    "speed": (0, f"thickness: even at {_SLOWEST:g} m/s"),
-}
 Stack = Sequence[tuple[Material | str, float | None]]  # layers, one of an unknown thickness
 PlateOf = Callable[[float], Any]  # describes a plate of a thickness that is no bare sheet
 
@@ -149,12 +145,11 @@ class _Curve:
         border, strict = (TableLookup(tabulated.bodies, tabulated.given, Border(how)) for how in ("clamp", "raise"))
         self.x = x[np.asarray(border.rebounds(self.impacts(x)).flags) & Validity.CLAMPED == 0]
         if not self.x.size:
-            nearest, words = _EXTREMES[self.unknown]
-            name, _, where = words.partition(": ")
+            name, nearest = ("speed", x[-1:]) if self.unknown == "thickness" else ("thickness", x[:1])
             try:
-                strict.rebounds(self.impacts(x[[nearest]]))
+                strict.rebounds(self.impacts(nearest))
             except OutsideTableError as error:
-                reason = f"{where} the impact is outside the table, {error.reason}"
+                reason = f"no {self.unknown} brings the impact into the table: even then {error.reason}"
                 raise ArgumentError(name, None, reason) from None
         self.e = self.restitution(self.x)
 

@@ -22,7 +22,7 @@ from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
-from contactlaw.physical.plates import Thickness, check_contact, wall_of
+from contactlaw.physical.plates import Thickness
 from contactlaw.table import lookup
 
 Collide = Callable[..., tuple[Vector, Vector]]
@@ -45,23 +45,13 @@ def oblique(
     The tangential motion reads the normal history and does not act back on it. Beads are solid
     spheres, without rolling and drilling friction. `contactlaw.equation.tangential` has the method.
     """
-    bodies, wall = by.bodies, wall_of(thickness)
-    check_contact(thickness, bodies.pair.given[1])
-    v, s, r, mu, near, hole, *more, shape = broadcast(
-        speed=speed,
-        sliding_speed=sliding_speed,
-        radius=radius,
-        friction=friction,
-        edge_distance=edge_distance,
-        hole_radius=hole_radius,
-        **wall.numbers,
-        **({} if mass is None else {"mass": mass}),
-    )
-    plates = replace(wall, numbers=dict(zip(wall.numbers, more, strict=False)))
-    masses = more[len(wall.numbers) :]
-    impacts = replace(bodies.given(v, r, plates, edge, near, hole, *masses, memory=True), shape=shape)
+    v, _, _, shape = broadcast(speed=speed, sliding_speed=sliding_speed, friction=friction)
+    given = v.reshape(shape or ()), radius, thickness, edge, edge_distance, hole_radius, mass
+    impacts = by.bodies.given(*given, memory=True)
+    whole = impacts.speed.reshape(impacts.shape or ())
+    s, mu, _, _ = broadcast(sliding_speed=sliding_speed, friction=friction, speed=whole)
     check(sliding_speed=s, friction=mu)
-    return answer(by, bodies, impacts, mu, s)
+    return answer(by, by.bodies, impacts, mu, s)
 
 
 def collide(
@@ -80,42 +70,26 @@ def collide(
     if not n.any(axis=1).all():
         raise ArgumentError("normal", normal, "must not be zero")
     kernels.unit_all(n)
-    count = np.empty(shape[:-1])
-    r, h, mu, _, *masses, within = broadcast(
-        radius=radius,
-        thickness=thickness,
-        friction=friction,
-        velocity=count,
-        **({} if mass is None else {"mass": mass}),
-    )
-    if (within or ()) != shape[:-1]:
-        v, omega, n, w = (
-            np.array(np.broadcast_to(rows.reshape(shape), (*within, 3))).reshape(-1, 3) for rows in (v, omega, n, w)
-        )
-        shape = (*within, 3)
+    mu, _, around = broadcast(friction=friction, velocity=np.empty(shape[:-1]))
     check(friction=mu)
-    check_contact(thickness, tabulated.bodies.pair.given[1])
-    given = tabulated.bodies.given(1.0, r, h, mass=masses[0] if masses else None)
-    speed, size, e, changed = np.empty((4, r.size))
-    kernels.approach_all(v, omega, n, w, r, speed, size)
-    if switched_off():  # no table: all are answered as those beyond one
-        e[:] = np.nan
-    else:
-        each = tabulated.bodies.impact(given)._replace(speed=speed)
-        table, tangential = tabulated.packed, tabulated.slides
-        kernels.tangential_all(table, tangential, each, mu, size, e, changed)
-    beyond = np.isnan(e) & (speed >= lookup.V_MIN)
-    if beyond.any():
-        some = np.flatnonzero(beyond)
-        check(speed=speed[beyond], sliding_speed=size[beyond])
-        impacts = replace(given.part(some), speed=speed[beyond])
-        with renumbered(some):
-            found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
-        e[beyond] = found.restitution
-    hit = np.where(speed < lookup.V_MIN, 0.0, e + changed)
-    check_finite(tabulated.bodies.pair, replace(given, speed=speed), hit)
-    kernels.rebound_all(v, omega, n, w, r, e, changed)
-    return v.reshape(shape), omega.reshape(shape)
+    given = tabulated.bodies.given(np.ones(around or ()), radius, thickness, mass=mass)
+    whole = given.shape or ()
+    mu = np.broadcast_to(mu.reshape(around or ()), whole).ravel()
+    if whole != shape[:-1]:
+        v, omega, n, w = (
+            np.broadcast_to(one.reshape(shape), (*whole, 3)).reshape(-1, 3).copy() for one in (v, omega, n, w)
+        )
+    speed, size, e, changed = np.zeros((4, mu.size))
+    kernels.approach_all(v, omega, n, w, given.radius, speed, size)
+    moving = np.flatnonzero(speed >= lookup.V_MIN)
+    check(speed=speed[moving], sliding_speed=size[moving])
+    impacts = replace(given.part(moving), speed=speed[moving])
+    with renumbered(moving):
+        normal, changed[moving] = _answer(tabulated, impacts, mu[moving], size[moving])
+    e[moving] = normal.restitution
+    check_finite(tabulated.bodies.pair, replace(given, speed=speed), e + changed)
+    kernels.rebound_all(v, omega, n, w, given.radius, e, changed)
+    return v.reshape(*whole, 3), omega.reshape(*whole, 3)
 
 
 def collide_kernel(tabulated: TableLookup) -> Collide:

@@ -21,7 +21,7 @@ from contactlaw.answers.backend import (
 )
 from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.numbers import Impact, Numbers
+from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Outcome
 from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
@@ -86,58 +86,45 @@ class Solver(Backend):
     near = far
 
     def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        share, impact = yield_share(self.bodies.pair, self.bodies.law), self.bodies.impact(impacts)
-        if math.isinf(share):
-            return np.full(impacts.speed.size, math.inf)
-        found = [
-            self._yield_speed(share, Impact(*(one[n : n + 1] for one in impact))) for n in range(impacts.speed.size)
-        ]
-        speed, lam = np.array(found).reshape(-1, 2).T
-        if self.extent is not None:
-            limit = self.extent.largest_inelasticity
-            beyond = lam > limit
-            if beyond.any():
-                refuse_to_yield(impacts, beyond, limit)
-        return speed
+        """Speeds [m/s] from which sphere or plate yields; inf where neither does.
 
-    def _yield_speed(self, share: float, impact: Impact) -> tuple[float, float]:
-        """Speed at which the largest compression is that of first flow, and lambda there.
-
-        By the secant method in logarithms, in which the compression is nearly linear in the speed.
-        It starts at the yield speed on a half-space, which is the lowest of all plates.
+        There the largest compression is that of first flow. They are found by the secant method in
+        logarithms, in which the compression is nearly linear in the speed. It starts at the yield
+        speed on a half-space, which is the lowest of all plates.
         """
-        laws, constants = self.bodies.data, self.bodies.constants
-        rated = constants.plate.rate.slope > 0.0
+        laws, constants, impact = self.bodies.data, self.bodies.constants, self.bodies.impact(impacts)
+        share, rated = yield_share(self.bodies.pair, self.bodies.law), constants.plate.rate.slope > 0.0
+        found = np.full(impacts.speed.size, math.inf)
+        if math.isinf(share):
+            return found
         if not rated:
             constants = constants._replace(yield_compression=share)
-        thinnest = math.inf if self.extent is None else 2.0 * self.extent.largest_inelasticity
-        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones(1)))
-        log_speed = 1.25 * math.log(float(at_one.yield_ratio[0]))
-        log_speed -= 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
-        slope, last, gap = 0.75, math.nan, 0.0
+        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones_like(found)))
+        log_speed = 1.25 * np.log(at_one.yield_ratio) - 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
+        limit = math.inf if self.extent is None else self.extent.largest_inelasticity
+        slope, last, gap = np.full_like(found, 0.75), np.full_like(found, math.nan), np.zeros_like(found)
+        never = np.zeros(found.size, dtype=np.bool_)
         for _ in range(_ROUNDS):
-            speed = np.array([math.exp(log_speed)])
-            units = numbers_of(constants, laws, impact._replace(speed=speed))
-            lam, y = float(units.inelasticity[0]), float(units.yield_ratio[0])
-            if lam > thinnest:
+            units = numbers_of(constants, laws, impact._replace(speed=np.exp(log_speed)))
+            lam, y, s = units.inelasticity, units.yield_ratio, units.strength
+            thin = lam > 2.0 * limit
+            hit = solved(laws, np.where(thin, 0.0, lam), y, self.rtol, strength=s)
+            onset = np.log([force.onset_at(laws, one) / force.growth_at(laws, one) for one in s])
+            never |= rated & (onset >= -math.log(share))  # the strength has outgrown the load
+            before, gap = gap, np.log(hit.compression_ratio * hit.elastic_compression / y) - onset
+            gap[thin | never] = 0.0
+            if np.abs(gap).max(initial=0.0) < _CONVERGED:
                 break
-            s = float(units.strength[0])
-            one = zener.solve(laws, lam, y, self.rtol, s)
-            if one.status != zener.OK:
-                raise UnsolvedError(0, f"lambda = {lam:.6g}", zener.MESSAGES[one.status])
-            onset = math.log(force.onset_at(laws, s) / force.growth_at(laws, s))
-            if rated and onset >= -math.log(share):  # the strength has outgrown the load
-                return math.inf, 0.0
-            before, gap = gap, math.log(one.peak_compression / y) - onset
-            if abs(gap) < _CONVERGED:
-                break
-            if last == last:
-                slope = min(max((gap - before) / (log_speed - last), _SLOPES[0]), _SLOPES[1])
+            step = log_speed - last
+            moved = np.divide(gap - before, step, out=slope, where=np.abs(step) > 0.0)
+            slope = np.clip(moved, *_SLOPES)
             last, log_speed = log_speed, log_speed - gap / slope
         else:
-            raise UnsolvedError(0, f"lambda = {lam:.6g}", "no speed was found at which it yields")
-        return math.exp(log_speed), lam
+            n = int(np.abs(gap).argmax())
+            raise UnsolvedError(n, f"lambda = {lam[n]:.6g}", "no speed was found at which it yields")
+        if (lam > limit)[~never].any():
+            refuse_to_yield(impacts, (lam > limit) & ~never, limit)
+        return np.where(never, math.inf, np.exp(log_speed))
 
 
 def solved_within(

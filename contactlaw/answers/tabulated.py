@@ -18,21 +18,20 @@ from contactlaw import laws
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import Backend, OutsideTableError, Part, refuse_to_yield, renumbered, too_fast, too_thin
+from contactlaw.answers.backend import Backend, OutsideTableError, Part, renumbered, split
 from contactlaw.answers.solver import RTOL, Solver
 from contactlaw.equation import outcome
-from contactlaw.equation.outcome import History, Outcome
+from contactlaw.equation.outcome import History
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.scaling import yield_share
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
-from contactlaw.table.lookup import NO_MASSES, STRETCH
+from contactlaw.table.lookup import NO_MASSES
 from contactlaw.table.table import Table
 
 Outside = Literal["raise", "solve", "clamp"]
@@ -56,23 +55,6 @@ class Border:
         """Count impacts that were clamped."""
         with self._lock:
             self.clamped += more
-
-
-def _refuse(table: Array, beyond: Outcome) -> NoReturn:
-    """Say why the first of some impacts is outside a table."""
-    numbers = beyond.inelasticity, beyond.yield_ratio, beyond.strength
-    lam, y, s = (float(one[0]) for one in numbers)
-    axes = lookup.axes_of(table)
-    limit, most = axes.x_max * STRETCH / (1.0 - axes.x_max), lookup.strongest(table, axes)
-    if lam > limit:
-        raise OutsideTableError(0, too_thin(lam, limit))
-    if math.exp(s) > most:
-        times = f"{math.exp(s):.4g} times stronger, above {most:.4g}"
-        raise OutsideTableError(0, f"its rate makes the bodies {times}")
-    border = outcome.part(beyond, slice(1))
-    lookup.fields(table, True, border)
-    elastic = border.elastic_compression.item()
-    raise OutsideTableError(0, too_fast(elastic / y, elastic / border.yield_ratio.item()))
 
 
 class TableLookup(Backend):
@@ -156,42 +138,35 @@ class TableLookup(Backend):
         flags, numbers = np.zeros(count, dtype=np.int64), (found.inelasticity, found.yield_ratio)
         sizes = impacts.speed, impacts.radius, impacts.thickness, self._shares(impacts)
         missed = lookup.outcomes(self.packed, *sizes, found, root)
+        if missed:
+            return split(impacts, np.isnan(found.restitution), self._beyond, self.far)
         time = self.bodies.constants.time * impacts.radius / root
-        whole = Part(slice(None), impacts, time, numbers, found, flags, None, True)
-        return self._completed(whole) if missed else [whole]
+        return [Part(slice(None), impacts, time, numbers, found, flags, None, True)]
 
-    def _completed(self, whole: Part) -> list[Part]:
-        """Look up what is beyond the range of speeds and sizes, and go on beyond the table as `Border` says."""
-        found, places = whole.outcome, np.flatnonzero(np.isnan(whole.outcome.restitution))
-        impacts = whole.impacts.part(places)
+    def _beyond(self, impacts: Impacts) -> list[Part]:
+        """Outcomes beyond the range of speeds and sizes of a lookup, and beyond the table."""
         units = self.bodies.numbers(self.bodies.impact(impacts))
-        whole = whole._replace(numbers=(found.inelasticity.copy(), found.yield_ratio.copy()))
-        for values, known in zip(whole.numbers, (units.inelasticity, units.yield_ratio), strict=True):
-            values[places] = known
-        looked = outcome.at(units.inelasticity, units.yield_ratio, units.strength)
-        if lookup.fields(self.packed, False, looked):
-            beyond = np.flatnonzero(np.isnan(looked.restitution))
+        numbers, flags = (units.inelasticity, units.yield_ratio), np.zeros(impacts.speed.size, dtype=np.int64)
+        found = outcome.at(*numbers, units.strength)
+        if lookup.fields(self.packed, False, found):
+            beyond = np.flatnonzero(np.isnan(found.restitution))
+            if self.border.outside == "solve":
+                return Solver(self.bodies).far(impacts)
             if self.border.outside == "raise":
-                with renumbered(places[beyond], whole.impacts.mass):
-                    _refuse(self.packed, outcome.part(looked, beyond))
-            if self.border.outside == "clamp":
-                lookup.fields(self.packed, True, looked)
-                whole.flags[places[beyond]] = int(Validity.CLAMPED)
-                self.border.count(beyond.size)
-        for values, completed in zip(found, looked, strict=True):
-            values[places] = completed
-        inside, beyond = (np.flatnonzero(np.isnan(found.restitution) == out) for out in (False, True))
-        if not beyond.size:
-            return [whole]
-        if not inside.size:
-            return Solver(self.bodies).far(whole.impacts)
-        with renumbered(beyond):
-            (integrated,) = Solver(self.bodies).far(whole.impacts.part(beyond))
-        arrays = whole.time, *whole.numbers, whole.flags
-        time, lam, y, flags = (values[inside] for values in arrays)
-        looked = outcome.part(found, inside)
-        kept = Part(inside, whole.impacts.part(inside), time, (lam, y), looked, flags, None, True)
-        return [kept, integrated._replace(places=beyond)]
+                with renumbered(beyond, None if impacts.mass is None else impacts.mass[beyond]):
+                    self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
+            lookup.fields(self.packed, True, found)
+            flags[beyond] = int(Validity.CLAMPED)
+            self.border.count(beyond.size)
+        return [Part(slice(None), impacts, units.time, numbers, found, flags, None, True)]
+
+    def _refuse(self, impacts: Impacts, strength: float) -> NoReturn:
+        """Say why an impact is outside the table."""
+        most = lookup.strongest(self.packed, lookup.axes_of(self.packed))
+        if not math.exp(strength) > most:
+            Solver(self.bodies, extent=self.table.settings).far(impacts)
+        times = f"{math.exp(strength):.4g} times stronger, above {most:.4g}"
+        raise OutsideTableError(0, f"its rate makes the bodies {times}")
 
     def slid(self, part: Part, psi: Array) -> Array:
         """Change of sliding speeds psi [mu V0]."""
@@ -212,18 +187,8 @@ class TableLookup(Backend):
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        rated = self.bodies.constants.plate.rate.slope > 0.0
-        if impacts.mass is not None or rated or self.instead is not None:
-            given = extent(self.bodies.law) if self.given is None else self.table.settings
-            return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
-        out = np.full(impacts.radius.size, math.inf)
-        share = yield_share(self.bodies.pair, self.bodies.law)
-        if share < math.inf:
-            scale = (self.bodies.constants.time / share) ** 0.25
-            lookup.yield_speeds(self.packed, scale, impacts.radius, impacts.thickness, out)
-            if np.isnan(out).any():
-                refuse_to_yield(impacts, np.isnan(out), self.table.settings.largest_inelasticity)
-        return out
+        given = extent(self.bodies.law) if self.given is None else self.table.settings
+        return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
 
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
         """COR as a function of speed [m/s] of the sphere and the plate of one impact."""

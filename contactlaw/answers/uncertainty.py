@@ -28,7 +28,7 @@ _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate")
 _STRENGTHS = "yield_strength", "hardness"
 _FLOW: tuple[Number, ...] = ("sphere", "flow_stress"), ("plate", "flow_stress")
 # Logarithms of factors on both strengths, in the order in which the overload rises.
-_PROBES = 1.2, 0.6, 0.4, 0.2, 0.1, 0.0, -0.1, -0.2, -0.4, -0.6, -0.9, -1.2
+_PROBES = 1.2, 0.6, 0.4, 0.2, 0.1, 0.05, 0.0, -0.05, -0.1, -0.2, -0.4, -0.6, -0.9, -1.2
 _ENDS = -1.0, 1.0  # changes, in standard errors
 _DRAWS = 2048
 _QUANTILES = NormalDist().cdf(-1.0), NormalDist().cdf(1.0)  # 16 and 84 %
@@ -100,7 +100,7 @@ def uncertainty(variants: Variants, impacts: Impacts, sizes: Mapping[str, float]
         return np.log(np.maximum([getattr(answers, name) for name in _FIELDS], 1e-300))
 
     base, known = logs(), list(causes.values())
-    each = np.reshape([[logs((one, z)) for z in _ENDS] for one in known], (-1, 2, *base.shape)) - base
+    each = np.reshape([[logs((one, z)) for z in _ENDS] for one in known], (len(known), 2, *base.shape)) - base
     strengths = [n for n, (numbers, _) in enumerate(known) if numbers[0][1] in _STRENGTHS]
     both = None
     if len(strengths) == 2:
