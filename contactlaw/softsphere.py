@@ -342,7 +342,7 @@ class Contacts:
         check_softening(softening, 1.0)
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
-        r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
+        r, h, near = given.radius, given.thickness, given.edge[1:] if given.edge else (None, None)
         unit = unit_spring(model, 1.0)
         relaxation = unit.relaxation * r
         self._near = edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME))

@@ -68,9 +68,8 @@ class Solver(Backend):
         impact = bodies.impact(impacts)
         units = bodies.numbers(impact)
         refuse_rates(bodies, impacts, units)
-        if impacts.edge_distance is not None and impacts.hole_radius is not None:
-            near = impacts.edge, impacts.edge_distance, impacts.hole_radius
-            edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
+        if impacts.edge is not None:
+            edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, impacts.edge)
         elif impacts.frequency is not None and impacts.wall is not None:
             swing = impacts.wall, impacts.frequency
             edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)

@@ -17,8 +17,8 @@ import numpy as np
 from contactlaw._arrays import Array, Mask, Places
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
-from contactlaw.answers.solver import Solver
 from contactlaw.answers.derivatives import FINE, solver
+from contactlaw.answers.solver import Solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting

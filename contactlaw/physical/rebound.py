@@ -131,11 +131,11 @@ def rebound(
     """
     found = outcomes.extremes(time.size)
     zener.extremes(bodies.data, outcome, found)
-    if edges is not None and impacts.edge_distance is not None:
+    if edges is not None and impacts.edge is not None:
         deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
         for n in range(flags.size):
             flags[n] |= edge_flags(
-                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n], edges.again[n]
+                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge.distance[n], edges.again[n]
             )
     inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))

@@ -21,7 +21,7 @@ from contactlaw.equation.numbers import Impact, ModulusGrowth, Numbers, PairCons
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.arguments import within
-from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.impacts import Impacts, PlateEdge
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Wall
@@ -225,20 +225,9 @@ def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
     return np.where(hole_radius < math.inf, wide, 0.0)
 
 
-def edges_of(
-    plate: Material,
-    constants: PairConstants,
-    units: Numbers,
-    impact: Impact,
-    kind: str,
-    distance: Array,
-    hole_radius: Array,
-) -> Edges:
-    """Edges at these distances [m] from impacts, as the equation has them.
-
-    The radius of a hole is that of the rim, inf for a straight edge [m].
-    """
-    thickness = impact.thickness
+def edges_of(plate: Material, constants: PairConstants, units: Numbers, impact: Impact, near: PlateEdge) -> Edges:
+    """Edges near impacts as the equation has them."""
+    thickness, (kind, distance, hole_radius) = impact.thickness, near
     distance = from_rim(plate, thickness, distance, hole_radius, units.time)
     rate = wave_rate(wave_path(plate), thickness, distance) * units.time
     response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
@@ -273,19 +262,18 @@ def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:
     sheet = np.isnan(areal)
     wave = np.where(sheet, wave_path(plate) * h, np.sqrt(bending / areal))
     fast = np.where(sheet, plate.youngs_modulus / plate.density, membrane / areal)
-    if np.isnan(fast).any() and (impacts.edge_distance is not None or "wall_radius" in given):
+    if np.isnan(fast).any() and (impacts.edge is not None or "wall_radius" in given):
         raise ArgumentError("thickness", None, "curved walls and plates with edges cannot be Orthotropic")
     numbers = {**given, "wave": wave}
-    if impacts.edge_distance is not None and "areal" in given:
+    if impacts.edge is not None and "areal" in given:
         # as far in wave lengths on the plate that answers alike
         farther = np.where(sheet | (h == math.inf), 1.0, np.sqrt(wave_path(plate) * h / wave))
-        impacts = replace(
-            impacts, edge_distance=impacts.edge_distance * farther, hole_radius=impacts.hole_radius * farther
-        )
+        kind_of_edge, *lengths = impacts.edge
+        impacts = replace(impacts, edge=PlateEdge(kind_of_edge, *(one * farther for one in lengths)))
     if not kind:
         return replace(impacts, wall=Wall(numbers))
     wall = replace(wall, numbers=numbers)
-    if not memory or impacts.edge_distance is not None:
+    if not memory or impacts.edge is not None:
         reason = "walls that swing back have neither edges nor tables: take solve, lookup or oblique"
         raise ArgumentError("thickness", None, reason)
     bends = None
