@@ -212,7 +212,7 @@ def test_a_subcommand_knows_no_other():
 
 def test_the_model_is_public_methods():
     """The methods only delegate, so the file is little more than docstrings."""
-    assert tokens(ROOT / "model.py") <= 1_400
+    assert tokens(ROOT / "model.py") <= 2_300
     (model,) = (node for node in ast.parse((ROOT / "model.py").read_text()).body if isinstance(node, ast.ClassDef))
     names = [node.name for node in model.body if isinstance(node, ast.FunctionDef)]
     private = [name for name in names if name.startswith("_")]
