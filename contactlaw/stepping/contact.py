@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import NO_MEMORY
 from contactlaw.equation.tangential import POINT
@@ -517,26 +517,7 @@ def clear_contact(bead: Bead, k: int) -> None:
 @kernel
 def state_of(row: Any) -> State:
     """State of the normal force in the row of a contact."""
-    return State(
-        row.plate_displacement,
-        row.largest_compression,
-        row.force,
-        row.mobility,
-        row.stiffening,
-        row.strength,
-        row.x1,
-        row.y1,
-        row.x2,
-        row.y2,
-        row.x3,
-        row.y3,
-        row.x4,
-        row.y4,
-        row.x5,
-        row.y5,
-        row.x6,
-        row.y6,
-    )
+    return tuple_of(State, row)
 
 
 @kernel

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import recall
 from contactlaw.equation.edge import KINDS, NO_MEMORY, Memories
 from contactlaw.equation.edge import weighted as weighted_sum
@@ -87,4 +87,4 @@ def recalled(near: EdgeEcho | None, m: Memories, force: float, step: float) -> R
     if near.rate == 0.0:
         return NOTHING
     after = recall.recalled(near.response, m, force, 0.5 * step * near.rate)
-    return Recalled(weighted(near, m) + after.known, after.per_force, after.memory, after.gain)
+    return tuple_of(Recalled, after, known=weighted(near, m) + after.known)
