@@ -26,9 +26,9 @@ from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clear_friction, tangential_force
 from contactlaw.stepping.softened import (
     DAMPED,

@@ -25,8 +25,9 @@ from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import constants_of, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.edge import EdgeEcho
-from contactlaw.stepping.energy import Point, dot
+from contactlaw.stepping.energy import Point
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, tangential_push
 from contactlaw.stepping.spring import Spring, State, advance, impact, resized, unit_spring
@@ -395,7 +396,7 @@ def bounced(
 
 
 @kernel
-def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
+def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> Any:
     """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
     if not (hit.restitution >= 0.0 and is_valid(impact)):
         return -1

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel, tuple_of
+from contactlaw.physical.vectors import dot
 from contactlaw.record.file import Record, Surface, bodies_of, flagged
 from contactlaw.stepping.contact import (
     ALONE,
@@ -30,7 +31,6 @@ from contactlaw.stepping.contact import (
     contact_of,
     report_trouble,
 )
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import plate_rows

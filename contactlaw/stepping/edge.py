@@ -41,7 +41,7 @@ def edge_echo(
     """Edges at these distances [m] from contacts with this T_H [s]; None where no plate has any."""
     if distance is None or hole_radius is None:
         return None
-    distance = from_rim(plate, thickness, distance, hole_radius, time)
+    distance = from_rim(wave_path(plate), thickness, distance, hole_radius, time)
     share = share_of(distance, hole_radius, thickness)
     return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance))
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.edge import EdgeEcho, weighted
 from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance, memory_of, returning
 
@@ -88,12 +89,6 @@ def wave_energy(spring: Spring, last: State, state: State, h: float, near: EdgeE
         speed_0 += thin * weighted(near, memory_of(last))
         speed_1 += thin * weighted(near, memory_of(state))
     return 0.5 * h * (last.force * speed_0 + state.force * speed_1)
-
-
-@kernel
-def dot(a: Point, b: Point) -> float:
-    """Scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
