@@ -15,11 +15,15 @@ from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
 
 # Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
-_SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
-_SI |= dict.fromkeys(("edge_distance", "hole_radius"), "m")
-_SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
-_SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
-_SI |= {"mass": "kg", "velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
+_UNITS = {
+    "m": "radius other_radius thickness edge_distance hole_radius",
+    "s": "times duration contact_time step",
+    "m/s": "speed slowest fastest sliding_speed velocity wall_velocity",
+    "1/s": "rate",
+    "kg": "mass",
+    "rad/s": "spin",
+}
+_SI = {name: unit for unit, names in _UNITS.items() for name in names.split()}
 
 _LARGE = 0.1  # [m], our choice: of larger beads and plates few are modelled, and many are mistakes
 ROUGHEST = 1e3  # largest coefficient of friction
@@ -164,9 +168,6 @@ def _check_ratio(radius: Array, thickness: Array) -> None:
 def within(name: str, values: Array, low: float, high: float, remark: str) -> None:
     """Refuse values that do not lie between two limits; the remark ends the message."""
     if values.size == 1 and low <= values[0] <= high:
-        return
-    # with a NaN, min and max are NaN and the comparison fails
-    if values.size > 1 and low <= values.min() and values.max() <= high:
         return
     wrong = ~((low <= values) & (values <= high))
     if wrong.any():

@@ -15,7 +15,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import check_contact
 from contactlaw.physical.scaling import constants_of, numbers_of, on_wall, without_plate
 from contactlaw.physical.strengths import by_strength
-from contactlaw.physical.validity import Limits, all_mass_flags, limits, limits_by_strength
+from contactlaw.physical.validity import Limits, limits, limits_by_strength, mass_flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +82,7 @@ class SphereOnPlate:
 
     def mass_flags(self, impacts: Impacts) -> Integers:
         """Limits that masses exceed."""
-        flags = np.empty(impacts.speed.size, dtype=np.int64)
-        all_mass_flags(self.mass(impacts) / self.solid_mass(impacts.radius), flags)
-        return flags
+        return np.asarray(mass_flags(self.mass(impacts) / self.solid_mass(impacts.radius)))
 
 
 def beside(mass: Array, solid: Array) -> Mask:

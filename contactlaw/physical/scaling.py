@@ -178,6 +178,7 @@ def numbers_of(constants: PairConstants, laws: Array, impact: Impact) -> Numbers
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
+_FAR = 1e300  # [m] no plate is so large
 _LONGEST = 500.0  # T_H over tau near holes: the response was fitted for forces of 2000 tau
 # A plate is softer in torsion than Kirchhoff's by the strip of this share of its thickness along an
 # edge: a band of width b is as stiff as one of b - 2 times that (St Venant; Timoshenko & Goodier,
@@ -201,18 +202,14 @@ def wave_rate(path: float, thickness: Any, distance: Any) -> Any:
 
 
 @kernel
-def least_from_rim(path: float, thickness: Any, time: Any) -> Any:
-    """Distance [m] from the rim of a hole at which the response was fitted for contacts of T_H [s]."""
-    return np.sqrt(path * thickness * time / _LONGEST)
-
-
-def from_rim(plate: Material, thickness: Array, distance: Array, hole_radius: Array, time: Array) -> Array:
+def from_rim(path: float, thickness: Any, distance: Any, hole_radius: Any, time: Any) -> Any:
     """Distance from an edge [m] that an impact with this T_H [s] has in the equation.
 
     Right at the rim of a hole a contact is as long in tau as any that the response was fitted for.
+    The arguments are numbers or arrays, `path` is that of `wave_path`.
     """
-    least = least_from_rim(wave_path(plate), thickness, time)
-    return np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
+    nearest = np.minimum(np.sqrt(path * thickness * time / _LONGEST), _FAR)  # a half-space has inf
+    return np.maximum(distance, (hole_radius < math.inf) * nearest)
 
 
 def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
@@ -227,9 +224,9 @@ def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
 
 def edges_of(plate: Material, constants: PairConstants, units: Numbers, impact: Impact, near: PlateEdge) -> Edges:
     """Edges near impacts as the equation has them."""
-    thickness, (kind, distance, hole_radius) = impact.thickness, near
-    distance = from_rim(plate, thickness, distance, hole_radius, units.time)
-    rate = wave_rate(wave_path(plate), thickness, distance) * units.time
+    path, thickness, (kind, distance, hole_radius) = wave_path(plate), impact.thickness, near
+    distance = from_rim(path, thickness, distance, hole_radius, units.time)
+    rate = wave_rate(path, thickness, distance) * units.time
     response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
     return Edges(response, _coupling(plate, constants, units, impact), rate, np.zeros(rate.size))
 
