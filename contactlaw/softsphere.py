@@ -278,7 +278,8 @@ class Contacts:
         check_softening(softening, 1.0)
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
-        r, h, near = given.radius, given.thickness, given.edge[1:] if given.edge else (None, None)
+        r, h = given.radius, given.thickness
+        near: Any = (None, None) if given.edge is None else given.edge[1:]
         unit = unit_spring(model, 1.0)
         relaxation = unit.relaxation * r
         self._longest = float(relaxation.min(initial=math.inf))
@@ -302,7 +303,7 @@ class Contacts:
             diameters=2.0 * r,  # with this overlap a sphere is in the plate altogether
             springs=np.rec.fromarrays([*springs.values()], dtype=[(name, "f8") for name in springs]),
             states=states,
-            values=states.view(np.float64).reshape(r.size, -1),
+            values=states.view(np.float64).reshape(r.size, len(State._fields)),
             friction=np.zeros(r.size, FRICTION),
             force=np.zeros(r.size),
             largest=np.zeros(r.size),

@@ -172,7 +172,7 @@ class _Curve:
             return np.asarray(bisect(lambda x: (self.restitution(x) > wanted) == above[at], *ends))
         nearest = [int(np.argmin(np.abs(self.e - wanted)))]
         # a COR that was looked up may just miss the largest one
-        return self.x[nearest][np.abs(self.e[nearest] - wanted) < _ROUNDING]
+        return np.asarray(self.x[nearest][np.abs(self.e[nearest] - wanted) < _ROUNDING])
 
     def leaves(self, wanted: float, start: float, least: float, most: float, up: bool) -> float:
         """First place above or below a solution at which the COR leaves a range; else the last."""

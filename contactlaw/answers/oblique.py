@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +22,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound
 from contactlaw.physical.plates import Thickness
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.vectors import Vector
 from contactlaw.table import lookup
 
@@ -109,7 +109,7 @@ def answer(backend: Backend, bodies: SphereOnPlate, impacts: Impacts, friction: 
     return kernels.of(bodies, normal, impacts, friction, size, changed)
 
 
-def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> Any:
+def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> tuple[Rebound, Array]:
     """Everything about the normal part, and the change of the sliding speed [m/s]."""
     limit = friction * impacts.speed
     psi = np.zeros_like(limit)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactlaw._arrays import Array, ByValue
+from contactlaw._arrays import Array, ByValue, Mask
 from contactlaw.answers.derivatives import Number, Variants, central
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.impacts import Impacts
@@ -58,7 +58,7 @@ class Sensitivity(ByValue):
     yield_strength: float | Array
 
 
-def sensitivity(variants: Variants, impacts: Impacts, yields: Array) -> Sensitivity:
+def sensitivity(variants: Variants, impacts: Impacts, yields: Mask) -> Sensitivity:
     """Differentiate the COR of impacts, of which those where a body yields depend on its strength.
 
     If the law takes numbers from the pair, they change with the inputs.

@@ -9,7 +9,7 @@ overload add up. Which body yields depends on the strengths of both: these are a
 
 import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -146,9 +146,11 @@ def _moved(each: Array, both: Array | None, strengths: list[int], flow: Array) -
             total += np.einsum("dy,dz,yz->d", a, b, both - np.add.outer(x, y))
         return np.asarray(total)
 
-    parts = (None if one is None else one[..., 0] - by_flow(one[..., 1]) for one in (each, both))
-    overload = summed(each[..., 1], None if both is None else both[..., 1])
-    return summed(*parts) + by_flow(overload)
+    def of(pick: Callable[[Array], Array]) -> Array:
+        return summed(pick(each), None if both is None else pick(both))
+
+    overload = of(lambda one: one[..., 1])
+    return of(lambda one: one[..., 0] - by_flow(one[..., 1])) + by_flow(overload)
 
 
 @functools.lru_cache(maxsize=16)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -123,4 +124,5 @@ def rebound(
     if edges is not None:
         distance = np.full(1, math.inf) if impacts.edge is None else impacts.edge.distance
         flags |= edge_flags(radius, thickness, deepest, distance, edges.again)
-    return Rebound(*(shaped(one, impacts.shape) for one in fields), shaped_flags(flags, impacts.shape))
+    columns: Any = zip(Rebound.__dataclass_fields__, (shaped(one, impacts.shape) for one in fields), strict=False)
+    return Rebound(**dict(columns), flags=shaped_flags(flags, impacts.shape))
