@@ -279,7 +279,7 @@ class Contacts:
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h = given.radius, given.thickness
-        near: Any = (None, None) if given.edge is None else given.edge[1:]
+        near: tuple[Array | None, Array | None] = (None, None) if given.edge is None else given.edge[1:]
         unit = unit_spring(model, 1.0)
         relaxation = unit.relaxation * r
         self._longest = float(relaxation.min(initial=math.inf))

@@ -86,8 +86,8 @@ def collide(
     check(speed=speed[moving], sliding_speed=size[moving])
     impacts = replace(given.part(moving), speed=speed[moving])
     with renumbered(moving):
-        normal, changed[moving] = _answer(tabulated, impacts, mu[moving], size[moving])
-    e[moving] = normal.restitution
+        hit, changed[moving] = _answer(tabulated, impacts, mu[moving], size[moving])
+    e[moving] = hit.restitution
     check_finite(tabulated.bodies.pair, replace(given, speed=speed), e + changed)
     kernels.rebound_all(v, omega, n, w, given.radius, e, changed)
     return v.reshape(*whole, 3), omega.reshape(*whole, 3)
