@@ -413,7 +413,7 @@ def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> Any:
 
 
 @kernel
-def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> int:
+def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> Any:
     """Limits of the model that an answer to this impact exceeds; -1 for an impact that is NaN."""
     return exceeded(pair, hit, Impact(speed, radius, thickness, hit.mass_ratio))
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import warnings
+from collections.abc import Iterable
 from numbers import Real
 from typing import Any
 
@@ -172,8 +174,7 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     wrong = ~((low <= values) & (values <= high))
     if wrong.any():
         n = int(np.argmax(wrong))
-        limits = f"{low:.9g} and {high:.9g} {remark}".rstrip()
-        reason = f"must lie between {limits}"
+        reason = f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip()
         raise ArgumentError(name, values[n], reason, n if values.size > 1 else None)
 
 
@@ -202,3 +203,16 @@ def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:
 def shaped(values: Array, shape: tuple[int, ...] | None) -> float | Array:
     """Undo `broadcast`."""
     return float(values[0]) if shape is None else np.ascontiguousarray(values).reshape(shape)
+
+
+def unknown(name: str, known: Iterable[str]) -> str:
+    """Say that a name is not among those known, and which of them is like it.
+
+    Examples
+    --------
+    >>> unknown("thicknes", ["radius", "thickness"])
+    "unknown 'thicknes'; did you mean thickness? known: radius, thickness"
+    """
+    names = [*known]
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"

@@ -30,13 +30,6 @@ from contactlaw.physical.responses import response_of
 from contactlaw.table.lookup import R_MIN
 
 
-def _transit(plate: Material, thickness: Array) -> Array:
-    """Time of a shear wave through a plate, over `CONTACT_TIME` [s]."""
-    shear = 0.5 * plate.youngs_modulus / (1.0 + plate.poissons_ratio)
-    time: Array = thickness * (math.sqrt(plate.density / shear) / CONTACT_TIME)
-    return time
-
-
 def plate_mobility(plate: Material, thickness: Array) -> Array:
     """Speed of an infinite plate under a point force, per force [m/(s N)]; 0 for a half-space.
 
@@ -56,13 +49,7 @@ def _yield_compression(pair: Pair, law: Law) -> float:
         return law.scale
     if law.yield_coefficient is None:
         return math.inf
-    return _yield_share(pair, law.yield_coefficient, law.name)
-
-
-def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
-    """d_Y/R*."""
-    strain = math.pi * pair.sphere.require_yield_strength(law) / pair.effective_modulus
-    return coefficient * strain**2
+    return pair.yield_share(law.yield_coefficient, pair.sphere.require_yield_strength(law.name))
 
 
 def yield_share(pair: Pair, law: Law) -> float:
@@ -74,7 +61,7 @@ def yield_share(pair: Pair, law: Law) -> float:
 
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
     """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
-    compression = _yield_share(pair, coefficient, "measured") * radius
+    compression = pair.yield_share(coefficient, pair.sphere.require_yield_strength("measured")) * radius
     return compression, _stiffness(pair, np.array(radius)).item() * compression**1.5
 
 
@@ -117,11 +104,12 @@ def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
         share = pair.effective_modulus / pair.plate.plane_modulus
         b, b_h, b4, b_p = law.waves
         corrections = plate_corrections(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
+    shear = 0.5 * pair.plate.youngs_modulus / (1.0 + pair.plate.poissons_ratio)
     # beyond yield the force grows no faster than the compression
     most = SATURATION * SATURATION * _yield_compression(pair, law) / time
     return PlateConstants(
         inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
-        transit=_transit(pair.plate, one).item() / time,
+        transit=math.sqrt(pair.plate.density / shear) / CONTACT_TIME / time,  # of a shear wave
         x_at_one=math.sqrt(time),
         saturated=most**0.25,
         corrections=corrections,
