@@ -598,9 +598,8 @@ class ImpactModel:
         Errors are log-normal and independent, also those of A, B and C of one fit. But if both
         bodies are of one and the same material, equal in all numbers and in its name, a number
         errs alike in both. A Poisson's ratio stays up to 0.5. Numbers that were given in the name
-        of a law are held fixed. Quantiles are within 10 % of half the band's width of those of
-        random pairs, and within 15 % where a body may or may not begin to yield, for errors of
-        strengths and moduli up to 30 %.
+        of a law are held fixed. Quantiles are within 15 % of half the band's width of those of
+        random pairs, for errors of strengths up to 30 % and of moduli up to 15 %.
 
         Examples
         --------
