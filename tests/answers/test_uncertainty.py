@@ -53,7 +53,9 @@ def drawn(body, deviates):
     return body
 
 
-@pytest.mark.parametrize("case", [1, 3, 5, *(pytest.param(n, marks=pytest.mark.long) for n in range(6, 53))])
+@pytest.mark.parametrize(
+    "case", [1, 5, 18, *(pytest.param(n, marks=pytest.mark.long) for n in range(6, 54) if n != 18)]
+)
 def test_the_band_is_that_of_random_pairs(case):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones.
 
