@@ -158,18 +158,8 @@ def approach_all(
 ) -> None:
     """Speeds of beads towards plates and along them; vectors are rows."""
     vectors: list[Any] = [velocity.T, spin.T, normal.T, wall.T]
-    speed[:], size[:], _ = sliding(*vectors, radius)  # type: ignore[call-arg]
-
-
-@kernel(cache=True)
-def tangential_all(
-    table: Array, slides: Array, impact: Impact, friction: Array, size: Array, e: Array, changed: Array
-) -> None:
-    """`tangential` of many impacts."""
-    speed, radius, thickness, mass = impact
-    for i in range(e.size):
-        one = Impact(speed[i], radius[i], thickness[i], mass[i])
-        e[i], changed[i] = tangential(table, slides, one, friction[i], size[i])
+    with np.errstate(over="ignore", invalid="ignore"):  # speeds that are refused afterwards
+        speed[:], size[:], _ = sliding(*vectors, radius)  # type: ignore[call-arg]
 
 
 def rebound_all(
