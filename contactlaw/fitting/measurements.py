@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw.fitting.drops import NAMES, rebounds_of
 from contactlaw.physical import flight
@@ -147,6 +147,11 @@ class Measurements:
     def __len__(self) -> int:
         """Count the rebounds."""
         return int(np.size(self.speed))
+
+    def part(self, rows: Collection[int] | Mask) -> Measurements:
+        """Keep some of the rebounds."""
+        given = {name: values[rows] for name, values in vars(self).items() if values is not None}
+        return Measurements(**given)
 
     def rebound(self, n: int) -> str:
         """Name a rebound by its number, and by its line if that is known."""

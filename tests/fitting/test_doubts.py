@@ -51,7 +51,7 @@ def test_honest_data_raise_no_doubt(pair, unknown, speed, stated, seeds):
             "yield_strength",
             "restitution",
             1e-3,
-            r"yield_strength is 2\d times below that of gamma-alumina, 472.5 MPa: units",
+            r"yield strength of the bead is 2\d times below that of gamma-alumina, 472.5 MPa: units",
         ),
         (STEEL, "plate_density", "contact_time", 1e3, r"3.\d times below .*: units"),
     ],
@@ -66,7 +66,7 @@ def test_a_value_that_speeds_in_other_units_give_is_named_as_far_off(pair, unkno
 def test_another_law_leaves_a_trend_and_one_mistake_does_not():
     data = rebounds(STEEL, noise=0.01, seed=1)
     for stated in (True, False):
-        assert "restitution trend with speed" in said(STEEL, data, "thickness", "hertz", stated)
+        assert "residuals of COR trend with speed" in said(STEEL, data, "thickness", "hertz", stated)
     data["restitution"][4] *= 1.2
     assert "trend" not in said(STEEL, data, "thickness")
 
@@ -76,10 +76,9 @@ def test_chances_of_trends_are_those_of_noise(stated):
     """They are uniform over sets of pure noise, so that 1 in 1000 has one below the limit."""
     data = rebounds(STEEL, without=("thickness",))
     data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
-    moved = parameters(STEEL, data, "thickness", {})
-    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved)
-    fitted = predictor.predicted(np.array([1.2e-3]))
-    slopes = predictor.derivatives(np.array([1.2e-3]), fitted)
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, parameters(STEEL, data, ["thickness"], {}))
+    (fitted,) = predictor.predicted(np.log([1.2e-3]))
+    slopes = predictor.derivatives(np.log([1.2e-3]), fitted)
     z, random, found = slopes / (0.01 * fitted[:, None]), np.random.default_rng(5), []
     for _ in range(500):
         off = random.standard_normal(12)
@@ -108,7 +107,7 @@ def test_foils_are_refused_before_they_are_integrated():
 def test_a_restitution_above_one_is_named_by_its_rebound():
     data = rebounds(ALUMINA, noise=0.005)
     data["restitution"][3] = 1.05
-    assert "restitution of rebound 3 is above 1" in said(ALUMINA, data, "thickness")
+    assert "COR of rebound 3 is above 1" in said(ALUMINA, data, "thickness")
 
 
 @pytest.mark.parametrize("harder", [1.0, 1.5])
