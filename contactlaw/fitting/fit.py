@@ -3,33 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array, Integers, Mask, Places
+from contactlaw._arrays import Array, Integers, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
 from contactlaw.answers.varied import FINE
 from contactlaw.fitting import search
-from contactlaw.fitting.errors import chi_squared, covariance_of, leverages, model_errors, student
+from contactlaw.fitting.errors import chi_squared, covariance_of, model_errors, student
 from contactlaw.fitting.identify import EXCLUDED, UnidentifiedError, check, check_strengths, profile
-from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
+from contactlaw.fitting.measurements import NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values, impacts
 from contactlaw.fitting.search import Basin
-from contactlaw.fitting.unknowns import Parameter, bodies_with, parameters, with_loss_factors
+from contactlaw.fitting.unknowns import parameters, with_guesses
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.record.file import Record
-from contactlaw.table.cache import progress_bar
 
-_LEAST_FREEDOM = 0.5  # least degrees of freedom of a kind of values, so that it has a finite error
 _LEAST = 1e-6  # smallest relative standard error; data without scatter would get zero
 _POOLED = 4  # a kind with fewer values gets the scatter of all kinds
 
@@ -203,8 +201,8 @@ def fit(
     unknown, priors = (unknown,) if isinstance(unknown, str) else tuple(unknown), priors or {}
     data = Measurements.of(data, {*unknown} - {*priors}, pair.sphere.density)
     varied = parameters(pair, data, unknown, priors)
-    pair = with_loss_factors(pair, data, unknown)
-    predictor = Predictor(pair, _law(pair, law, varied), data, varied)
+    pair = with_guesses(pair, data, varied)
+    predictor = Predictor(pair, law_of(pair, law), data, varied)
     if predictor.values.value.size < (free := sum(one.is_free for one in varied)):
         many = f"{predictor.values.value.size} measured values cannot determine {free} unknowns"
         raise ArgumentError("unknown", None, f"{many}: leave one out, give priors, or measure more")
@@ -215,13 +213,6 @@ def fit(
         raise explained(error, predictor, extremes) from None
 
 
-def _law(pair: Pair, law: str | Law, varied: list[Parameter]) -> Law:
-    """Resolve the law; for that, a body whose strength is unknown has a guess of it."""
-    strengths = [one for one in varied if one.is_strength]
-    guesses = [1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths]
-    return law_of(bodies_with(pair, strengths, guesses) if strengths else pair, law)
-
-
 def _least_squares(predictor: Predictor, found: list[Basin]) -> tuple[list[Basin], Array, float]:
     """Minimum of each basin, the best first, errors of the values, and their degrees of freedom.
 
@@ -230,41 +221,26 @@ def _least_squares(predictor: Predictor, found: list[Basin]) -> tuple[list[Basin
     """
     error, freedom, stages = search.guessed(predictor.values), math.inf, [FINE]
     if np.isnan(predictor.values.error).any():
-        freedom, stages = 0.0, [COARSE, COARSE, FINE]
+        freedom, stages = float(error.size - sum(one.is_free for one in predictor.parameters)), [COARSE, COARSE, FINE]
     for n, fineness in enumerate(stages):
-        if n and error.size > sum(one.is_free for one in predictor.parameters):
-            error, freedom = _scatter(predictor.values, found[0], error)
+        if n and freedom:
+            error = _scatter(predictor.values, found[0], error, freedom)
         nearby = replace(predictor, fineness=fineness)
-        found = search.lowest([search.descend(nearby, one.x, error) for one in progress_bar(iter(found), len(found))])
+        found = search.lowest([search.descend(nearby, one.x, error) for one in found])
     return found, error, freedom
 
 
-def _scatter(values: Values, best: Basin, error: Array) -> tuple[Array, float]:
-    """Errors of the values, from their scatter where they were not given; degrees of freedom.
+def _scatter(values: Values, best: Basin, error: Array, freedom: float) -> Array:
+    """Errors of the values, from their scatter where they were not given.
 
-    Each free parameter costs one degree of freedom, of the kinds of values that determine it; one
-    with a prior costs the share that they determine.
+    Values of one kind share one relative error; kinds with few values take the scatter of all.
     """
-    left, error = 1.0 - leverages(best.slopes)[: error.size], error.copy()
-    off = values.value / best.fitted - 1.0
-    for part, pool, freedom in _pools(values, left):
-        error[part] = max(math.sqrt(float(np.sum(off[pool] ** 2)) / freedom), _LEAST) * best.fitted[part]
-    return error, float(left.sum())
-
-
-def _pools(values: Values, left: Array) -> Iterator[tuple[Mask, Mask, float]]:
-    """Values that share one unknown error, those from whose scatter it is found, and the freedom of these.
-
-    Both are the values of one kind. Kinds with few values take the scatter of all kinds. Of each
-    value `left` is what the parameters leave of its degree of freedom.
-    """
-    unknown = np.isnan(values.error)
-    counts = np.bincount(values.kind[unknown], minlength=len(KINDS))
-    group = np.where(counts[values.kind] < _POOLED, -1, values.kind)
-    for n in np.unique(group[unknown]):
-        part = unknown & (group == n)
-        pool = unknown if n < 0 else part
-        yield part, pool, max(float(left[pool].sum()), _LEAST_FREEDOM)
+    off, error, estimated = values.value / best.fitted - 1.0, error.copy(), np.isnan(values.error)
+    for kind in np.unique(values.kind[estimated]):
+        part = estimated & (values.kind == kind)
+        variance = np.mean(off[part if part.sum() >= _POOLED else estimated] ** 2) * error.size / freedom
+        error[part] = max(math.sqrt(variance), _LEAST) * best.fitted[part]
+    return error
 
 
 def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: float) -> Fit:
@@ -274,44 +250,40 @@ def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: flo
     ------
     UnidentifiedError
     """
-    best, values, count = found[0], predictor.values, error.size
+    best, values = found[0], predictor.values
     names = tuple(one.name for one in predictor.parameters if one.is_unknown)
     unknowns = slice(len(names))  # the unknowns come first
     bodies = predictor.setting(best.x)
     hit = impacts(bodies, predictor.law)
     shared = model_errors(predictor, best.x, hit)
-    model = None if shared is None else np.linalg.norm(shared, axis=1)
+    model = np.linalg.norm(shared, axis=1)
     # with as many values as unknowns there is no scatter: only the model's errors are known
-    doubt = error if freedom or model is None else model
+    doubt = error if freedom or not model.any() else model
     check_strengths(predictor, best, doubt, model)
-    linear = covariance_of(best.slopes)
-    gain = (linear @ (best.slopes[:count] / error[:, None]).T) @ (np.zeros((count, 1)) if shared is None else shared)
-    of_model, of_data = gain @ gain.T, np.zeros_like(linear)
-    if freedom:
-        pools = [(part, freed) for part, _, freed in _pools(values, 1.0 - leverages(best.slopes)[:count])]
-        widths = student(best.slopes, pools)
-        of_data = linear * np.outer(widths, widths)
+    linear, scaled = covariance_of(best.slopes), np.pad(shared / error[:, None], ((0, best.x.size), (0, 0)))
+    gain = linear @ best.slopes.T @ scaled
+    of_model, of_data = gain @ gain.T, linear * (student(freedom) ** 2 if freedom else 0.0)
     check(names, best.x[unknowns], (of_data if freedom else of_model)[unknowns, unknowns])
     if freedom:
         widths = profile(predictor, best, linear, error)
-        of_data = of_data * np.outer(widths, widths)
+        of_data *= np.outer(widths, widths)
     covariance = of_data + of_model
     spread = np.sqrt(np.diag(covariance))
-    others = _alternatives(predictor, found, spread, doubt, shared if freedom else None)
+    own = np.append(doubt / error, np.ones(best.x.size))
+    others = _alternatives(found, spread, own, scaled * (freedom > 0.0))
     off, kinds = values.value / best.fitted - 1.0, values.by_kind()
 
     def named(sizes: Array) -> dict[str, float]:
         return dict(zip(names, sizes[unknowns].tolist(), strict=True))
 
     at = np.exp(best.x)
-    relative = None if model is None else model / best.fitted
-    remarks = notes(predictor, best, hit, error, freedom, relative, covariance)
+    remarks = notes(predictor, best, hit, error, freedom, model / best.fitted, covariance)
     return Fit(
         unknown=names,
         values=named(at),
         errors=named(at * spread),
         statistical_errors=named(at * np.sqrt(np.diag(of_data))),
-        model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(of_model)))),
+        model_errors=named(at * (np.sqrt(np.diag(of_model)) if model.any() else np.inf)),
         correlation=(covariance / np.outer(spread, spread))[unknowns, unknowns],
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
@@ -330,16 +302,14 @@ def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: flo
     )
 
 
-def _alternatives(
-    predictor: Predictor, found: list[Basin], spread: Array, error: Array, shared: Array | None
-) -> list[Array]:
-    """Values in other basins that fit as well, within the errors of data and model."""
-    best, *others = found
-    shared = np.zeros((error.size, 1)) if shared is None else shared
+def _alternatives(found: list[Basin], spread: Array, weights: Array, shared: Array) -> list[Array]:
+    """Values in other basins that fit as well, within the errors of data and model.
 
-    def squares(basin: Basin) -> float:
-        pulled = [(x - math.log(one.centre)) / one.prior for x, one in zip(basin.x, predictor.parameters, strict=True)]
-        return chi_squared(basin.fitted - predictor.values.value, error, shared) + np.nansum(np.square(pulled))
-
-    least = squares(best) + EXCLUDED
-    return [np.exp(one.x) for one in others if squares(one) < least and (np.abs(one.x - best.x) > 2.0 * spread).any()]
+    The errors are those of data and priors, by `weights`, and those that they share (m + p, c).
+    """
+    squares = [chi_squared(one.off, weights, shared) for one in found]
+    return [
+        np.exp(one.x)
+        for one, square in zip(found, squares, strict=True)
+        if square < squares[0] + EXCLUDED and (np.abs(one.x - found[0].x) > 2.0 * spread).any()
+    ]

@@ -82,7 +82,7 @@ def check(names: tuple[str, ...], x: Array, covariance: Array) -> None:
     )
 
 
-def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Array | None) -> None:
+def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Array) -> None:
     """Refuse a strength or a friction that might as well be any larger one.
 
     Raises
@@ -95,7 +95,7 @@ def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Arra
         if not (one.is_free and (one.is_strength or one.name == "friction")):
             continue
         # in a contact that sticks, friction changes less than the model's errors
-        doubt = error if one.is_strength or model is None else np.hypot(error, model)
+        doubt = error if one.is_strength else np.hypot(error, model)
 
         def rise(place: float, n: int = n, doubt: Array = doubt) -> float:
             x = np.where(np.arange(best.x.size) == n, place, best.x)

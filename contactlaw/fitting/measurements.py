@@ -137,8 +137,14 @@ class Measurements:
         _resolve_angle(flat)
         for name, kind in KINDS.items():
             _check_kind(name, kind, flat)
-            if name in OBLIQUE and name in flat:
-                _check_sliding(name, flat)
+            if name in OBLIQUE and name in flat:  # friction did nothing to beads that did not slide
+                if "sliding_speed" not in flat:
+                    reason = f"has to be given with {name} [deg], from the normal; or sliding_speed [m/s]"
+                    raise ArgumentError("angle", None, reason)
+                if (still := np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)).any():
+                    n = int(np.argmax(still))
+                    reason = "its bead came without sliding: leave this value out, or state the angle"
+                    raise ArgumentError(name, flat[name][n], reason, n)
         object.__setattr__(self, "angle", None)
         for name, values in flat.items():
             values.flags.writeable = False
@@ -222,25 +228,13 @@ def _resolve_angle(flat: dict[str, Array]) -> None:
     if "angle" in flat:
         if "sliding_speed" in flat:
             raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
-        angle, speed = flat.pop("angle"), flat["speed"]
+        angle = flat.pop("angle")
         within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
-        flat["speed"] = speed * np.cos(np.radians(angle))
-        flat["sliding_speed"] = speed * np.sin(np.radians(angle))
+        flat["sliding_speed"] = flat["speed"] * np.sin(np.radians(angle))
+        flat["speed"] = flat["speed"] * np.cos(np.radians(angle))
         check(speed=flat["speed"])
     elif "sliding_speed" in flat:
         flat["sliding_speed"] = np.abs(flat["sliding_speed"])
-
-
-def _check_sliding(name: str, flat: dict[str, Array]) -> None:
-    """Refuse what friction did to beads that did not slide, or nobody knows how fast."""
-    if "sliding_speed" not in flat:
-        reason = f"has to be given with {name} [deg], from the normal; or sliding_speed [m/s]"
-        raise ArgumentError("angle", None, reason)
-    still = np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)
-    if still.any():
-        n = int(np.argmax(still))
-        reason = "its bead came without sliding: leave this value out, or state the angle"
-        raise ArgumentError(name, flat[name][n], reason, n)
 
 
 def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:

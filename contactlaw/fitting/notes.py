@@ -14,14 +14,12 @@ from contactlaw.fitting.search import Basin
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import count_flags, explain
 
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
-_HALF_SPACE = math.log(UNKNOWNS["thickness"].largest)
 _SLIDES = 1.0 - 1e-6  # share of the friction at which an impulse is that of full sliding
-_LISTED = 8  # rows or runs of rows that are listed; more are only counted
+_LISTED = 8  # rows that are listed; more are only counted
 _SIGNIFICANCE = 1e-3  # a trend is noted if scatter alone gives it in fewer than 1 of 1000 fits
 # Residuals are cut to 3 standard errors or medians, so that one mistake makes no trend.
 _OUTLIER = 3.0
@@ -31,13 +29,7 @@ _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
 
 
 def notes(
-    predictor: Predictor,
-    best: Basin,
-    hit: Rebound,
-    error: Array,
-    freedom: float,
-    model: Array | None,
-    covariance: Array,
+    predictor: Predictor, best: Basin, hit: Rebound, error: Array, freedom: float, model: Array, covariance: Array
 ) -> Iterator[str]:
     """Say what is unusual about a fit, and what makes it doubtful.
 
@@ -53,8 +45,8 @@ def notes(
         Standard errors of the values, as given or found.
     freedom : float
         Degrees of freedom; inf where all errors were given.
-    model : ndarray (m,) or None
-        Errors of the model, relative to the fitted values; None where they are not known.
+    model : ndarray (m,)
+        Errors of the model, relative to the fitted values; 0 if they are not known.
     covariance : ndarray (p, p)
         Covariance of the parameters' logarithms.
     """
@@ -64,8 +56,8 @@ def notes(
         yield from _found_errors(predictor, standard)
     else:
         yield "as many unknowns as values, and no errors of these: the errors stated are those of the model alone"
-    yield from _misfits(predictor, off, np.hypot(standard, 0.0 if model is None else model), freedom)
-    if model is None:
+    yield from _misfits(predictor, off, np.hypot(standard, model), freedom)
+    if not model.any():
         yield (
             f"how far law {predictor.law.family!r} is from finite elements is not known: the "
             "errors stated are those of the data alone"
@@ -79,12 +71,9 @@ def notes(
     if isinstance(hit, ObliqueRebound) and friction is not None:
         sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
         yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
-    flags = np.asarray(hit.flags)
-    for flag in count_flags(flags):
-        yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {explain(flag)[0]}"
     yield from _above_one(predictor)
     yield from _far(predictor, best.x, covariance)
-    yield from _trends(predictor, off, standard, model)
+    yield from _trends(predictor, off / standard)
 
 
 def alternative_note(values: Mapping[str, float]) -> str:
@@ -105,19 +94,15 @@ def explained(refused: UnidentifiedError, predictor: Predictor, extremes: Array)
 
 
 def listed(rows: Places) -> str:
-    """Write indices of rebounds; of three and more in a row only the ends.
+    """Write indices of rebounds.
 
     Examples
     --------
-    >>> listed(np.array([0, 1, 2, 5, 7, 8]))
-    '0 to 2, 5, 7, 8'
+    >>> listed(np.arange(0, 20, 2))
+    '0, 2, 4, 6, 8, 10, 12, 14 and 2 more'
     """
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1)
-    parts = []
-    for run in runs:
-        parts += [f"{run[0]} to {run[-1]}"] if run.size > 2 else [str(row) for row in run]
-    more = len(parts) - _LISTED
-    return ", ".join(parts[:_LISTED]) + (f" and {more} more" if more > 0 else "")
+    more = rows.size - _LISTED
+    return ", ".join(map(str, rows[:_LISTED])) + (f" and {more} more" if more > 0 else "")
 
 
 def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
@@ -164,8 +149,6 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
 def _outside(predictor: Predictor, extremes: Array) -> list[str]:
     """Say so if no value of the unknowns gives any of the data, and what is attainable."""
     values, unknown = predictor.values, " and ".join(one.name for one in predictor.parameters if one.is_unknown)
-    if unknown == "thickness":  # up to a half-space
-        extremes = np.vstack([extremes, np.append(_HALF_SPACE, extremes[0, 1:])])
     grid = np.vstack([predictor.predicted(x) for x in extremes])
     low, high = np.nanmin(grid, axis=0), np.nanmax(grid, axis=0)
     near = np.clip(values.value, low, high)
@@ -175,16 +158,14 @@ def _outside(predictor: Predictor, extremes: Array) -> list[str]:
         return []
     n = int(np.argmax(np.abs(values.value / near - 1.0)))
     kind, row = [*KINDS.values()][values.kind[n]], values.row[n]
-    unit = kind.unit.strip("-")
-    value, least, most = (float(one[n]) - kind.shift for one in (values.value, low, high))
-    least = least if abs(least) > 1e-3 * most else 0.0
-    ends = f"from {least:.3g} to {most:.3g} {unit}".rstrip()
-    ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-1, n] else ""
-    if unknown in OTHER_STRENGTH:
-        ends += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
-    which = f"{kind.title} {f'{value:.4g} {unit}'.rstrip()} of {predictor.data.rebound(row)}"
+    value, least, most = (f"{one[n] - kind.shift:.4g}" for one in (values.value, low, high))
     speed = rounded(float(np.asarray(predictor.data.speed)[row]), 3)
-    return [f"no {unknown} gives the {which}, at {speed} m/s: attainable is {ends}"]
+    attainable = f"attainable is from {least} to {most} {kind.unit.strip('-')}".rstrip()
+    if unknown in OTHER_STRENGTH:
+        attainable += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
+    return [
+        f"no {unknown} gives the {kind.title} {value} of {predictor.data.rebound(row)}, at {speed} m/s: {attainable}"
+    ]
 
 
 def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:
@@ -203,35 +184,24 @@ def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:
             )
 
 
-def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | None) -> Iterator[str]:
-    """Name kinds of values whose residuals trend with speed."""
+def _trends(predictor: Predictor, deviations: Array) -> Iterator[str]:
+    """Name kinds of values whose deviations, in standard errors, trend with speed."""
     speed = np.asarray(predictor.data.speed)[predictor.values.row]
     for name, of_kind in predictor.values.by_kind().items():
-        order = np.flatnonzero(of_kind)
-        order = order[np.argsort(speed[order])]
-        thirds = np.array_split(order, 3)
-        if chance(thirds, off / standard) >= _SIGNIFICANCE:
-            continue
-        means = [float(off[third].mean()) for third in thirds]
-        slow, middle, fast = map(percent, means)
-        known = 0.0 if model is None else math.sqrt(np.mean(np.square(model[of_kind])))
-        why = "units, materials or the law may be wrong"
-        if max(map(abs, means)) < 2.0 * known:
-            why = f"errors of law {predictor.law.family!r} allow that, those of the data do not"
-        yield (
-            f"residuals of {KINDS[name].title} trend with speed: {slow}, {middle} and {fast} in the slow, the "
-            f"middle and the fast third, by chance in fewer than 1 of 1000 fits: {why}"
-        )
+        if chance(deviations[of_kind][np.argsort(speed[of_kind])]) < _SIGNIFICANCE:
+            yield (
+                f"residuals of {KINDS[name].title} trend with speed, as by chance in fewer than 1 of 1000 fits: "
+                "units, materials or the law may be wrong"
+            )
 
 
-def chance(thirds: list[Places], off: Array) -> float:
-    """Chance that scatter alone moves the means of the thirds as far apart, by Fisher's test.
+def chance(deviations: Array) -> float:
+    """Chance that scatter alone moves the means of the slow, middle and fast third as far apart.
 
-    Parameters take up a part of any trend, so that the chance is rather too large.
+    By Fisher's test. Parameters take up a part of any trend, so that it is rather too large.
     """
     from scipy.stats import f_oneway
 
-    if min(third.size for third in thirds) < 2:
-        return 1.0
-    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[np.concatenate(thirds)]))))
-    return float(f_oneway(*(np.clip(off[third], -most, most) for third in thirds)).pvalue)
+    most = _OUTLIER * max(1.0, float(np.median(np.abs(deviations))))
+    thirds = np.array_split(np.clip(deviations, -most, most), 3)
+    return float(f_oneway(*thirds).pvalue) if deviations.size >= 6 else 1.0

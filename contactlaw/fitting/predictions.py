@@ -119,10 +119,8 @@ class Predictor:
         """Differentiate the values with respect to x; a column for each parameter that is moved."""
         columns = np.zeros((here.size, x.size))
         for n in range(x.size) if moved is None else moved:
-            for step in (_STEP, -_STEP):  # at an edge of the model to its other side
-                columns[:, n] = (self.predicted(x + step * (np.arange(x.size) == n))[0] - here) / step
-                if np.isfinite(columns[:, n]).all():
-                    break
+            step = -_STEP if x[n] + _STEP > self.limits[1, n] else _STEP
+            columns[:, n] = (self.predicted(x + step * (np.arange(x.size) == n))[0] - here) / step
         return columns
 
 

@@ -15,24 +15,22 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw.fitting.measurements import INPUTS
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
 from contactlaw.fitting.unknowns import SLENDERNESS
-from contactlaw.table.cache import progress_bar
 
-_ROWS = 8  # rebounds of each kind that the scan predicts, from the slowest to the fastest
+_ROWS = 48  # least number of rebounds that the scan predicts, evenly over the speeds
 _GUESSED = 0.02  # relative error assumed where none is given, until it is estimated
 # Points of an axis by the number of axes, of those on which each point needs its own law, which
 # takes 10 ms, and of the others.
-_LAWS, _OTHERS = (14, 8, 5), (24, 18, 12)
+_LAWS, _OTHERS = (16, 9, 6), (24, 18, 12)
 _BETWEEN = 0.01  # relative error of the splines between the points
 _PLACES = 20  # points of the grid, no two beside each other, from which descents on the splines start
 _SAME_MINIMUM = 0.05  # distance in logarithms within which two results on the splines are one
-_MOST = 6  # basins of the scan from which least squares of the model start
+_MOST, _KEPT = 6, 3  # basins from which descents of the model start: by few rebounds, and by all
 _STEPS = 6  # steps after which a basin may be dropped: the splines' minimum is within 1 % of it
 # A basin whose sum of squares is above 3 times the least plus this is neither the best one with all
 # rebounds nor as good.
-_HOPELESS, _KEPT = 25.0, 3  # and most basins that are kept
+_HOPELESS = 25.0
 # Relative change of the sum of squares at which a descent ends, and distance in logarithms within
 # which it keeps derivatives; both near a basin and to its lowest point. Derivatives from a distance
 # of 0.01 lead to a point a hundredth of a standard error off.
@@ -45,8 +43,9 @@ class Basin(NamedTuple):
 
     x: Array
     squares: float  # sum of squares of data and priors
+    off: Array  # deviations of values and priors over their errors (m + p,)
+    slopes: Array  # of these (m + p, moved parameters)
     fitted: Array  # values predicted there (m,)
-    slopes: Array  # of these over their errors, and of the priors' deviations (m + p, moved parameters)
 
 
 def basins(predictor: Predictor) -> tuple[list[Basin], Array]:
@@ -54,10 +53,12 @@ def basins(predictor: Predictor) -> tuple[list[Basin], Array]:
 
     The second result has the trials, over the whole range, at which values are largest or smallest.
     """
-    chosen = _few(replace(predictor, fineness=COARSE))
+    rows = np.argsort(np.asarray(predictor.data.speed), kind="stable")
+    some = predictor.data.part(rows[:: max(1, rows.size // _ROWS)])
+    chosen = replace(predictor, fineness=COARSE, data=some)
     starts, extremes = _scan(replace(chosen, fineness=ROUGH))
     error = guessed(chosen.values)
-    return lowest([descend(chosen, x, error, steps=_STEPS) for x in progress_bar(iter(starts), len(starts))]), extremes
+    return lowest([descend(chosen, x, error, steps=_STEPS) for x in starts])[:_KEPT], extremes
 
 
 def guessed(values: Values) -> Array:
@@ -65,19 +66,13 @@ def guessed(values: Values) -> Array:
     return np.where(np.isnan(values.error), _GUESSED * values.value, values.error)
 
 
-def lowest(found: list[Basin]) -> list[Basin]:
+def lowest(found: list[Basin], apart: float = _SAME_BASIN) -> list[Basin]:
     """Keep each basin once, the best first; drop those that cannot be the best."""
-    kept = _apart(found, _SAME_BASIN)
-    return [one for one in kept[:_KEPT] if one.squares <= 3.0 * kept[0].squares + _HOPELESS]
-
-
-def _apart(found: list[Basin], least: float) -> list[Basin]:
-    """Best basin of each place, the best first; logarithms in one place differ by less than `least`."""
     kept: list[Basin] = []
     for one in sorted(found, key=lambda one: one.squares):
-        if all(np.abs(one.x - other.x).max() > least for other in kept):
+        if all(np.abs(one.x - other.x).max() > apart for other in kept):
             kept.append(one)
-    return kept
+    return [one for one in kept if one.squares <= 3.0 * kept[0].squares + _HOPELESS]
 
 
 def descend(
@@ -114,13 +109,14 @@ def descend(
 
     first = x[moved]
     off = residuals(first)
-    if not np.isfinite(off).all():  # the model has no answer there
-        return Basin(start, math.inf, off[: value.size], np.empty((off.size, first.size)))
-    if not first.size:
-        return Basin(x, float(off @ off), off[: value.size] * error + value, np.empty((off.size, 0)))
-    ends = {"ftol": converged, "xtol": 1e-8, "gtol": 1e-10, "max_nfev": steps or 15}
-    done = least_squares(residuals, first, slopes, bounds=(low, high), x_scale="jac", **ends)
-    return Basin(whole(done.x), float(2.0 * done.cost), done.fun[: value.size] * error + value, done.jac)
+    slope = off[:, None]
+    if first.size and np.isfinite(off).all():  # NaN: the model has no answer there
+        ends = {"ftol": converged, "xtol": 1e-8, "gtol": 1e-10, "max_nfev": steps or 15}
+        done = least_squares(residuals, first, slopes, bounds=(low, high), x_scale="jac", **ends)
+        whole(done.x)
+        off, slope = done.fun, done.jac
+    squares = float(np.nan_to_num(off @ off, nan=math.inf))
+    return Basin(x, squares, off, slope, off[: value.size] * error + value)
 
 
 def _scan(predictor: Predictor) -> tuple[list[Array], Array]:
@@ -129,15 +125,20 @@ def _scan(predictor: Predictor) -> tuple[list[Array], Array]:
     from scipy.optimize import least_squares
 
     parameters, value = predictor.parameters, predictor.values.value
+    known = np.log([1.0 if one.is_free else one.centre for one in parameters])
     free = [n for n, one in enumerate(parameters) if one.is_free]
     if not free:
-        start = np.log([one.centre for one in parameters])
-        return [start], start[None]
-    free.sort(key=lambda n: not parameters[n].changes(predictor.law))  # one law after the other
-    axes = _axes(predictor, free)
+        return [known], known[None]
+    # trials with one law come one after the other, and those of the same bodies are predicted together
+    free.sort(key=lambda n: (not parameters[n].changes(predictor.law), not parameters[n].unknown.body))
+    names = [parameters[n].name for n in free]
+    axes, basis = [_axis(predictor, n, names) for n in free], np.eye(known.size)[free]
+    if {"radius", "thickness"} <= {*names}:  # the axis of the thickness is one of H/R
+        basis[names.index("radius"), free[names.index("thickness")]] = 1.0
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(free))
-    trials = np.array([_trial(predictor, free, point) for point in points])
-    predicted = _predicted(predictor, trials)
+    trials = known + points @ basis
+    alike = math.prod(axis.size for axis, n in zip(axes, free, strict=True) if not parameters[n].unknown.body)
+    predicted = np.concatenate([predictor.predicted(*part) for part in trials.reshape(-1, alike, known.size)])
     ends = np.unique([np.nanargmin(predicted, axis=0), np.nanargmax(predicted, axis=0)])
     shape = [axis.size for axis in axes]
     grid = np.nan_to_num(predicted).reshape(*shape, -1)  # 0: far from any measured value
@@ -153,67 +154,15 @@ def _scan(predictor: Predictor) -> tuple[list[Array], Array]:
     for place in places:
         start = np.clip([axis[n] for axis, n in zip(axes, place, strict=True)], bounds[0] + 1e-9, bounds[1] - 1e-9)
         done = least_squares(lambda x: (between(x)[0] - value) / soft, start, bounds=bounds, ftol=1e-3, max_nfev=20)
-        bottoms.append(Basin(done.x, float(done.cost), value, value))
-    starts = [_trial(predictor, free, one.x) for one in _apart(bottoms, _SAME_MINIMUM)[:_MOST]]
+        bottoms.append(Basin(done.x, float(done.cost), value, value, value))
+    starts = [known + bottom.x @ basis for bottom in lowest(bottoms, _SAME_MINIMUM)[:_MOST]]
     return [np.clip(x, *predictor.limits) for x in starts], trials[ends]
 
 
-def _axes(predictor: Predictor, free: Sequence[int]) -> list[Array]:
-    """Values of each free parameter on the grid; H/R in place of the thickness if the radius is free."""
-    parameters = predictor.parameters
-    laws, axes = sum(parameters[n].changes(predictor.law) for n in free), []
-    for n in free:
-        one, (low, high) = parameters[n], predictor.limits[:, n]
-        if one.is_strength:
-            high = max(min(high, _onset(predictor, n)), low + math.log(2.0))
-        if _by_radius(predictor, n):
-            low, high = (-math.log(ratio) for ratio in reversed(SLENDERNESS))
-        count = _LAWS[laws - 1] if one.changes(predictor.law) else _OTHERS[len(free) - 1]
-        axes.append(np.linspace(low, high, count))
-    return axes
-
-
-def _onset(predictor: Predictor, n: int) -> float:
-    """Strength from which on a body hardly yields, twice over; others are in the middle of their ranges."""
-    x = predictor.limits.mean(axis=0)
-    chi = float(np.max(predictor.impacts(predictor.setting(x)).overload))
-    # d_Y is in proportion to the square of the strength
-    return float(x[n]) + 0.5 * math.log(4.0 * chi) if chi > 0.0 else math.inf
-
-
-def _by_radius(predictor: Predictor, n: int) -> bool:
-    """Whether a parameter is the thickness, and the radius is not known."""
-    return predictor.parameters[n].name == "thickness" and predictor.data.radius is None
-
-
-def _trial(predictor: Predictor, free: Sequence[int], point: Array) -> Array:
-    """All parameters at a point of the grid."""
-    x = np.array([math.log(one.centre) if not one.is_free else 0.0 for one in predictor.parameters])
-    x[free] = point
-    for n in free:
-        if _by_radius(predictor, n):
-            x[n] += next(x[m] for m, one in enumerate(predictor.parameters) if one.name == "radius")
-    return x
-
-
-def _predicted(predictor: Predictor, trials: Array) -> Array:
-    """Predict the measured values at all trials (k, m), those of the same bodies together."""
-    bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
-    found = np.empty((len(trials), predictor.values.value.size))
-    _, group = np.unique(trials[:, bodies], axis=0, return_inverse=True)
-    groups = int(group.max()) + 1
-    for n in progress_bar(iter(range(groups)), groups):
-        found[group.ravel() == n] = predictor.predicted(*trials[group.ravel() == n])
-    return found
-
-
-def _few(predictor: Predictor) -> Predictor:
-    """Keep some rebounds of each kind, evenly over the speeds and over each other input."""
-    values, chosen = predictor.values, set[int]()
-    for along in (getattr(predictor.data, name) for name in INPUTS):
-        for kind in np.unique(values.kind) if along is not None else ():
-            rows = values.row[values.kind == kind]
-            rows = rows[np.argsort(along[rows], kind="stable")]
-            at = np.linspace(0, rows.size - 1, min(_ROWS, rows.size)).round().astype(int)
-            chosen.update(rows[at].tolist())
-    return replace(predictor, data=predictor.data.part(sorted(chosen)))
+def _axis(predictor: Predictor, n: int, names: Sequence[str]) -> Array:
+    """Logarithms of a free parameter on the grid; those of H/R for a thickness beside a radius."""
+    one, (low, high) = predictor.parameters[n], predictor.limits[:, n]
+    if one.name == "thickness" and "radius" in names:
+        low, high = -np.log(SLENDERNESS[::-1])
+    laws = sum(p.is_free and p.changes(predictor.law) for p in predictor.parameters)
+    return np.linspace(low, high, _LAWS[laws - 1] if one.changes(predictor.law) else _OTHERS[len(names) - 1])

@@ -128,27 +128,30 @@ def parameters(pair: Pair, data: Measurements, unknown: Sequence[str], priors: M
     return found
 
 
-def with_loss_factors(pair: Pair, data: Measurements, unknown: Iterable[str]) -> Pair:
-    """Give bodies whose loss factor is unknown one, at the frequency of the impacts.
+def with_guesses(pair: Pair, data: Measurements, parameters: Iterable[Parameter]) -> Pair:
+    """Give bodies strengths and loss factors that are unknown, these at the frequency of the impacts.
 
     Raises
     ------
     ValueError
         If that frequency is not known, because the radius is unknown, too.
     """
-    bodies = {"sphere": pair.sphere, "plate": pair.plate}
-    for name in unknown:
-        role, field = UNKNOWNS[name].body, UNKNOWNS[name].field
-        if field != "loss_factor" or bodies[role].loss_factor:
+    for one in parameters:
+        role = one.unknown.body
+        if not (math.isnan(one.centre) and role):
+            continue
+        body = getattr(pair, role)
+        if one.is_strength:
+            pair = bodies_with(pair, [one], [1e-2 * body.youngs_modulus])
             continue
         if data.radius is None:
             guess = f"Material(..., loss_factor=(a guess, frequency)) of the {role}"
             reason = f"needs the frequency of the impacts: give their radius, or {guess}"
-            raise ArgumentError("unknown", name, reason)
-        sizes = np.asarray(data.radius) / np.asarray(data.speed) ** 0.2
-        time = CONTACT_TIME * unit_time(pair) * np.median(sizes)
-        bodies[role] = dataclasses.replace(bodies[role], loss_factor=(_USUAL_LOSS, float(0.5 / time)))
-    return Pair(**bodies)
+            raise ArgumentError("unknown", one.name, reason)
+        time = CONTACT_TIME * unit_time(pair) * np.median(np.asarray(data.radius) / np.asarray(data.speed) ** 0.2)
+        body = dataclasses.replace(body, loss_factor=(_USUAL_LOSS, float(0.5 / time)))
+        pair = dataclasses.replace(pair, **{role: body})
+    return pair
 
 
 def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
@@ -201,7 +204,7 @@ def bounds(parameter: Parameter, pair: Pair, data: Measurements) -> tuple[float,
         if unknown.field == "thickness":
             radius = _RADII if data.radius is None else data.radius
             return float(np.min(radius) / most), float(np.max(radius) / least)
-        thickness = np.array([] if data.thickness is None else data.thickness)
+        thickness = np.append([], [] if data.thickness is None else data.thickness)
         thickness = thickness[np.isfinite(thickness)]
         low, high = (least * thickness.min(), most * thickness.max()) if thickness.size else _RADII.tolist()
     return low, high

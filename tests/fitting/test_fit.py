@@ -212,11 +212,11 @@ def test_many_rebounds_take_little_memory():
 
 
 def test_degrees_of_freedom_are_those_of_the_values_that_tell():
-    """Two equal parts with 4 each have 8; a single part has its own. A prior costs what data tell of it."""
-    first = np.arange(24) < 12
-    parts = [(first, 4.0), (~first, 4.0)]
-    for slopes, freedom in ((np.ones((24, 1)), 8.0), (first[:, None].astype(float), 4.0)):
-        assert errors.student(slopes, parts) == pytest.approx(stats.t.ppf(stats.norm.cdf(1.0), freedom), rel=1e-6)
+    """An error that rests on values of unknown error alone has their freedom; what a prior tells is known."""
+    freedom, slopes = 4.0, np.ones((12, 1))
+    for share, rows in ((1.0, slopes), (0.25, np.vstack([slopes, [[6.0]]]))):
+        factor = errors.student(rows, np.full(12, True), freedom)
+        assert factor == pytest.approx(stats.t.ppf(stats.norm.cdf(1.0), freedom / share**2), rel=1e-6)
     slope, prior = np.random.default_rng(0).standard_normal((12, 2)), np.array([[0.0, 3.0]])
     known = errors.leverages(np.vstack([slope, prior]))
     assert known.sum() == pytest.approx(2.0) and 0.0 < known[-1] < 1.0

@@ -132,8 +132,6 @@ def _model_error(
     predictor = Predictor(one.pair, law_of(one.pair, law), data, varied)
     x = np.log([one.pair.sphere.density])
     shared = model_errors(predictor, x, predictor.impacts(predictor.setting(x)))
-    if shared is None:
-        return {}
     drawn = shared @ random.standard_normal(shared.shape[1])
     names = list(KINDS)
     return {name: drawn[predictor.values.kind == names.index(name)] for name in exact}
