@@ -122,9 +122,6 @@ class Fit:
         if sliding_speed is not None and friction is not None:
             inputs |= {"sliding_speed": sliding_speed, "friction": np.mean(friction)}
         kinds = [name for name in self.residuals if name in NORMAL or "friction" in inputs]
-        if not kinds:
-            reason = "has to be given, since only oblique kinds were measured"
-            raise ArgumentError("sliding_speed", None, reason)
         varied = [replace(p, centre=x) for p, x in zip(self._predictor.parameters, np.exp(self._x), strict=True)]
         data = Measurements(**inputs, **dict.fromkeys(kinds, 0.5))
         along = replace(self._predictor, pair=self.pair, data=data, parameters=varied)
@@ -269,8 +266,10 @@ def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: flo
         of_data *= np.outer(widths, widths)
     covariance = of_data + of_model
     spread = np.sqrt(np.diag(covariance))
-    own = np.append(doubt / error, np.ones(best.x.size))
-    others = _alternatives(found, spread, own, scaled * (freedom > 0.0))
+    weights = np.append(doubt / error, np.ones(best.x.size))
+    squares = [chi_squared(one.off, weights, scaled * (freedom > 0.0)) for one in found]
+    alike = [one.x for one, square in zip(found, squares, strict=True) if square < squares[0] + EXCLUDED]
+    others = [np.exp(x) for x in alike if (np.abs(x - best.x) > 2.0 * spread).any()]
     off, kinds = values.value / best.fitted - 1.0, values.by_kind()
 
     def named(sizes: Array) -> dict[str, float]:
@@ -300,16 +299,3 @@ def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: flo
         _x=best.x,
         _covariance=covariance,
     )
-
-
-def _alternatives(found: list[Basin], spread: Array, weights: Array, shared: Array) -> list[Array]:
-    """Values in other basins that fit as well, within the errors of data and model.
-
-    The errors are those of data and priors, by `weights`, and those that they share (m + p, c).
-    """
-    squares = [chi_squared(one.off, weights, shared) for one in found]
-    return [
-        np.exp(one.x)
-        for one, square in zip(found, squares, strict=True)
-        if square < squares[0] + EXCLUDED and (np.abs(one.x - found[0].x) > 2.0 * spread).any()
-    ]

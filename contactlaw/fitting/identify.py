@@ -97,17 +97,20 @@ def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Arra
         # in a contact that sticks, friction changes less than the model's errors
         doubt = error if one.is_strength else np.hypot(error, model)
 
-        def rise(place: float, n: int = n, doubt: Array = doubt) -> float:
-            x = np.where(np.arange(best.x.size) == n, place, best.x)
-            off = (np.vstack([predictor.predicted(x), best.fitted]) - predictor.values.value) / doubt
-            squares = np.nan_to_num((off**2).sum(axis=1), nan=1e9)
-            return float(squares[0] - squares[1]) - EXCLUDED
-
+        rise = functools.partial(_rise_alone, predictor, best, doubt, n)
         low, high = predictor.limits[:, n]
         if rise(high) < 0.0:
             least = math.exp(brentq(rise, low, best.x[n], xtol=0.01)) if rise(low) > 0.0 else None
             why = _any_above(predictor, one.name, least)
             raise UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
+
+
+def _rise_alone(predictor: Predictor, best: Basin, error: Array, n: int, place: float) -> float:
+    """Rise of the sum of squares beyond what excludes a value, with one parameter at another place."""
+    x = np.where(np.arange(best.x.size) == n, place, best.x)
+    off = (np.vstack([predictor.predicted(x), best.fitted]) - predictor.values.value) / error
+    there, here = np.nan_to_num((off**2).sum(axis=1), nan=1e9)
+    return float(there - here) - EXCLUDED
 
 
 def _any_above(predictor: Predictor, name: str, least: float | None) -> str:
@@ -147,23 +150,19 @@ def profile(predictor: Predictor, best: Basin, covariance: Array, error: Array) 
         for end, sign, side in zip(predictor.limits[:, n], (-1.0, 1.0), ("below", "above"), strict=True):
             rise = functools.partial(_rise, predictor, best, error, n, sign * covariance[n] / spread)
             last = min(2.0, abs(end - best.x[n]) / spread)
-            rises = rise(last, 1) + 1.0
-            if rises < _LEAST_RISE:
+            if (rises := rise(last) + 1.0) < _LEAST_RISE:
                 bound = f"{math.exp(best.x[n] - 2.0 * sign * spread):.3g} {one.unknown.unit}".rstrip()
-                other = "angles" if one.name == "friction" else "speeds"
                 raise UnidentifiedError(
                     f"the data bound {one.name} on one side only: {side} {bound}. "
-                    f"Measure another quantity, or other {other}",
+                    "Measure another quantity, or other speeds or angles",
                     (one.name,),
                 )
             if rises < _PARABOLA:
-                factors[n] = max(factors[n], brentq(rise, 0.0, last, xtol=0.02) if rise(last) > 0.0 else last)
+                factors[n] = max(factors[n], brentq(rise, 0.0, last, xtol=0.02))
     return factors
 
 
-def _rise(
-    predictor: Predictor, best: Basin, error: Array, n: int, along: Array, errors: float, steps: int = _STEPS
-) -> float:
+def _rise(predictor: Predictor, best: Basin, error: Array, n: int, along: Array, errors: float) -> float:
     """Rise of the sum of squares beyond 1, so many standard errors off, the others at their best."""
     start = np.clip(best.x + errors * along, *predictor.limits)
-    return descend(predictor, start, error, n, steps).squares - best.squares - 1.0
+    return descend(predictor, start, error, n, _STEPS).squares - best.squares - 1.0

@@ -134,7 +134,16 @@ class Measurements:
         if flat["speed"].size == 0:
             raise ArgumentError("data", None, "got no rebound, at least one is needed")
         check(**sizes)
-        _resolve_angle(flat)
+        if "angle" in flat:
+            if "sliding_speed" in flat:
+                raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
+            angle = flat.pop("angle")
+            within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
+            flat["sliding_speed"] = flat["speed"] * np.sin(np.radians(angle))
+            flat["speed"] = flat["speed"] * np.cos(np.radians(angle))
+            check(speed=flat["speed"])
+        elif "sliding_speed" in flat:
+            flat["sliding_speed"] = np.abs(flat["sliding_speed"])
         for name, kind in KINDS.items():
             _check_kind(name, kind, flat)
             if name in OBLIQUE and name in flat:  # friction did nothing to beads that did not slide
@@ -221,20 +230,6 @@ def _missing(values: ArrayLike) -> ArrayLike:
     if isinstance(values, list | tuple) and any(value is None for value in values):
         return [np.nan if value is None else value for value in values]
     return values
-
-
-def _resolve_angle(flat: dict[str, Array]) -> None:
-    """Split the speeds of beads that come at angles into their normal and tangential parts."""
-    if "angle" in flat:
-        if "sliding_speed" in flat:
-            raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
-        angle = flat.pop("angle")
-        within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
-        flat["sliding_speed"] = flat["speed"] * np.sin(np.radians(angle))
-        flat["speed"] = flat["speed"] * np.cos(np.radians(angle))
-        check(speed=flat["speed"])
-    elif "sliding_speed" in flat:
-        flat["sliding_speed"] = np.abs(flat["sliding_speed"])
 
 
 def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:

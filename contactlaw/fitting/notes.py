@@ -12,17 +12,12 @@ from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.search import Basin
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
-from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
 
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
-_SLIDES = 1.0 - 1e-6  # share of the friction at which an impulse is that of full sliding
 _LISTED = 8  # rows that are listed; more are only counted
-_SIGNIFICANCE = 1e-3  # a trend is noted if scatter alone gives it in fewer than 1 of 1000 fits
-# Residuals are cut to 3 standard errors or medians, so that one mistake makes no trend.
-_OUTLIER = 3.0
 # Factors by which a value may differ from the one given: a strength depends on the temper. A loss
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
@@ -50,13 +45,11 @@ def notes(
     covariance : ndarray (p, p)
         Covariance of the parameters' logarithms.
     """
-    parameters, friction, low, high = predictor.parameters, predictor.setting(best.x).friction, *predictor.limits
-    off, standard = predictor.values.value / best.fitted - 1.0, error / best.fitted
-    if freedom:
-        yield from _found_errors(predictor, standard)
-    else:
+    parameters, (low, high) = predictor.parameters, predictor.limits
+    off = predictor.values.value / best.fitted - 1.0
+    if not freedom:
         yield "as many unknowns as values, and no errors of these: the errors stated are those of the model alone"
-    yield from _misfits(predictor, off, np.hypot(standard, model), freedom)
+    yield from _misfits(predictor, off, np.hypot(error / best.fitted, model), freedom)
     if not model.any():
         yield (
             f"how far law {predictor.law.family!r} is from finite elements is not known: the "
@@ -68,12 +61,8 @@ def notes(
     if any(one.is_strength for one in parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
-    if isinstance(hit, ObliqueRebound) and friction is not None:
-        sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
-        yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
     yield from _above_one(predictor)
     yield from _far(predictor, best.x, covariance)
-    yield from _trends(predictor, off / standard)
 
 
 def alternative_note(values: Mapping[str, float]) -> str:
@@ -88,9 +77,24 @@ def alternative_note(values: Mapping[str, float]) -> str:
 
 
 def explained(refused: UnidentifiedError, predictor: Predictor, extremes: Array) -> UnidentifiedError:
-    """Add to a refusal which values are attainable, or which of them cannot be."""
-    message = ". ".join([*(_outside(predictor, extremes) or [refused.reason]), *_above_one(predictor)])
-    return UnidentifiedError(message, refused.unknown, refused.known)
+    """Say what is attainable if no value of the unknowns gives any of the data; else why they are refused."""
+    values, unknown = predictor.values, " and ".join(one.name for one in predictor.parameters if one.is_unknown)
+    grid = np.vstack([predictor.predicted(x) for x in extremes])
+    low, high = np.nanmin(grid, axis=0), np.nanmax(grid, axis=0)
+    near = np.clip(values.value, low, high)
+    margin = 2.0 * np.nan_to_num(values.error) + 1e-6 * near
+    message = refused.reason
+    # else the law does not depend on the unknowns, or some value is attainable
+    if (high > 1.001 * low).any() and (np.abs(values.value - near) > margin).all():
+        n = int(np.argmax(np.abs(values.value / near - 1.0)))
+        kind, row = [*KINDS.values()][values.kind[n]], values.row[n]
+        value, least, most = (f"{one[n] - kind.shift:.4g}" for one in (values.value, low, high))
+        speed, unit = rounded(np.asarray(predictor.data.speed)[row], 3), kind.unit.strip("-")
+        message = f"no {unknown} gives the {kind.title} {value} of {predictor.data.rebound(row)}, at {speed} m/s: "
+        message += f"attainable is from {least} to {most} {unit}".rstrip()
+        if unknown in OTHER_STRENGTH:
+            message += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
+    return UnidentifiedError(". ".join([message, *_above_one(predictor)]), refused.unknown, refused.known)
 
 
 def listed(rows: Places) -> str:
@@ -105,36 +109,19 @@ def listed(rows: Places) -> str:
     return ", ".join(map(str, rows[:_LISTED])) + (f" and {more} more" if more > 0 else "")
 
 
-def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
-    for name, of_kind in predictor.values.by_kind().items():
-        of_kind = of_kind & np.isnan(predictor.values.error)
-        if of_kind.any():
-            share = float(standard[of_kind][0])
-            yield (
-                f"{KINDS[name].title}: no errors were given; one of {percent(share)} was found from the "
-                f"scatter of {np.count_nonzero(of_kind)} values"
-            )
-
-
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
-    values = predictor.values
-    given = np.isfinite(values.error)
-    free = max(1, sum(one.is_free for one in predictor.parameters))
-    if np.count_nonzero(given) > free:
-        ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
-        if ratio > _MISFIT:
-            yield (
-                f"the values are off by {rounded(ratio)} times what their errors and the model's "
-                "allow: another number may be wrong, or the errors too small"
-            )
-    if freedom < 3.0:
-        return
-    for n in np.flatnonzero(np.abs(off) > _FAR * expected):
-        name = [*KINDS.values()][values.kind[n]].title
-        sign = "+" if off[n] > 0.0 else ""
+    values, deviations = predictor.values, off / expected
+    given = deviations[np.isfinite(values.error)]
+    if given.size and (ratio := math.sqrt(np.mean(given**2))) > _MISFIT:
         yield (
-            f"{name} of {predictor.data.rebound(values.row[n])} is {sign}{percent(off[n])} off the "
-            f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
+            f"the values are off by {rounded(ratio)} times what their errors and the model's "
+            "allow: another number may be wrong, or the errors too small"
+        )
+    for n in np.flatnonzero(np.abs(deviations) > _FAR) if freedom >= 3.0 else ():
+        name = [*KINDS.values()][values.kind[n]].title
+        yield (
+            f"{name} of {predictor.data.rebound(values.row[n])} is {'+' * bool(off[n] > 0.0)}{percent(off[n])} off the "
+            f"fit, {rounded(abs(deviations[n]))} standard errors: a mistake?"
         )
 
 
@@ -144,28 +131,6 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
         if rows.size:
             which = predictor.data.rebound(rows[0]) if rows.size == 1 else f"rebounds {listed(rows)}"
             yield f"{KINDS[name].title} of {which} is above 1: no impact gains energy, a mistake?"
-
-
-def _outside(predictor: Predictor, extremes: Array) -> list[str]:
-    """Say so if no value of the unknowns gives any of the data, and what is attainable."""
-    values, unknown = predictor.values, " and ".join(one.name for one in predictor.parameters if one.is_unknown)
-    grid = np.vstack([predictor.predicted(x) for x in extremes])
-    low, high = np.nanmin(grid, axis=0), np.nanmax(grid, axis=0)
-    near = np.clip(values.value, low, high)
-    margin = 2.0 * np.nan_to_num(values.error) + 1e-6 * near
-    # else the law does not depend on the unknowns, or some value can be
-    if not ((high > 1.001 * low).any() and (np.abs(values.value - near) > margin).all()):
-        return []
-    n = int(np.argmax(np.abs(values.value / near - 1.0)))
-    kind, row = [*KINDS.values()][values.kind[n]], values.row[n]
-    value, least, most = (f"{one[n] - kind.shift:.4g}" for one in (values.value, low, high))
-    speed = rounded(float(np.asarray(predictor.data.speed)[row]), 3)
-    attainable = f"attainable is from {least} to {most} {kind.unit.strip('-')}".rstrip()
-    if unknown in OTHER_STRENGTH:
-        attainable += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
-    return [
-        f"no {unknown} gives the {kind.title} {value} of {predictor.data.rebound(row)}, at {speed} m/s: {attainable}"
-    ]
 
 
 def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:
@@ -182,26 +147,3 @@ def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:
                 f"{in_unit(one.centre, one.unknown.unit, 4)}: units or materials mistaken, or sphere and plate "
                 "exchanged?"
             )
-
-
-def _trends(predictor: Predictor, deviations: Array) -> Iterator[str]:
-    """Name kinds of values whose deviations, in standard errors, trend with speed."""
-    speed = np.asarray(predictor.data.speed)[predictor.values.row]
-    for name, of_kind in predictor.values.by_kind().items():
-        if chance(deviations[of_kind][np.argsort(speed[of_kind])]) < _SIGNIFICANCE:
-            yield (
-                f"residuals of {KINDS[name].title} trend with speed, as by chance in fewer than 1 of 1000 fits: "
-                "units, materials or the law may be wrong"
-            )
-
-
-def chance(deviations: Array) -> float:
-    """Chance that scatter alone moves the means of the slow, middle and fast third as far apart.
-
-    By Fisher's test. Parameters take up a part of any trend, so that it is rather too large.
-    """
-    from scipy.stats import f_oneway
-
-    most = _OUTLIER * max(1.0, float(np.median(np.abs(deviations))))
-    thirds = np.array_split(np.clip(deviations, -most, most), 3)
-    return float(f_oneway(*thirds).pvalue) if deviations.size >= 6 else 1.0

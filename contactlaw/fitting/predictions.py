@@ -90,6 +90,11 @@ class Predictor:
         """Logarithms of the least and the largest value of each parameter (2, p)."""
         return np.log([bounds(one, self.pair, self.data) for one in self.parameters]).T
 
+    @functools.cached_property
+    def centres(self) -> Array:
+        """Logarithms of the values of parameters with a prior; 0 of the others."""
+        return np.log([1.0 if one.is_free else one.centre for one in self.parameters])
+
     def setting(self, x: Array) -> Setting:
         """Bodies and sizes with these values."""
         return setting(self.pair, self.data, self.parameters, np.exp(x))

@@ -20,9 +20,7 @@ from contactlaw.fitting.unknowns import SLENDERNESS
 
 _ROWS = 48  # least number of rebounds that the scan predicts, evenly over the speeds
 _GUESSED = 0.02  # relative error assumed where none is given, until it is estimated
-# Points of an axis by the number of axes, of those on which each point needs its own law, which
-# takes 10 ms, and of the others.
-_LAWS, _OTHERS = (16, 9, 6), (24, 18, 12)
+_POINTS = (20, 9, 7)  # points of an axis by the number of axes; one may need its own law, which takes 10 ms
 _BETWEEN = 0.01  # relative error of the splines between the points
 _PLACES = 20  # points of the grid, no two beside each other, from which descents on the splines start
 _SAME_MINIMUM = 0.05  # distance in logarithms within which two results on the splines are one
@@ -82,7 +80,6 @@ def descend(
     from scipy.optimize import least_squares
 
     moved = np.arange(start.size) != held
-    centres = np.array([0.0 if one.is_free else math.log(one.centre) for one in predictor.parameters])
     widths = np.array([one.prior for one in predictor.parameters])
     value, fitted = predictor.values.value, functools.cache(lambda key: predictor.predicted(np.frombuffer(key))[0])
     low, high = predictor.limits[:, moved]
@@ -98,7 +95,7 @@ def descend(
 
     def residuals(part: Array) -> Array:
         off = (fitted(whole(part).tobytes()) - value) / error
-        return np.concatenate([off, (x - centres) / widths])
+        return np.concatenate([off, (x - predictor.centres) / widths])
 
     def slopes(part: Array) -> Array:
         here = fitted(whole(part).tobytes())
@@ -125,7 +122,7 @@ def _scan(predictor: Predictor) -> tuple[list[Array], Array]:
     from scipy.optimize import least_squares
 
     parameters, value = predictor.parameters, predictor.values.value
-    known = np.log([1.0 if one.is_free else one.centre for one in parameters])
+    known = predictor.centres
     free = [n for n, one in enumerate(parameters) if one.is_free]
     if not free:
         return [known], known[None]
@@ -164,5 +161,4 @@ def _axis(predictor: Predictor, n: int, names: Sequence[str]) -> Array:
     one, (low, high) = predictor.parameters[n], predictor.limits[:, n]
     if one.name == "thickness" and "radius" in names:
         low, high = -np.log(SLENDERNESS[::-1])
-    laws = sum(p.is_free and p.changes(predictor.law) for p in predictor.parameters)
-    return np.linspace(low, high, _LAWS[laws - 1] if one.changes(predictor.law) else _OTHERS[len(names) - 1])
+    return np.linspace(low, high, _POINTS[len(names) - 1])

@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -140,16 +140,16 @@ def with_guesses(pair: Pair, data: Measurements, parameters: Iterable[Parameter]
         role = one.unknown.body
         if not (math.isnan(one.centre) and role):
             continue
-        body = getattr(pair, role)
         if one.is_strength:
-            pair = bodies_with(pair, [one], [1e-2 * body.youngs_modulus])
+            guess = math.sqrt(math.prod(bounds(one, pair, data)))
+            pair = with_numbers((pair.sphere, pair.plate), {(role, "yield_strength"): guess})
             continue
         if data.radius is None:
-            guess = f"Material(..., loss_factor=(a guess, frequency)) of the {role}"
-            reason = f"needs the frequency of the impacts: give their radius, or {guess}"
+            example = f"Material(..., loss_factor=(a guess, frequency)) of the {role}"
+            reason = f"needs the frequency of the impacts: give their radius, or {example}"
             raise ArgumentError("unknown", one.name, reason)
         time = CONTACT_TIME * unit_time(pair) * np.median(np.asarray(data.radius) / np.asarray(data.speed) ** 0.2)
-        body = dataclasses.replace(body, loss_factor=(_USUAL_LOSS, float(0.5 / time)))
+        body = dataclasses.replace(getattr(pair, role), loss_factor=(_USUAL_LOSS, float(0.5 / time)))
         pair = dataclasses.replace(pair, **{role: body})
     return pair
 
@@ -160,8 +160,6 @@ def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> 
         reason = f"has to be given [{unit}], for each rebound or one for all, or to be unknown"
     elif values is not None and unknown and not prior:
         reason = "is unknown and given: leave it out of the data, or give its error as a prior"
-    elif values is not None and prior and not np.isfinite(values).all():
-        reason = f"a half-space has no error: leave {name} out of priors"
     else:
         return
     raise ArgumentError(name, None, reason)
@@ -171,18 +169,15 @@ def _centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
     """Value given for an unknown, the median of a size; NaN: none."""
     value = getattr(getattr(pair, unknown.body) if unknown.body else data, unknown.field)
     value = value[0] if isinstance(value, tuple) else value
-    return math.nan if value is None else float(np.median(value))
+    return float(np.median(value)) if value is not None and np.isfinite(value).all() else math.nan
 
 
 def _prior(name: str, centre: float, error: float) -> float:
     size = number(name, error)
-    if not 0.0 < size < math.inf:
-        raise ArgumentError("priors", error, f"the standard error of {name} must be positive")
     if math.isnan(centre):
-        reason = f"{name} has no value that {error!r} could be the error of"
-        raise ArgumentError("priors", None, reason)
-    if size >= centre:
-        reason = f"the error of {name} must be below it, {centre:.6g}; left out, it is unknown"
+        raise ArgumentError("priors", None, f"{name} has no value that {error!r} could be the error of")
+    if not 0.0 < size < centre:
+        reason = f"the error of {name} must be positive and below it, {centre:.6g}; left out, it is unknown"
         raise ArgumentError("priors", error, reason)
     return size / centre
 
@@ -194,7 +189,7 @@ def bounds(parameter: Parameter, pair: Pair, data: Measurements) -> tuple[float,
     if parameter.is_strength:
         low, high = (pair.effective_modulus / ratio for ratio in reversed(_RATIOS))
         body = getattr(pair, unknown.body)
-        if _by_hardness(body):
+        if isinstance(body.hardening, float):  # hardening follows from the hardness
             high = min(high, body.hardness / CONSTRAINT)  # no metal softens
     elif unknown.body and unknown.field != "loss_factor":
         low = max(low, parameter.centre / _SEARCH_FACTOR)
@@ -210,35 +205,16 @@ def bounds(parameter: Parameter, pair: Pair, data: Measurements) -> tuple[float,
     return low, high
 
 
-def _by_hardness(body: Any) -> bool:
-    """Whether a body's hardening follows from its hardness and an exponent."""
-    return isinstance(body.hardening, float)
-
-
-def bodies_with(pair: Pair, parameters: Iterable[Parameter], values: Iterable[float]) -> Pair:
-    """Pair with the values of those parameters that are of a body."""
-    numbers: dict[Number, float] = {}
-    for parameter, value in zip(parameters, values, strict=True):
-        role, field = parameter.unknown.body, parameter.unknown.field
-        if not role:
-            continue
-        body = getattr(pair, role)
-        if field == "yield_strength" and _by_hardness(body):
-            # a search may try a strength above that of the hardness: without hardening then
-            numbers[role, "hardness"] = max(body.hardness, CONSTRAINT * value)
-        numbers[role, field] = value
-    return with_numbers((pair.sphere, pair.plate), numbers)
-
-
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
     # copies: for read-only arrays kernels would be compiled once more
-    sizes = {name: getattr(data, name) for name in ("speed", *_SIZES, "sliding_speed")}
-    sizes = {name: None if size is None else np.array(size) for name, size in sizes.items()}
-    for parameter, value in zip(parameters, values.tolist(), strict=True):
-        if parameter.name in _SIZES:
-            size = sizes[parameter.name]
-            sizes[parameter.name] = np.full(len(data), value) if size is None else size * (value / parameter.centre)
-    if not data.is_oblique:
-        sizes["friction"] = sizes["sliding_speed"] = None
-    return Setting(bodies_with(pair, parameters, values.tolist()), *sizes.values())
+    names = "speed", "radius", "thickness", *(("friction", "sliding_speed") if data.is_oblique else ())
+    sizes = {name: None if getattr(data, name) is None else np.array(getattr(data, name)) for name in names}
+    numbers: dict[Number, float] = {}
+    for one, value in zip(parameters, values.tolist(), strict=True):
+        if one.unknown.body:
+            numbers[one.unknown.body, one.unknown.field] = value
+        else:
+            size = sizes[one.name]
+            sizes[one.name] = np.full(len(data), value) if size is None else size * (value / one.centre)
+    return Setting(with_numbers((pair.sphere, pair.plate), numbers), **sizes)
