@@ -35,7 +35,7 @@ def correlated(speed: Array, slenderness: Array, kind: Places | int = 0) -> Arra
     errors change by 0.3 % with one plate, by 5 % with as many plates as impacts.
     """
     logs = np.log(speed), np.log(np.maximum(slenderness, _THICK))
-    places = np.array([_UNLIKE * np.broadcast_to(kind, speed.shape), *logs])
+    places = np.array([_UNLIKE * kind + 0.0 * speed, *logs])
     for width in _WIDTHS:
         cells, cell = np.unique(np.round(places / width), axis=1, return_inverse=True)
         if cells.shape[1] <= _CELLS:
@@ -91,9 +91,9 @@ def student(freedom: float) -> float:
 
     Examples
     --------
-    >>> round(student(2.0), 2), student(math.inf)
+    >>> round(student(2.0), 2), round(student(math.inf), 6)
     (1.32, 1.0)
     """
     from scipy.special import stdtrit
 
-    return float(stdtrit(freedom, 0.5 * (1.0 + math.erf(1.0 / math.sqrt(2.0))))) if freedom < math.inf else 1.0
+    return float(stdtrit(freedom, 0.5 * math.erfc(-math.sqrt(0.5))))

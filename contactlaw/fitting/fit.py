@@ -260,10 +260,12 @@ def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: flo
     linear, scaled = covariance_of(best.slopes), np.pad(shared / error[:, None], ((0, best.x.size), (0, 0)))
     gain = linear @ best.slopes.T @ scaled
     of_model, of_data = gain @ gain.T, linear * (student(freedom) ** 2 if freedom else 0.0)
-    check(names, best.x[unknowns], (of_data if freedom else of_model)[unknowns, unknowns])
+    if len(names) > 1 or not freedom:
+        check(names, best.x, of_data if freedom else of_model)
     if freedom:
         widths = profile(predictor, best, linear, error)
         of_data *= np.outer(widths, widths)
+        check(names, best.x, of_data)
     covariance = of_data + of_model
     spread = np.sqrt(np.diag(covariance))
     weights = np.append(doubt / error, np.ones(best.x.size))

@@ -47,9 +47,9 @@ def check(names: tuple[str, ...], x: Array, covariance: Array) -> None:
 
     Parameters
     ----------
-    names, x : tuple of str, ndarray (k,)
-        Unknowns, and the logarithms of the values found.
-    covariance : ndarray (k, k)
+    names, x : tuple of str, ndarray (p,)
+        Unknowns, which are the first parameters, and the logarithms of all values found.
+    covariance : ndarray (p, p)
         Covariance of the logarithms.
 
     Raises
@@ -57,10 +57,11 @@ def check(names: tuple[str, ...], x: Array, covariance: Array) -> None:
     UnidentifiedError
         If the standard error of a logarithm is above 0.5.
     """
-    squares, directions = np.linalg.eigh(covariance)
+    count = len(names)
+    squares, directions = np.linalg.eigh(covariance[:count, :count])
     if not squares[-1] > _VAGUE**2:
         return
-    if len(names) == 1:
+    if count == 1:
         error = min(100.0 * math.sqrt(squares[-1]), 999.0)
         raise UnidentifiedError(f"the data do not determine {names[0]}: its standard error is {error:.0f} %", names)
     known, words = [], []
@@ -68,7 +69,7 @@ def check(names: tuple[str, ...], x: Array, covariance: Array) -> None:
         if square <= _VAGUE**2:
             largest = direction[np.argmax(np.abs(direction))]
             powers = np.where(np.abs(direction / largest) > _SMALL, direction / largest, 0.0)
-            value, error = math.exp(powers @ x), math.sqrt(square) / abs(largest)
+            value, error = math.exp(powers @ x[:count]), math.sqrt(square) / abs(largest)
             exponents = {name: power for name, power in zip(names, powers.tolist(), strict=True) if power}
             known.append((exponents, value, error))
             product = " x ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in exponents.items())
@@ -89,18 +90,15 @@ def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Arra
     ------
     UnidentifiedError
     """
-    from scipy.optimize import brentq
-
     for n, one in enumerate(predictor.parameters):
         if not (one.is_free and (one.is_strength or one.name == "friction")):
             continue
         # in a contact that sticks, friction changes less than the model's errors
         doubt = error if one.is_strength else np.hypot(error, model)
 
-        rise = functools.partial(_rise_alone, predictor, best, doubt, n)
         low, high = predictor.limits[:, n]
-        if rise(high) < 0.0:
-            least = math.exp(brentq(rise, low, best.x[n], xtol=0.01)) if rise(low) > 0.0 else None
+        if _rise_alone(predictor, best, doubt, n, high) < 0.0:
+            least = _bound(predictor, best, error, n, low)
             why = _any_above(predictor, one.name, least)
             raise UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
 
@@ -111,6 +109,14 @@ def _rise_alone(predictor: Predictor, best: Basin, error: Array, n: int, place: 
     off = (np.vstack([predictor.predicted(x), best.fitted]) - predictor.values.value) / error
     there, here = np.nan_to_num((off**2).sum(axis=1), nan=1e9)
     return float(there - here) - EXCLUDED
+
+
+def _bound(predictor: Predictor, best: Basin, error: Array, n: int, end: float) -> float | None:
+    """Value up to which the data exclude those from an end of the range; None: they exclude none."""
+    from scipy.optimize import brentq
+
+    rise = functools.partial(_rise_alone, predictor, best, error, n)
+    return math.exp(brentq(rise, end, best.x[n], xtol=0.01)) if rise(end) > 0.0 else None
 
 
 def _any_above(predictor: Predictor, name: str, least: float | None) -> str:
@@ -147,17 +153,18 @@ def profile(predictor: Predictor, best: Basin, covariance: Array, error: Array) 
         spread = math.sqrt(covariance[n, n])
         if not one.is_free or spread < _CURVED:
             continue
-        for end, sign, side in zip(predictor.limits[:, n], (-1.0, 1.0), ("below", "above"), strict=True):
+        low, high = predictor.limits[:, n]
+        for end, other, sign, side in ((low, high, -1.0, "below"), (high, low, 1.0, "above")):
             rise = functools.partial(_rise, predictor, best, error, n, sign * covariance[n] / spread)
             last = min(2.0, abs(end - best.x[n]) / spread)
-            if (rises := rise(last) + 1.0) < _LEAST_RISE:
-                bound = f"{math.exp(best.x[n] - 2.0 * sign * spread):.3g} {one.unknown.unit}".rstrip()
+            rises = rise(last) + 1.0
+            if rises < _LEAST_RISE and (bound := _bound(predictor, best, error, n, other)):
                 raise UnidentifiedError(
-                    f"the data bound {one.name} on one side only: {side} {bound}. "
+                    f"the data bound {one.name} on one side only: {side} {f'{bound:.3g} {one.unknown.unit}'.rstrip()}. "
                     "Measure another quantity, or other speeds or angles",
                     (one.name,),
                 )
-            if rises < _PARABOLA:
+            if _LEAST_RISE <= rises < _PARABOLA:
                 factors[n] = max(factors[n], brentq(rise, 0.0, last, xtol=0.02))
     return factors
 

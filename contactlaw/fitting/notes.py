@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array
 from contactlaw._readable import in_unit, percent, rounded
 from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
@@ -17,7 +17,7 @@ from contactlaw.physical.rebound import Rebound
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
-_LISTED = 8  # rows that are listed; more are only counted
+_LISTED = 8  # most rebounds of a kind that are named as above 1
 # Factors by which a value may differ from the one given: a strength depends on the temper. A loss
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
@@ -88,25 +88,13 @@ def explained(refused: UnidentifiedError, predictor: Predictor, extremes: Array)
     if (high > 1.001 * low).any() and (np.abs(values.value - near) > margin).all():
         n = int(np.argmax(np.abs(values.value / near - 1.0)))
         kind, row = [*KINDS.values()][values.kind[n]], values.row[n]
-        value, least, most = (f"{one[n] - kind.shift:.4g}" for one in (values.value, low, high))
+        value, least, most = (one[n] - kind.shift for one in (values.value, low, high))
         speed, unit = rounded(np.asarray(predictor.data.speed)[row], 3), kind.unit.strip("-")
-        message = f"no {unknown} gives the {kind.title} {value} of {predictor.data.rebound(row)}, at {speed} m/s: "
-        message += f"attainable is from {least} to {most} {unit}".rstrip()
+        message = f"no {unknown} gives the {kind.title} {value:.4g} of {predictor.data.rebound(row)}, at {speed} m/s: "
+        message += f"attainable is from {least * (least > 1e-3 * most):.3g} to {most:.3g} {unit}".rstrip()
         if unknown in OTHER_STRENGTH:
             message += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
     return UnidentifiedError(". ".join([message, *_above_one(predictor)]), refused.unknown, refused.known)
-
-
-def listed(rows: Places) -> str:
-    """Write indices of rebounds.
-
-    Examples
-    --------
-    >>> listed(np.arange(0, 20, 2))
-    '0, 2, 4, 6, 8, 10, 12, 14 and 2 more'
-    """
-    more = rows.size - _LISTED
-    return ", ".join(map(str, rows[:_LISTED])) + (f" and {more} more" if more > 0 else "")
 
 
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
@@ -127,10 +115,9 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
 
 def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
-        rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
-        if rows.size:
-            which = predictor.data.rebound(rows[0]) if rows.size == 1 else f"rebounds {listed(rows)}"
-            yield f"{KINDS[name].title} of {which} is above 1: no impact gains energy, a mistake?"
+        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)[:_LISTED]:
+            which = f"{KINDS[name].title} of {predictor.data.rebound(n)}"
+            yield f"{which} is above 1: no impact gains energy, a mistake?"
 
 
 def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:

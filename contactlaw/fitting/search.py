@@ -149,7 +149,7 @@ def _scan(predictor: Predictor) -> tuple[list[Array], Array]:
     bounds = np.array([(axis[0], axis[-1]) for axis in axes]).T
     bottoms = []
     for place in places:
-        start = np.clip([axis[n] for axis, n in zip(axes, place, strict=True)], bounds[0] + 1e-9, bounds[1] - 1e-9)
+        start = np.clip(points.reshape(*shape, -1)[tuple(place)], bounds[0] + 1e-9, bounds[1] - 1e-9)
         done = least_squares(lambda x: (between(x)[0] - value) / soft, start, bounds=bounds, ftol=1e-3, max_nfev=20)
         bottoms.append(Basin(done.x, float(done.cost), value, value, value))
     starts = [known + bottom.x @ basis for bottom in lowest(bottoms, _SAME_MINIMUM)[:_MOST]]

@@ -6,15 +6,13 @@ import re
 import numpy as np
 import pytest
 from rebounds import RADIUS, STEEL, rebounds
-from scipy import stats
 
 import contactlaw as cl
-from contactlaw.fitting.notes import chance
-from contactlaw.fitting.predictions import Predictor, impacts
-from contactlaw.fitting.unknowns import Setting, parameters
+from contactlaw.fitting.predictions import impacts
+from contactlaw.fitting.unknowns import Setting
 from contactlaw.physical.law import law_of
 
-DOUBT = re.compile(r"trend with|times (above|below) that|above 1:|no \w+ gives")
+DOUBT = re.compile(r"times (above|below) that|above 1:|no \w+ gives")
 ALUMINA = cl.Pair("gamma-alumina", "glass")
 FAST = np.geomspace(2.0, 40.0, 12)
 
@@ -61,31 +59,6 @@ def test_a_value_that_speeds_in_other_units_give_is_named_as_far_off(pair, unkno
     data = rebounds(pair, kinds=(kind,), noise=0.01, seed=2, speed=speed)
     data["speed"] = factor * data["speed"]
     assert re.search(words, said(pair, data, unknown))
-
-
-def test_another_law_leaves_a_trend_and_one_mistake_does_not():
-    data = rebounds(STEEL, noise=0.01, seed=1)
-    for stated in (True, False):
-        assert "residuals of COR trend with speed" in said(STEEL, data, "thickness", "hertz", stated)
-    data["restitution"][4] *= 1.2
-    assert "trend" not in said(STEEL, data, "thickness")
-
-
-@pytest.mark.parametrize("stated", [True, False])
-def test_chances_of_trends_are_those_of_noise(stated):
-    """They are uniform over sets of pure noise, so that 1 in 1000 has one below the limit."""
-    data = rebounds(STEEL, without=("thickness",))
-    data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
-    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, parameters(STEEL, data, ["thickness"], {}))
-    (fitted,) = predictor.predicted(np.log([1.2e-3]))
-    slopes = predictor.derivatives(np.log([1.2e-3]), fitted)
-    z, random, found = slopes / (0.01 * fitted[:, None]), np.random.default_rng(5), []
-    for _ in range(500):
-        off = random.standard_normal(12)
-        off -= z @ np.linalg.lstsq(z, off, rcond=None)[0]
-        off *= 1.0 if stated else np.sqrt(11.0 / (off @ off))
-        found.append(chance(off))
-    assert stats.kstest(found, "uniform").pvalue > 0.01
 
 
 def test_what_no_thickness_gives_is_refused_with_what_is_attainable():

@@ -20,7 +20,7 @@ from contactlaw.answers import law_errors
 from contactlaw.answers.varied import FINE
 from contactlaw.cli import main
 from contactlaw.cli.fit import printed
-from contactlaw.fitting import errors, notes
+from contactlaw.fitting import errors
 from contactlaw.fitting.measurements import Measurements
 from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
@@ -159,8 +159,6 @@ def test_errors_that_are_not_given_are_found_from_the_scatter():
     widened = stats.t.ppf(stats.norm.cdf(1.0), 5) * of_mean
     share = found.statistical_errors["thickness"] / found.values["thickness"]
     assert share == pytest.approx(widened / slope, rel=0.02)
-    of_each = 100.0 * scatter.std(ddof=1) / scatter.mean()
-    assert f"one of {of_each:.2g} % was found from the scatter of 6 values" in " ".join(found.notes)
 
 
 def dense(speed, slenderness, kind, size):
@@ -268,8 +266,11 @@ def test_a_thickness_that_may_be_any_larger_is_refused():
     time = np.asarray(thick.contact_time)
     data = {"speed": speed, "radius": RADIUS, "contact_time": time}
     data["contact_time_error"] = 2e-3 * time
-    with pytest.raises(cl.UnidentifiedError, match="thickness on one side only: above 0.0018"):
+    with pytest.raises(cl.UnidentifiedError, match="thickness on one side only: above") as refused:
         cl.fit(pair, data, "thickness")
+    bound = float(str(refused.value).split("above ")[1].split()[0])
+    there = impacts(Setting(pair, speed, RADIUS * size, bound * size), law_of(pair, "fem")).contact_time
+    assert 4.0 < np.sum(((there / time - 1.0) / 2e-3) ** 2) < 5.0  # two standard errors, from the best or a half-space
 
 
 def test_rebounds_beyond_the_models_limits_are_flagged_one_by_one():
@@ -369,8 +370,8 @@ def test_what_is_refused(change, asked, message):
     ("priors", "message"),
     [
         ({"colour": 1.0}, "priors: got 'colour'"),
-        ({"density": 0.0}, "density must be positive"),
-        ({"density": 9000.0}, "got 9000.0; the error of density must be below it"),
+        ({"density": 0.0}, "the error of density must be positive"),
+        ({"density": 9000.0}, "got 9000.0; the error of density must be positive and below it"),
         ({"density": "1"}, "density: got '1'; expected one number"),
         ({"yield_strength": 1e6}, "has no value that"),
     ],
@@ -396,11 +397,6 @@ def test_of_a_record_clumps_are_left_out():
     with pytest.warns(UserWarning, match="data: 1 impacts of rigid bodies are left out"):
         measured = cl.Measurements.of(cl.Record(rows))
     assert measured.restitution.tolist() == [0.5, 0.7] and measured.line.tolist() == [0, 2]
-
-
-def test_numbers_of_rebounds_are_listed():
-    assert notes.listed(np.array([3])) == "3"
-    assert notes.listed(np.arange(0, 40, 2)).endswith("and 12 more")
 
 
 @pytest.mark.parametrize("law", ["fem", "myc"])
