@@ -13,7 +13,7 @@ import pytest
 from places import ROOT
 from rebounds import KINDS, RADIUS, STEEL, THICKNESS, rebounds
 from scipy import stats
-from scipy.optimize import least_squares
+from scipy.optimize import brentq, least_squares
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
@@ -271,6 +271,20 @@ def test_a_thickness_that_may_be_any_larger_is_refused():
     bound = float(str(refused.value).split("above ")[1].split()[0])
     there = impacts(Setting(pair, speed, RADIUS * size, bound * size), law_of(pair, "fem")).contact_time
     assert 4.0 < np.sum(((there / time - 1.0) / 2e-3) ** 2) < 5.0  # two standard errors, from the best or a half-space
+
+
+def test_an_error_is_the_distance_at_which_the_sum_of_squares_rises_by_one():
+    """The COR of a thick plate tends to 1: its error is larger than that of a linear model, 0.123."""
+    pair, speed, size = cl.Pair("glass", "glass"), np.array([0.5, 1.0, 2.0]), np.ones(3)
+
+    def cor(thickness):
+        return impacts(Setting(pair, speed, RADIUS * size, thickness * size), law_of(pair, "fem")).restitution
+
+    data = {"speed": speed, "radius": RADIUS, "restitution": cor(4e-3), "restitution_error": 0.008 * cor(4e-3)}
+    found = cl.fit(pair, data, "thickness")
+    error = brentq(lambda x: np.sum(((cor(4e-3 * np.exp(x)) / cor(4e-3) - 1.0) / 0.008) ** 2) - 1.0, 0.0, 1.0)
+    assert error > 0.135
+    assert found.statistical_errors["thickness"] / found.values["thickness"] == pytest.approx(error, rel=0.02)
 
 
 def test_rebounds_beyond_the_models_limits_are_flagged_one_by_one():
