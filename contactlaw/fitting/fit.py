@@ -218,7 +218,7 @@ def _least_squares(predictor: Predictor, found: list[Basin]) -> tuple[list[Basin
     """
     error, freedom, stages = search.guessed(predictor.values), math.inf, [FINE]
     if np.isnan(predictor.values.error).any():
-        freedom, stages = float(error.size - sum(one.is_free for one in predictor.parameters)), [COARSE, COARSE, FINE]
+        freedom, stages = error.size - sum(one.is_free for one in predictor.parameters), [COARSE, COARSE, FINE]
     for n, fineness in enumerate(stages):
         if n and freedom:
             error = _scatter(predictor.values, found[0], error, freedom)
