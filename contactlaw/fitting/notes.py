@@ -17,7 +17,6 @@ from contactlaw.physical.rebound import Rebound
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
-_LISTED = 8  # most rebounds of a kind that are named as above 1
 # Factors by which a value may differ from the one given: a strength depends on the temper. A loss
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
@@ -115,7 +114,7 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
 
 def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
-        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)[:_LISTED]:
+        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0):
             which = f"{KINDS[name].title} of {predictor.data.rebound(n)}"
             yield f"{which} is above 1: no impact gains energy, a mistake?"
 

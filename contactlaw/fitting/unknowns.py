@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -208,7 +208,7 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
     """Put the values of parameters into bodies and sizes."""
     # copies: for read-only arrays kernels would be compiled once more
     names = "speed", "radius", "thickness", *(("friction", "sliding_speed") if data.is_oblique else ())
-    sizes = {name: None if getattr(data, name) is None else np.array(getattr(data, name)) for name in names}
+    sizes: Any = {name: None if getattr(data, name) is None else np.array(getattr(data, name)) for name in names}
     numbers: dict[Number, float] = {}
     for one, value in zip(parameters, values.tolist(), strict=True):
         if one.unknown.body:
