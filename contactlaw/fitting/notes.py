@@ -114,7 +114,7 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
 
 def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
-        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0):
+        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0).tolist():
             which = f"{KINDS[name].title} of {predictor.data.rebound(n)}"
             yield f"{which} is above 1: no impact gains energy, a mistake?"
 
