@@ -53,7 +53,7 @@ FILES = {
     ),
     "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
-    "fitting": "drops measurements unknowns predictions errors identify search notes fit",
+    "fitting": "drops measurements unknowns predictions errors search identify notes fit",
     "emit": "types languages program function",
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",

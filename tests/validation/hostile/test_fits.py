@@ -39,7 +39,7 @@ def test_a_second_regime_that_fits_as_well_is_told():
         there = cl.ImpactModel(pair, outside="solve").solve(data["speed"], 1e-3, other["thickness"])
         off = there.restitution / data["restitution"] - 1.0
         assert np.sqrt(np.mean(off**2)) < 0.05
-    assert any("fitted as well by yield_strength" in note for note in found.notes)
+    assert any("fitted as well by yield strength of the bead" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(("count", "seed"), [(2, 1), pytest.param(8, 3, marks=pytest.mark.long)])
