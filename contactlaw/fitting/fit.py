@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array, Integers, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
-from contactlaw.answers.varied import FINE
+from contactlaw.answers.derivatives import FINE
 from contactlaw.fitting import search
 from contactlaw.fitting.errors import chi_squared, covariance_of, model_errors, student
 from contactlaw.fitting.identify import EXCLUDED, UnidentifiedError, check, check_strengths, profile
