@@ -12,16 +12,14 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.uncertainty import Band
+from contactlaw.fitting.errors import chi_squared, correlated
 from contactlaw.fitting.measurements import Measurements
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 
 _NEEDED = "radius", "thickness", "restitution", "restitution_error"
-_LENGTH = 1.0  # correlation length of the law's errors in ln(speed) and ln(R/H), as in a fit
-_THICK = 1e-3  # R/H that stands for that of a half-space
-_MOST = 2000  # rebounds, whose covariance is a square of them: 32 MB
-_LEAST_ERROR = 1e-6  # of a COR; rebounds that are alike to more digits have no covariance to invert
+_LEAST_ERROR = 1e-6  # of a COR
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,36 +107,29 @@ def compare(
         if getattr(data, name) is None:
             hint = "; of heights or times their own, bounce_error or time_error" * (name == "restitution_error")
             raise ArgumentError(name, None, f"has to be given for each rebound, to compare it with the model{hint}")
-    has_one = np.isfinite(np.asarray(data.restitution))
-    given = {name: getattr(data, name) for name in ("speed", *_NEEDED, "line")}
-    data = Measurements(**{name: values[has_one] for name, values in given.items() if values is not None})
-    if len(data) > _MOST:
-        raise ArgumentError("data", len(data), f"compare at most {_MOST} rebounds: take means of those that are alike")
+    data = Measurements(**{name: getattr(data, name) for name in ("speed", *_NEEDED, "line")})
+    data = data.part(np.isfinite(np.asarray(data.restitution)))
     speed, radius, thickness, measured, error = (np.array(getattr(data, name)) for name in ("speed", *_NEEDED))
     model = ImpactModel(pair, law)
     hit = model.solve(speed, radius, thickness)
     errors = {"speed_error": speed_error, "radius_error": radius_error, "thickness_error": thickness_error}
     band = model.uncertainty(speed, radius, thickness, **errors).restitution
-    off = measured - hit.restitution
-    slenderness = np.log(np.maximum(radius / thickness, _THICK))
-    apart = np.hypot(*(np.subtract.outer(at, at) for at in (np.log(speed), slenderness)))
-    covariance = np.diag(np.maximum(error, _LEAST_ERROR) ** 2)
-    for cause, sign in band.signs.items():
-        moved = sign * np.asarray(band.causes[cause])
-        covariance += np.outer(moved, moved)
-    if_exact = float(off @ np.linalg.solve(covariance, off))
+    off, own = measured - hit.restitution, np.maximum(error, _LEAST_ERROR)
+    shared = np.array([sign * np.asarray(band.causes[cause]) for cause, sign in band.signs.items()])
+    shared = shared.reshape(-1, off.size).T
+    if_exact = chi_squared(off, own, shared)
     by_law = np.asarray(band.causes["model"])
     knows_law = bool(np.isfinite(by_law).all())
     if knows_law:
-        covariance += np.outer(by_law, by_law) * np.exp(-apart / _LENGTH)
-    chi_squared = float(off @ np.linalg.solve(covariance, off))
-    chance, rms = _by_chance(chi_squared, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
+        shared = np.hstack([shared, by_law[:, None] * correlated(speed, radius / thickness)])
+    chi_2 = chi_squared(off, own, shared)
+    chance, rms = _by_chance(chi_2, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
     unknown = ["model"] * (not knows_law)
     if np.any(hit.overload > 1.0):
         bodies = {"the bead": pair.sphere, "the plate": pair.plate}
         unknown += [f"yield strength of {role}" for role, body in bodies.items() if body.specified_minimum]
     cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
-    return Comparison(data, cor, band, flags, chi_squared, chance, if_exact, rms, (*unknown,))
+    return Comparison(data, cor, band, flags, chi_2, chance, if_exact, rms, (*unknown,))
 
 
 def _by_chance(chi_squared: float, count: int) -> float:

@@ -1,38 +1,42 @@
 """ImpactModel: what a bead's collision with a plate does, in SI units.
 
 Its methods pass impacts on to the table or to the solver, which are interchangeable, or to another
-module of `contactlaw.answers`. Those that engines call are in `contactlaw.answers.compiled`.
+module of `contactlaw.answers`.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._arrays import Array
 from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
-from contactlaw.answers.compiled import Compiled
+from contactlaw.answers.compiled import c_function, kernel_of
 from contactlaw.answers.constant import Constant, Keep, constant
-from contactlaw.answers.edges import with_edges
-from contactlaw.answers.histories import Histories
-from contactlaw.answers.inverse import Inverse
-from contactlaw.answers.oblique import Oblique
+from contactlaw.answers.derivatives import Variants
+from contactlaw.answers.edges import kernel_near
+from contactlaw.answers.find import Solutions, Stack, described, find, stacked
+from contactlaw.answers.oblique import Collide, collide, collide_kernel, oblique
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup
+from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup, by_method
+from contactlaw.answers.uncertainty import Uncertainty, uncertainty
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.materials import warn_of_softened
+from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import SHEETS, Thickness, sheet_of
 from contactlaw.physical.rebound import Rebound
@@ -40,7 +44,7 @@ from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
 
-class ImpactModel(Compiled, Histories, Inverse, Oblique):
+class ImpactModel:
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
     Adhesion, heating, rolling and drilling friction are outside it (see `Validity`).
@@ -92,6 +96,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
         self._tabulated = TableLookup(self._bodies, table, self._border)
+        self._variants = Variants(pair, self._bodies.law)
+        self._edge_kernel = functools.cache(functools.partial(kernel_near, self._bodies))
+        self._c_function = functools.cache(functools.partial(c_function, self._tabulated))
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):
@@ -147,8 +154,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
 
     @clamped.setter
     def clamped(self, count: int) -> None:
-        with self._border.lock:
-            self._border.clamped = count
+        self._border.clamped = count
 
     def restitution(
         self,
@@ -207,8 +213,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         if not bare or type(thickness) not in SHEETS:
             impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
             if impacts.remember is not None:
-                by = with_edges(self._tabulated, Solver(self._bodies), impacts)
-                return by.rebounds(impacts).restitution
+                return self._tabulated.rebounds(impacts).restitution
         else:
             # a short cut for engines that call this once per collision
             if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
@@ -253,7 +258,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         '28.3 N for 3.92 us'
         """
         impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        return with_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
+        return self._tabulated.rebounds(impacts)
 
     def solve(
         self,
@@ -301,8 +306,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         True
         """
         impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        by = Solver.within(self._bodies, rtol)
-        return with_edges(by, by, impacts).rebounds(impacts)
+        return Solver.within(self._bodies, rtol).rebounds(impacts)
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None
@@ -327,6 +331,181 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         0.0
         """
         return self._beads(other).rebounds(speed, radius, other_radius)
+
+    def force_history(
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: Thickness,
+        samples: int = 256,
+        method: Literal["table", "solve"] = "table",
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
+    ) -> ForceHistory:
+        """Force, compression, impulse and displacement of the plate over contacts.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `restitution`.
+        samples : int, optional
+            Number of even times from first touch to separation, at least 2.
+        method : {"table", "solve"}, optional
+            Interpolate shapes of contacts in the table, or integrate the equation.
+        edge, edge_distance, hole_radius, mass
+            As in `restitution`.
+
+        Returns
+        -------
+        ForceHistory
+            Arrays with the samples along the last axis, and flags. By ``"table"`` within 1e-3 of
+            the peak force of those by ``"solve"``.
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`; too few samples, or an unknown method.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> contact = model.force_history(speed=12.0, radius=0.9e-3, thickness=1e-3, samples=5)
+        >>> contact.force.round(1)
+        array([ 0. , 16.9, 28.2, 15.1,  0. ])
+        """
+        impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
+        return by_method(self._tabulated, method).histories(impacts, samples)
+
+    def oblique(
+        self,
+        speed: ArrayLike,
+        sliding_speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: Thickness,
+        friction: ArrayLike,
+        method: Literal["table", "solve"] = "table",
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
+    ) -> ObliqueRebound:
+        """Everything about an oblique impact.
+
+        Parameters
+        ----------
+        speed : array_like
+            Normal approach speed [m/s], > 0.
+        sliding_speed : array_like
+            Speed of the contact point along the plate before the impact, from the motion of the
+            centre and from spin [m/s]; of either sign, and 0 for a bead that rolls.
+        radius, thickness : array_like
+            Radius of the sphere and thickness of the plate [m]; ``inf`` is the half-space.
+        friction : array_like
+            Coulomb's coefficient of friction between bead and plate [-], from 0 to 1000.
+        method : {"table", "solve"}, optional
+            Interpolate in a table, which takes seconds to make once, or integrate.
+        edge, edge_distance, hole_radius
+            As in `ImpactModel.restitution`.
+        mass : array_like, optional
+            As in `ImpactModel.restitution`; the moment of inertia is 2/5 of it times R^2.
+
+        Returns
+        -------
+        ObliqueRebound
+            By ``"table"`` the sliding speed is within 2e-3 of friction times speed of that by
+            ``"solve"``, which is within 1e-3 of the limit of many springs. With a restitution below
+            0.05 or an overload above 50 it is within 7e-3.
+
+        Raises
+        ------
+        ValueError
+            An argument out of range, another method, or an impact outside the table.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> hit = model.oblique(3.0, [1.0, 5.0], 0.9e-3, 3e-3, friction=0.2, method="solve")
+        >>> hit.sliding_speed.round(2), hit.impulse_ratio.round(3)
+        (array([-0.26,  0.83]), array([0.061, 0.2  ]))
+        """
+        edges = edge, edge_distance, hole_radius
+        by = by_method(self._tabulated, method)
+        return oblique(by, speed, sliding_speed, radius, thickness, friction, *edges, mass)
+
+    def collide(
+        self,
+        velocity: ArrayLike,
+        spin: ArrayLike,
+        normal: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        friction: ArrayLike,
+        wall_velocity: ArrayLike = 0.0,
+        mass: ArrayLike | None = None,
+    ) -> tuple[Array, Array]:
+        """Velocity and spin of beads after impacts on plates, for event-driven codes.
+
+        Parameters
+        ----------
+        velocity, spin : array_like
+            Of the beads before, shape (..., 3), or the number 0 [m/s, rad/s].
+        normal : array_like
+            Normal of the plate towards the bead, of any length, shape (..., 3).
+        radius, thickness, friction, mass : array_like
+            As in `oblique`.
+        wall_velocity : array_like, optional
+            Velocity of the plate at the contact point, shape (..., 3), or the number 0 [m/s].
+
+        Returns
+        -------
+        velocity, spin : ndarray of float64
+            Shape (..., 3); those of a bead that recedes from the plate are as they were.
+
+        Raises
+        ------
+        ValueError
+            An argument out of range or without three components, or an impact outside the table.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> new, spin = model.collide([3.0, 0, -2.0], [0, 0, 0], [0, 0, 1], 0.9e-3, 3e-3, 0.2)
+        >>> new.round(3), spin.round(-1)
+        (array([2.205, 0.   , 1.973]), array([   0., 2210.,    0.]))
+        """
+        return collide(self._tabulated, velocity, spin, normal, radius, thickness, friction, wall_velocity, mass)
+
+    @functools.cached_property
+    def collide_kernel(self) -> Collide:
+        """One collision as a numba-jitted function for loops of your own, as `kernel` is for COR.
+
+        ``f(velocity, spin, normal, radius, thickness, friction, wall_velocity)`` takes vectors as
+        tuples and gives two of them, velocity and spin. It cannot raise: bad input and an impact
+        outside the table give NaN, whatever `outside` says. An eighth argument may be a mass [kg].
+
+        Raises
+        ------
+        RuntimeError
+            If numba is switched off.
+
+        Examples
+        --------
+        >>> import contactlaw as cl, numba
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> collide, rest = model.collide_kernel, (0.0, 0.0, 0.0)
+        >>> @numba.njit
+        ... def bounce(velocity):
+        ...     return collide(velocity, rest, (0.0, 0.0, 1.0), 0.9e-3, 3e-3, 0.2, rest)
+        >>> velocity, spin = bounce((3.0, 0.0, -2.0))
+        >>> round(velocity[2], 3)
+        1.973
+        """
+        return collide_kernel(self._tabulated)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None) -> float | Array:
         """Speed V_Y [m/s] from which bead or plate yields, whichever is first; ``inf`` for neither.
@@ -377,7 +556,140 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(moved.thickness, 3), round(moved.yield_strength, 3)
         (0.239, 0.176)
         """
-        return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
+        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
+        inside = TableLookup(self._bodies, self._tabulated.given, Border("raise")).rebounds(impacts)
+        return sensitivity(self._variants, impacts, np.ravel(inside.overload) > 1.0)
+
+    def uncertainty(
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        *,
+        speed_error: float = 0.0,
+        radius_error: float = 0.0,
+        thickness_error: float = 0.0,
+        mass: ArrayLike | None = None,
+    ) -> Uncertainty:
+        """How far a real impact may be from the answer, and why.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `solve`, which integrates all of it.
+        speed_error, radius_error, thickness_error : float, optional
+            Relative standard errors of speed and sizes [-], 0 to 1. Those of materials are their
+            `Material.uncertainty`; without any, only the law is uncertain.
+        mass : array_like, optional
+            As in `solve`; it has no error.
+
+        Returns
+        -------
+        Uncertainty
+            Quantiles of 16 and 84 % of COR, contact time and peak force, and their causes.
+
+        Raises
+        ------
+        ValueError
+            As in `solve`; an error out of range, or so large that a material is none any more.
+
+        Notes
+        -----
+        Errors are log-normal and independent, also those of A, B and C of one fit. But if both
+        bodies are of one and the same material, equal in all numbers and in its name, a number
+        errs alike in both. A Poisson's ratio stays up to 0.5. Numbers that were given in the name
+        of a law are held fixed. Quantiles are within 15 % of half the band's width of those of
+        random pairs, for errors of strengths up to 30 % and of moduli up to 15 %.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> steel = cl.Material(
+        ...     "my steel", 200e9, 0.29, 7800, yield_strength=400e6, kind="metal",
+        ...     uncertainty={"yield_strength": 0.15},
+        ... )
+        >>> model = cl.ImpactModel(cl.Pair(steel, "glass"))
+        >>> cor = model.uncertainty(3.0, 1e-3, 5e-3, thickness_error=0.05).restitution
+        >>> round(cor.low, 2), round(cor.high, 2)
+        (0.62, 0.71)
+        >>> {name: round(size, 3) for name, size in cor.causes.items()}
+        {'yield strength of the bead': 0.043, 'thickness': 0.002, 'model': 0.003}
+        """
+        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
+        errors = {"speed": speed_error, "radius": radius_error, "thickness": thickness_error}
+        return uncertainty(self._variants, impacts, errors)
+
+    def thickness(
+        self,
+        restitution: ArrayLike,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        *,
+        layers: Stack = (),
+        speed_error: float = 0.0,
+        radius_error: float = 0.0,
+    ) -> Solutions | NDArray[np.object_]:
+        """Every thickness of the plate that gives a COR; the COR may pass through a maximum.
+
+        Parameters
+        ----------
+        restitution : array_like
+            Coefficients of restitution [-], between 0 and 1.
+        speed, radius : array_like
+            As in `restitution`; all three are broadcast.
+        layers : sequence of (Material or str, float or None), optional
+            Of a plate that is lined or clad, as in `Layers`, with None for the thickness that is
+            sought: that of a liner, or of what lies under it.
+        speed_error, radius_error : float, optional
+            Relative standard errors, as in `uncertainty`.
+
+        Returns
+        -------
+        Solutions or ndarray of Solutions
+            One for each question. Those outside the table are not searched, whatever `outside` is.
+
+        Raises
+        ------
+        ValueError
+            An argument out of its range; an impact that no thickness brings into the table.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
+        >>> found = model.thickness(0.5, speed=2.0, radius=1.5e-3)
+        >>> (1e3 * found.value).round(2), (1e3 * found.low).round(2), (1e3 * found.high).round(2)
+        (array([2.84]), array([2.78]), array([2.9]))
+        >>> model.thickness(0.8, speed=2.0, radius=1.5e-3).remark
+        'no thickness: a half-space gives 0.6106, the largest COR; the range is 1.59e-06 to 0.6106'
+        >>> clad = [("aluminium-6061-t6", None), ("steel-s235", 1e-3)]
+        >>> (1e3 * model.thickness(0.5, speed=2.0, radius=1.5e-3, layers=clad).value).round(2)
+        array([1.15])
+        """
+        plate, errors = stacked(layers, self.pair.given[1]), {"speed": speed_error, "radius": radius_error}
+        return find(self._tabulated, restitution, {"speed": speed, "radius": radius}, plate, self._variants, errors)
+
+    def speed(
+        self,
+        restitution: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        *,
+        radius_error: float = 0.0,
+        thickness_error: float = 0.0,
+    ) -> Solutions | NDArray[np.object_]:
+        """Every impact speed, from 0.1 mm/s, that gives a COR; all else is as in `thickness`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
+        >>> model.speed(0.5, radius=1.5e-3, thickness=3e-3).value.round(3)
+        array([2.2])
+        """
+        plate, errors = described(thickness, self.pair.given[1]), {"radius": radius_error, "thickness": thickness_error}
+        sizes = {"radius": radius, "thickness": thickness}
+        return find(self._tabulated, restitution, sizes, plate, self._variants, errors)
 
     def constant(
         self,
@@ -463,3 +775,118 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         """
         scalars(radius=radius, thickness=sheet_of(thickness))
         return speed_table(lambda v: self.lookup(v, radius, thickness), error, (slowest, fastest))
+
+    def curve(self, radius: float, thickness: float, mass: float | None = None) -> Callable[[float], float]:
+        """COR of one bead class on one plate, as a fast function of speed.
+
+        Parameters
+        ----------
+        radius, thickness, mass : float
+            As in `restitution`.
+
+        Returns
+        -------
+        callable
+            ``curve(speed)`` [m/s] -> COR; it raises the same errors as `restitution`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.curve(radius=0.9e-3, thickness=1e-3)(5.0), 4)
+        0.8966
+        """
+        scalars(radius=radius, thickness=thickness, **({} if mass is None else {"mass": mass}))
+        return self._tabulated.curve(self._bodies.given(1.0, radius, thickness, mass=mass))
+
+    def sphere_sphere_curve(self, radius: float, other_radius: float, other: Other = None) -> Callable[[float], float]:
+        """COR of the pair's sphere and another one, as a fast function of approach speed.
+
+        Parameters
+        ----------
+        radius, other_radius : float
+            Radii of the beads [m].
+        other : Material or str, optional
+            Material of the other bead, without it that of the pair's sphere.
+
+        Returns
+        -------
+        callable
+            ``curve(speed)`` [m/s] -> COR; it raises the same errors as `restitution`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.sphere_sphere_curve(1e-3, 1e-3)(20.0), 4)
+        0.9616
+        """
+        return self._beads(other).curve(radius, other_radius)
+
+    @functools.cached_property
+    def kernel(self) -> Callable[..., float]:
+        """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of your own [m/s, m, m].
+
+        A fourth number may be the mass [kg], as in `restitution`.
+
+        It reads this model's table as `restitution` does for three floats, but cannot raise (a
+        raise would make a parallel loop serial): bad input and an impact outside the table give
+        NaN, whatever `outside` says. Test for it with ``e != e``. Numba does not keep a caller of
+        it on disk (``cache=True`` has no effect but a NumbaWarning), since the machine code
+        contains the address of the table.
+
+        Examples
+        --------
+        >>> import contactlaw as cl, numba
+        >>> cor = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")).kernel
+        >>> @numba.njit
+        ... def rebound_speeds(speed, radius, thickness):
+        ...     return [cor(v, radius, thickness) * v for v in speed]
+        >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
+        [0.925, 4.483]
+        """
+        return kernel_of(self._tabulated)
+
+    def edge_kernel(self, edge: Edge = "free") -> Callable[..., float]:
+        """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
+
+        A fifth number may be the mass [kg], as in `restitution`.
+        As `kernel`, but it integrates the equation, within 1e-3 of `solve`: 10 to 15 us per
+        impact, longer where a sphere stays on a plate that recedes.
+
+        Parameters
+        ----------
+        edge : {"free", "supported", "clamped"}, optional
+            As in `restitution`.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind of edge.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.edge_kernel("free")(2.0, 0.9e-3, 0.5e-3, 1e-3), 3)
+        0.592
+        """
+        return self._edge_kernel(edge)
+
+    @property
+    def address(self) -> int:
+        """Address of a C function ``double f(double speed, double radius, double thickness)``.
+
+        For engines in C and C++: `kernel` behind a plain function pointer, valid as long as this
+        model lives, callable from any thread. It gives NaN where `kernel` does.
+
+        Examples
+        --------
+        >>> import contactlaw as cl, ctypes
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> double = ctypes.c_double
+        >>> f = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
+        >>> round(f(5.0, 0.9e-3, 1e-3), 4)
+        0.8966
+        """
+        return int(self._c_function().address)

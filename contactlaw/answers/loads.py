@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw._jit import kernel
 from contactlaw.physical.arguments import broadcast, check, number
 from contactlaw.physical.plates import check_contact
 
@@ -87,6 +86,8 @@ def load_signal(
     >>> load.force.round(3)
     array([0.   , 0.255, 0.   , 0.404])
     """
+    from scipy.interpolate import CubicHermiteSpline
+
     start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
     check(speed=v, radius=r, thickness=h)
     check_contact(thickness, model.pair.given[1])
@@ -108,34 +109,12 @@ def load_signal(
     within = np.flatnonzero((start > -_LONGEST_CONTACT) & (start < duration))
     for part in np.split(within, range(_CHUNK, within.size, _CHUNK)):
         contacts = model.force_history(v[part], r[part], h[part], samples=_SAMPLES)
-        _add(start[part], contacts.time, contacts.force, contacts.impulse, rate, force)
+        columns = start[part], contacts.time, contacts.force, contacts.impulse
+        for begin, time, push, impulse in zip(*columns, strict=True):
+            first = max(math.floor(begin * rate), 0)
+            last = min(math.ceil((begin + time[-1]) * rate), force.size)
+            # the mean force over an interval is the impulse in it over its length
+            since = np.clip(np.arange(first, last + 1) / rate - begin, 0.0, time[-1])
+            passed = CubicHermiteSpline(time, impulse, push)(since)
+            force[first:last] += np.diff(passed) * rate
     return LoadSignal(np.arange(0.5, force.size) / rate, force)
-
-
-@kernel(cache=True)
-def _add(start: Array, time: Array, force: Array, impulse: Array, rate: float, out: Array) -> None:
-    """Add the mean force of contacts over each interval: their impulse in it over its length."""
-    last = time.shape[1] - 1
-    for n in range(start.size):
-        span, end = time[n, 1], time[n, last]
-        k = max(math.floor(start[n] * rate), 0)
-        before = _passed(k / rate - start[n], span, last, force[n], impulse[n])
-        while k < out.size and k / rate - start[n] < end:
-            passed = _passed((k + 1) / rate - start[n], span, last, force[n], impulse[n])
-            out[k] += (passed - before) * rate
-            before = passed
-            k += 1
-
-
-@kernel
-def _passed(time: float, span: float, last: int, force: Array, impulse: Array) -> float:
-    """Impulse up to a time after first touch, by cubics whose slope is the force."""
-    if time <= 0.0:
-        return 0.0
-    time = min(time, last * span)
-    i = min(int(time / span), last - 1)
-    z = time / span - i
-    p, rise = span * force[i], impulse[i + 1] - impulse[i]
-    q = span * force[i + 1]
-    passed: float = impulse[i] + z * (p + z * (3 * rise - 2 * p - q + z * (p + q - 2 * rise)))
-    return passed

@@ -7,26 +7,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.backend import OutsideTableError, UnsolvedError, refuse_to_yield, renumbered, too_fast, too_thin
+from contactlaw.answers.backend import (
+    Backend,
+    OutsideTableError,
+    Part,
+    UnsolvedError,
+    refuse_to_yield,
+    renumbered,
+    too_fast,
+    too_thin,
+)
 from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.numbers import Impact, Numbers
-from contactlaw.equation.outcome import History, Outcome
+from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.outcome import Outcome
 from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.responses import REACH
 from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
-from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
-_CLOSE = 512  # samples between which the path of a sphere is a cubic
 _CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
@@ -43,7 +48,7 @@ def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> Non
 
 
 @dataclass(frozen=True, eq=False)
-class Solver:
+class Solver(Backend):
     """Integrates impacts; those outside a table of the given extent are refused as by a lookup."""
 
     bodies: SphereOnPlate
@@ -57,96 +62,68 @@ class Solver:
             raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
         return cls(bodies, rtol)
 
-    def rebounds(self, impacts: Impacts) -> Rebound:
-        """Everything about impacts."""
-        return self._integrated(impacts)[0]
-
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        hit, found, _, edges = self._integrated(impacts)
-        return hit, slid(self.bodies, found, psi, edges)
-
-    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
-        """Contacts at even times from first touch to separation."""
-        hit, found, units, edges = self._integrated(impacts)
-        contacts, path = histories_and_path(self.bodies.data, found, samples, edges)
-        return with_units(contacts, units, found.inelasticity, impacts.shape, hit.flags, path)
-
-    def _integrated(self, impacts: Impacts) -> tuple[Rebound, Outcome, Numbers, Edges | None]:
-        """Everything about impacts, and on Hertz's scale; their units, and edges near them."""
+    def far(self, impacts: Impacts) -> list[Part]:
+        """Integrate impacts."""
         bodies, count, edges = self.bodies, impacts.speed.size, None
         impact = bodies.impact(impacts)
         units = bodies.numbers(impact)
         refuse_rates(bodies, impacts, units)
-        if impacts.edge_distance is not None and impacts.hole_radius is not None:
-            near = impacts.edge, impacts.edge_distance, impacts.hole_radius
-            edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
+        if impacts.edge is not None:
+            edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, impacts.edge)
         elif impacts.frequency is not None and impacts.wall is not None:
             swing = impacts.wall, impacts.frequency
             edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)
         few = edges is not None and count <= _FEW
         with renumbered(np.arange(count), impacts.mass):
             found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
-        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
-        hit = rebound(bodies, impacts, units.time, known, found, flags, edges)
         if impacts.frequency is not None:
-            time = np.ravel(hit.contact_time) * impacts.frequency
-            within("thickness", time, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
-        return hit, found, units, edges
+            angle = found.contact_time * units.time * impacts.frequency
+            within("thickness", angle, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
+        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
+        return [Part(slice(None), impacts, units.time, known, found, flags, edges, False)]
+
+    near = far
 
     def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        share, impact = yield_share(self.bodies.pair, self.bodies.law), self.bodies.impact(impacts)
-        if math.isinf(share):
-            return np.full(impacts.speed.size, math.inf)
-        found = [
-            self._yield_speed(share, Impact(*(one[n : n + 1] for one in impact))) for n in range(impacts.speed.size)
-        ]
-        speed, lam = np.array(found).reshape(-1, 2).T
-        if self.extent is not None:
-            limit = self.extent.largest_inelasticity
-            beyond = lam > limit
-            if beyond.any():
-                refuse_to_yield(impacts, beyond, limit)
-        return speed
+        """Speeds [m/s] from which sphere or plate yields; inf where neither does.
 
-    def _yield_speed(self, share: float, impact: Impact) -> tuple[float, float]:
-        """Speed at which the largest compression is that of first flow, and lambda there.
-
-        By the secant method in logarithms, in which the compression is nearly linear in the speed.
-        It starts at the yield speed on a half-space, which is the lowest of all plates.
+        There the largest compression is that of first flow. They are found by the secant method in
+        logarithms, in which the compression is nearly linear in the speed. It starts at the yield
+        speed on a half-space, which is the lowest of all plates.
         """
-        laws, constants = self.bodies.data, self.bodies.constants
-        rated = constants.plate.rate.slope > 0.0
+        laws, constants, impact = self.bodies.data, self.bodies.constants, self.bodies.impact(impacts)
+        share, rated = yield_share(self.bodies.pair, self.bodies.law), constants.plate.rate.slope > 0.0
+        found = np.full(impacts.speed.size, math.inf)
+        if math.isinf(share):
+            return found
         if not rated:
             constants = constants._replace(yield_compression=share)
-        thinnest = math.inf if self.extent is None else 2.0 * self.extent.largest_inelasticity
-        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones(1)))
-        log_speed = 1.25 * math.log(float(at_one.yield_ratio[0]))
-        log_speed -= 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
-        slope, last, gap = 0.75, math.nan, 0.0
+        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones_like(found)))
+        log_speed = 1.25 * np.log(at_one.yield_ratio) - 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
+        limit = math.inf if self.extent is None else self.extent.largest_inelasticity
+        slope, last, gap = np.full_like(found, 0.75), np.full_like(found, math.nan), np.zeros_like(found)
+        never = np.zeros(found.size, dtype=np.bool_)
         for _ in range(_ROUNDS):
-            speed = np.array([math.exp(log_speed)])
-            units = numbers_of(constants, laws, impact._replace(speed=speed))
-            lam, y = float(units.inelasticity[0]), float(units.yield_ratio[0])
-            if lam > thinnest:
+            units = numbers_of(constants, laws, impact._replace(speed=np.exp(log_speed)))
+            lam, y, s = units.inelasticity, units.yield_ratio, units.strength
+            thin = lam > 2.0 * limit
+            hit = solved(laws, np.where(thin, 0.0, lam), y, self.rtol, strength=s)
+            onset = np.log([force.onset_at(laws, one) / force.growth_at(laws, one) for one in s])
+            never |= rated & (onset >= -math.log(share))  # the strength has outgrown the load
+            before, gap = gap, np.log(hit.compression_ratio * hit.elastic_compression / y) - onset
+            gap[thin | never] = 0.0
+            if np.abs(gap).max(initial=0.0) < _CONVERGED:
                 break
-            s = float(units.strength[0])
-            one = zener.solve(laws, lam, y, self.rtol, s)
-            if one.status != zener.OK:
-                raise UnsolvedError(0, f"lambda = {lam:.6g}", zener.MESSAGES[one.status])
-            onset = math.log(force.onset_at(laws, s) / force.growth_at(laws, s))
-            if rated and onset >= -math.log(share):  # the strength has outgrown the load
-                return math.inf, 0.0
-            before, gap = gap, math.log(one.peak_compression / y) - onset
-            if abs(gap) < _CONVERGED:
-                break
-            if last == last:
-                slope = min(max((gap - before) / (log_speed - last), _SLOPES[0]), _SLOPES[1])
+            step = log_speed - last
+            moved = np.divide(gap - before, step, out=slope, where=np.abs(step) > 0.0)
+            slope = np.clip(moved, *_SLOPES)
             last, log_speed = log_speed, log_speed - gap / slope
         else:
-            raise UnsolvedError(0, f"lambda = {lam:.6g}", "no speed was found at which it yields")
-        return math.exp(log_speed), lam
+            n = int(np.abs(gap).argmax())
+            raise UnsolvedError(n, f"lambda = {lam[n]:.6g}", "no speed was found at which it yields")
+        if (lam > limit)[~never].any():
+            refuse_to_yield(impacts, (lam > limit) & ~never, limit)
+        return np.where(never, math.inf, np.exp(log_speed))
 
 
 def solved_within(
@@ -173,48 +150,17 @@ def solved(
     lam: Array,
     y: Array,
     rtol: float,
-    places: Places | None = None,
     few: bool = False,
     edges: Edges | None = None,
     strength: Array | float = 0.0,
 ) -> Outcome:
     """Outcomes at inelasticities, yield ratios and strengths, by integration.
 
-    If these are only some of the user's impacts, `places` has their indices, for errors.
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     out = outcome.at(lam, y, strength)
     status, n = zener.solve_all(law, rtol, out, few, edges)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
-        raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
+        raise UnsolvedError(int(n), where, zener.MESSAGES[status])
     return out
-
-
-def slid(bodies: SphereOnPlate, found: Outcome, psi: Array, edges: Edges | None = None) -> Array:
-    """Change of the sliding speeds psi in impacts with these outcomes [mu V0], by integration."""
-    kappa = bodies.pair.tangential_ratio
-    changed: Array = psi - slides.after(bodies.data, found, kappa, psi[:, None], edges=edges)[:, 0]
-    return changed
-
-
-def histories(law: Array, found: Outcome, samples: int) -> History:
-    """Contacts over time on Hertz's scale, by integration."""
-    return histories_and_path(law, found, samples, None)[0]
-
-
-def histories_and_path(law: Array, found: Outcome, samples: int, edges: Edges | None) -> tuple[History, Array | None]:
-    """Contacts over time on Hertz's scale, and near edges the displacement of the plate.
-
-    The plate is where the sphere would be without compression. The path of the sphere is the
-    integral of its speed, between samples that are close, by the cubic through speeds and forces.
-    """
-    every = 1 if edges is None else -(-_CLOSE // (samples - 1))
-    out = outcome.history(found.inelasticity.size, every * (samples - 1) + 1)
-    zener.histories(law, found, RTOL, out, edges)
-    if edges is None:
-        return out, None
-    step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force
-    moved = 0.5 * step * (u[:, 1:] + u[:, :-1]) + step * step / 12.0 * (f[:, 1:] - f[:, :-1])
-    path = np.pad(np.cumsum(moved, axis=1), ((0, 0), (1, 0))) - out.compression
-    return History(*(values[:, ::every] for values in out)), path[:, ::every]

@@ -10,32 +10,28 @@ import threading
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal, NamedTuple, NoReturn
+from typing import Literal, NoReturn
 
 import numpy as np
 
 from contactlaw import laws
-from contactlaw._arrays import Array, Integers, Mask
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, renumbered, too_fast, too_thin
-from contactlaw.answers.solver import RTOL, Solver, histories, refuse_rates, slid, solved
+from contactlaw.answers.backend import Backend, OutsideTableError, Part, renumbered, split
+from contactlaw.answers.solver import RTOL, Solver
 from contactlaw.equation import outcome
-from contactlaw.equation.numbers import Numbers
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import History
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.rebound import Rebound, rebound
-from contactlaw.physical.scaling import yield_share
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
-from contactlaw.table.lookup import NO_MASSES, STRETCH
+from contactlaw.table.lookup import NO_MASSES
 from contactlaw.table.table import Table
 
 Outside = Literal["raise", "solve", "clamp"]
@@ -53,53 +49,15 @@ class Border:
             raise ArgumentError("outside", outside, "must be 'raise', 'solve' or 'clamp'")
         self.outside = outside
         self.clamped = 0
-        self.lock = threading.Lock()
+        self._lock = threading.Lock()
 
-    def look_up(self, law: Array, table: Array, units: Numbers) -> tuple[Outcome, Integers]:
-        """Look outcomes up, and flag with Validity.CLAMPED those that were taken at the border.
-
-        The dimensionless numbers of these are the border's.
-        """
-        out = outcome.at(units.inelasticity, units.yield_ratio, units.strength)
-        flags = np.zeros(out.inelasticity.size, dtype=np.int64)
-        if not lookup.fields(table, False, out):
-            return out, flags
-        beyond = np.flatnonzero(np.isnan(out.restitution))
-        found = outcome.part(out, beyond)
-        if self.outside == "raise":
-            with renumbered(beyond):
-                _refuse(table, found)
-        elif self.outside == "solve":
-            numbers = found.inelasticity, found.yield_ratio
-            found = solved(law, *numbers, RTOL, beyond, strength=found.strength)
-        else:
-            lookup.fields(table, True, found)
-            flags[beyond] = int(Validity.CLAMPED)
-            with self.lock:
-                self.clamped += beyond.size
-        for values, completed in zip(out, found, strict=True):
-            values[beyond] = completed
-        return out, flags
+    def count(self, more: int) -> None:
+        """Count impacts that were clamped."""
+        with self._lock:
+            self.clamped += more
 
 
-def _refuse(table: Array, beyond: Outcome) -> NoReturn:
-    """Say why the first of some impacts is outside a table."""
-    numbers = beyond.inelasticity, beyond.yield_ratio, beyond.strength
-    lam, y, s = (float(one[0]) for one in numbers)
-    axes = lookup.axes_of(table)
-    limit, most = axes.x_max * STRETCH / (1.0 - axes.x_max), lookup.strongest(table, axes)
-    if lam > limit:
-        raise OutsideTableError(0, too_thin(lam, limit))
-    if math.exp(s) > most:
-        times = f"{math.exp(s):.4g} times stronger, above {most:.4g}"
-        raise OutsideTableError(0, f"its rate makes the bodies {times}")
-    border = outcome.part(beyond, slice(1))
-    lookup.fields(table, True, border)
-    elastic = border.elastic_compression.item()
-    raise OutsideTableError(0, too_fast(elastic / y, elastic / border.yield_ratio.item()))
-
-
-class TableLookup:
+class TableLookup(Backend):
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
@@ -162,67 +120,75 @@ class TableLookup:
         """COR of impacts; sizes are checked only if the kernel has no answer for one of them."""
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
         out = np.empty(v.size)
-        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
-        if lookup.restitutions(self.packed, v, r, h, mass, out):
+        if lookup.restitutions(self.packed, v, r, h, self._shares(impacts), out):
             check(speed=v, radius=r, thickness=h)
-            out = self._looked_up(impacts).outcome.restitution
+            out = np.ravel(self.rebounds(impacts).restitution)
         return out
 
-    def rebounds(self, impacts: Impacts) -> Rebound:
-        """Everything about impacts."""
+    def near(self, impacts: Impacts) -> list[Part]:
+        """Integrate impacts, whatever table there is."""
+        return Solver(self.bodies).near(impacts)
+
+    def far(self, impacts: Impacts) -> list[Part]:
+        """Look impacts up."""
         if self.instead is not None:
-            return self.instead.rebounds(impacts)
-        return self._rebound(impacts, self._looked_up(impacts))
+            return self.instead.far(impacts)
+        count = impacts.speed.size
+        found, root = outcome.empty(count), np.empty(count)
+        flags, numbers = np.zeros(count, dtype=np.int64), (found.inelasticity, found.yield_ratio)
+        sizes = impacts.speed, impacts.radius, impacts.thickness, self._shares(impacts)
+        missed = lookup.outcomes(self.packed, *sizes, found, root)
+        if missed:
+            return split(impacts, np.isnan(found.restitution), self._beyond, self.far)
+        time = self.bodies.constants.time * impacts.radius / root
+        return [Part(slice(None), impacts, time, numbers, found, flags, None, True)]
 
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        known = self._looked_up(impacts)
-        found, changes = known.outcome, np.empty_like(psi)
-        # without the compiler a table takes hours to make, and an integration a fifth of a second
-        inside = ~known.integrated & (not switched_off())
-        for some in map(np.flatnonzero, (inside, ~inside)):
-            if not some.size:
-                continue
-            part = outcome.part(found, some)
-            if inside[some[0]]:
-                changes[some] = self._changes(part, psi[some])
-            else:
-                changes[some] = slid(self.bodies, part, psi[some])
-        return self._rebound(impacts, known), changes
-
-    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
-        """Contacts at even times from first touch to separation."""
-        known = self._looked_up(impacts)
-        found, contacts = known.outcome, outcome.history(impacts.speed.size, samples)
-        for some in map(np.flatnonzero, (~known.integrated, known.integrated)):
-            if not some.size:
-                continue
-            part = outcome.part(found, some)
-            if known.integrated[some[0]]:
-                own = histories(self.bodies.data, part, samples)
-            else:
-                own = outcome.history(some.size, samples)
-                shapes.sample(self.bodies.data, self.shapes, part, own)
-            for values, more in zip(contacts, own, strict=True):
-                values[some] = more
+    def _beyond(self, impacts: Impacts) -> list[Part]:
+        """Outcomes beyond the range of speeds and sizes of a lookup, and beyond the table."""
         units = self.bodies.numbers(self.bodies.impact(impacts))
-        flags = self._rebound(impacts, known).flags
-        return with_units(contacts, units, found.inelasticity, impacts.shape, flags)
+        numbers, flags = (units.inelasticity, units.yield_ratio), np.zeros(impacts.speed.size, dtype=np.int64)
+        found = outcome.at(*numbers, units.strength)
+        if lookup.fields(self.packed, False, found):
+            beyond = np.flatnonzero(np.isnan(found.restitution))
+            if self.border.outside == "solve":
+                return Solver(self.bodies).far(impacts)
+            if self.border.outside == "raise":
+                with renumbered(beyond, None if impacts.mass is None else impacts.mass[beyond]):
+                    self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
+            lookup.fields(self.packed, True, found)
+            flags[beyond] = int(Validity.CLAMPED)
+            self.border.count(beyond.size)
+        return [Part(slice(None), impacts, units.time, numbers, found, flags, None, True)]
+
+    def _refuse(self, impacts: Impacts, strength: float) -> NoReturn:
+        """Say why an impact is outside the table."""
+        most = lookup.strongest(self.packed, lookup.axes_of(self.packed))
+        if not math.exp(strength) > most:
+            Solver(self.bodies, extent=self.table.settings).far(impacts)
+        times = f"{math.exp(strength):.4g} times stronger, above {most:.4g}"
+        raise OutsideTableError(0, f"its rate makes the bodies {times}")
+
+    def slid(self, part: Part, psi: Array) -> Array:
+        """Change of sliding speeds psi [mu V0]."""
+        # without the compiler a table takes hours to make, and an integration a fifth of a second
+        if not part.interpolated or switched_off():
+            return super().slid(part, psi)
+        changes = np.empty_like(psi)
+        slides.changes(self.slides, part.outcome, psi, changes)
+        return changes
+
+    def contacts(self, part: Part, samples: int) -> tuple[History, Array | None]:
+        """Contacts over time on Hertz's scale."""
+        if not part.interpolated:
+            return super().contacts(part, samples)
+        out = outcome.history(part.impacts.speed.size, samples)
+        shapes.sample(self.bodies.data, self.shapes, part.outcome, out)
+        return out, None
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        rated = self.bodies.constants.plate.rate.slope > 0.0
-        if impacts.mass is not None or rated or self.instead is not None:
-            given = extent(self.bodies.law) if self.given is None else self.table.settings
-            return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
-        out = np.full(impacts.radius.size, math.inf)
-        share = yield_share(self.bodies.pair, self.bodies.law)
-        if share < math.inf:
-            scale = (self.bodies.constants.time / share) ** 0.25
-            lookup.yield_speeds(self.packed, scale, impacts.radius, impacts.thickness, out)
-            if np.isnan(out).any():
-                refuse_to_yield(impacts, np.isnan(out), self.table.settings.largest_inelasticity)
-        return out
+        given = extent(self.bodies.law) if self.given is None else self.table.settings
+        return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
 
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
         """COR as a function of speed [m/s] of the sphere and the plate of one impact."""
@@ -235,51 +201,21 @@ class TableLookup:
             value = at(table, speed, *known)
             if value != value:  # NaN; half the time of a call of isnan
                 one = replace(impacts, speed=scalars(speed=speed)[0])
-                return float(self._looked_up(one).outcome.restitution[0])
+                return self.restitutions(one).item()
             return value
 
         return restitution
 
-    def _changes(self, found: Outcome, psi: Array) -> Array:
-        changes = np.empty_like(psi)
-        slides.changes(self.slides, found, psi, changes)
-        return changes
-
-    def _looked_up(self, impacts: Impacts) -> _LookedUp:
-        v, r, h = impacts.speed, impacts.radius, impacts.thickness
-        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
-        found, root = outcome.empty(v.size), np.empty(v.size)
-        flags, integrated = np.zeros(v.size, dtype=np.int64), np.zeros(v.size, dtype=np.bool_)
-        lam, y = found.inelasticity, found.yield_ratio
-        if lookup.outcomes(self.packed, v, r, h, mass, found, root):
-            lam, y = lam.copy(), y.copy()
-            beyond = np.flatnonzero(np.isnan(found.restitution))
-            part = impacts.part(beyond)
-            units = self.bodies.numbers(self.bodies.impact(part))
-            lam[beyond], y[beyond] = units.inelasticity, units.yield_ratio
-            with renumbered(beyond, part.mass):
-                if self.border.outside == "solve":
-                    refuse_rates(self.bodies, part, units)
-                looked, flags[beyond] = self.border.look_up(self.bodies.data, self.packed, units)
-            for values, completed in zip(found, looked, strict=True):
-                values[beyond] = completed
-            integrated[beyond] = self.border.outside == "solve"
-        time = self.bodies.constants.time * r / root
-        return _LookedUp(found, flags, (lam, y), time, integrated)
-
-    def _rebound(self, impacts: Impacts, known: _LookedUp) -> Rebound:
-        found = known.outcome, known.flags
-        return rebound(self.bodies, impacts, known.time, known.unclamped, *found, interpolated=True)
+    def _shares(self, impacts: Impacts) -> Array:
+        """Masses over those of solid spheres."""
+        return NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
 
 
-class _LookedUp(NamedTuple):
-    """Outcomes of impacts, and what belongs to them."""
-
-    outcome: Outcome
-    flags: Integers
-    unclamped: tuple[Array, Array]  # inelasticity and yield ratio before clamping
-    time: Array  # T_H [s]
-    integrated: Mask  # those beyond the table
+def by_method(tabulated: TableLookup, method: str) -> Backend:
+    """Table or solver, as the user says."""
+    if method not in ("table", "solve"):
+        raise ArgumentError("method", method, "must be 'table' or 'solve'")
+    return tabulated if method == "table" else Solver(tabulated.bodies)
 
 
 @functools.cache

@@ -3,37 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array, Integers, Mask, Places
+from contactlaw._arrays import Array, Integers, Places
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching
-from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
+from contactlaw.answers.derivatives import FINE
+from contactlaw.fitting import search
+from contactlaw.fitting.errors import chi_squared, covariance_of, model_errors, student
+from contactlaw.fitting.identify import EXCLUDED, UnidentifiedError, check, check_strengths, profile
+from contactlaw.fitting.measurements import NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
-from contactlaw.fitting.predictions import COARSE, Predictor, Values
-from contactlaw.fitting.unknowns import OTHER_STRENGTH, Parameter, parameters, setting, with_loss_factors
+from contactlaw.fitting.predictions import COARSE, Predictor, Values, impacts
+from contactlaw.fitting.search import Basin
+from contactlaw.fitting.unknowns import parameters, with_guesses
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.record.file import Record
-from contactlaw.table.cache import progress_bar
 
-_ROUNDS = 2  # rounds to estimate errors that were not given; a third changes them by less than 1 %
-_LEAST_FREEDOM = 0.5  # least degrees of freedom of a kind of values, so that it has a finite error
-_SETTLED = 6  # rounds until errors of the data and leverages, which depend on each other, agree
 _LEAST = 1e-6  # smallest relative standard error; data without scatter would get zero
 _POOLED = 4  # a kind with fewer values gets the scatter of all kinds
-_TRIALS = 40  # trial strengths, down to the first that the data exclude
-_EXCLUDED = 4.0  # rise of the sum of squares that excludes values: two standard errors
-_CURVED = 0.02  # standard error of a logarithm; over a smaller one the model is linear
-_LEAST_RISE = 2.0  # least rise of the sum of squares at two standard errors; a linear model has 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +91,9 @@ class Fit:
     thickness: Array
     data: Measurements
     law: str
-    _state: _State = field(repr=False)
+    _predictor: Predictor = field(repr=False)
+    _x: Array = field(repr=False)
+    _covariance: Array = field(repr=False)  # of the logarithms of all parameters
 
     def curve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, sliding_speed: ArrayLike | None = None
@@ -119,22 +117,18 @@ class Fit:
         dict of str to ndarray
             Standard errors of the kinds that were measured, from the errors of all parameters.
         """
-        state = self._state
         inputs: dict[str, Any] = {"speed": speed, "radius": radius, "thickness": thickness}
-        friction = state.predictor.setting(state.at).friction
+        friction = self._predictor.setting(self._x).friction
         if sliding_speed is not None and friction is not None:
             inputs |= {"sliding_speed": sliding_speed, "friction": np.mean(friction)}
         kinds = [name for name in self.residuals if name in NORMAL or "friction" in inputs]
-        if not kinds:
-            reason = "has to be given, since only oblique kinds were measured"
-            raise ArgumentError("sliding_speed", None, reason)
+        varied = [replace(p, centre=x) for p, x in zip(self._predictor.parameters, np.exp(self._x), strict=True)]
         data = Measurements(**inputs, **dict.fromkeys(kinds, 0.5))
-        varied = [replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)]
-        along = Predictor(self.pair, state.predictor.law, data, varied)
-        here = along.predicted(state.at)
-        slopes = along.derivatives(state.at, here)
-        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance, slopes))
-        return along.flagged(state.at), {name: spread[rows] for name, rows in along.values.by_kind().items()}
+        along = replace(self._predictor, pair=self.pair, data=data, parameters=varied)
+        hit = impacts(along.setting(self._x), along.law)
+        slopes = along.derivatives(self._x, along.predicted(self._x)[0])
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, self._covariance, slopes))
+        return hit, {name: spread[rows] for name, rows in along.values.by_kind().items()}
 
 
 def fit(
@@ -203,254 +197,107 @@ def fit(
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     unknown, priors = (unknown,) if isinstance(unknown, str) else tuple(unknown), priors or {}
     data = Measurements.of(data, {*unknown} - {*priors}, pair.sphere.density)
-    given, pair = pair, with_loss_factors(pair, data, unknown)
-    varied = parameters(pair, data, unknown, priors, given)
-    predictor = Predictor(pair, _law(pair, law, varied), data, varied)
-    descent = search.Descent(predictor, to_the_lowest=True)
-    ended = _least_squares(predictor, descent)
+    varied = parameters(pair, data, unknown, priors)
+    pair = with_guesses(pair, data, varied)
+    predictor = Predictor(pair, law_of(pair, law), data, varied)
+    if predictor.values.value.size < (free := sum(one.is_free for one in varied)):
+        many = f"{predictor.values.value.size} measured values cannot determine {free} unknowns"
+        raise ArgumentError("unknown", None, f"{many}: leave one out, give priors, or measure more")
+    found, extremes = search.basins(predictor)
     try:
-        return _result(predictor, descent, ended)
-    except identify.UnidentifiedError as error:
-        raise explained(error, predictor, ended.basins[0].at) from None
+        return _result(predictor, *_least_squares(predictor, found))
+    except UnidentifiedError as error:
+        raise explained(error, predictor, extremes) from None
 
 
-def _law(pair: Pair, law: str | Law, parameters: list[Parameter]) -> Law:
-    """Resolve the law; for that, a body whose strength is unknown has a guess of it."""
-    strengths = [one for one in parameters if one.is_strength]
-    if strengths:
-        guesses = np.array([1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths])
-        one_row = Measurements(speed=1.0, radius=1.0, thickness=1.0, restitution=0.5)
-        pair = setting(pair, one_row, strengths, guesses).pair
-    return law_of(pair, law)
+def _least_squares(predictor: Predictor, found: list[Basin]) -> tuple[list[Basin], Array, float]:
+    """Minimum of each basin, the best first, errors of the values, and their degrees of freedom.
 
-
-class _LeastSquares(NamedTuple):
-    """Result of least squares."""
-
-    basins: list[search.Basin]  # the best first
-    error: Array  # of the values
-    freedom: float  # degrees of freedom; inf where all errors were given
-
-
-def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquares:
-    """Find the minimum of each basin, and estimate the errors that the data lack."""
-    values = predictor.values
-    free = sum(one.is_free for one in predictor.parameters)
-    if values.value.size < free:
-        many = f"{values.value.size} measured values cannot determine {free} unknowns"
-        remedy = "leave one out, give priors, or measure more"
-        raise ArgumentError("unknown", None, f"{many}: {remedy}")
-    error, freedom, rounds = search.guessed(values), math.inf, 0
-    if np.isnan(values.error).any():
-        freedom, rounds = 0.0, _ROUNDS if values.value.size > free else 0
-    basins = search.basins(predictor)
-    nearby = search.Descent(replace(predictor, fineness=COARSE))
-    for n in range(rounds + 1):
-        follow = descent if n == rounds else nearby
-        if n > 0:
-            error, freedom = _found_errors(predictor, follow, basins[0].at, error)
-        basins = search.distinct([follow(one.at, error) for one in progress_bar(iter(basins), len(basins))])
-    return _LeastSquares(basins, error, freedom)
-
-
-def _found_errors(predictor: Predictor, descent: search.Descent, at: Array, error: Array) -> tuple[Array, float]:
-    """Errors of the values, from their scatter where they were not given; degrees of freedom.
-
-    Each free parameter costs one degree of freedom, of the kinds of values that determine it; one
-    with a prior costs the share that they determine. Costs and errors depend on each other.
+    These are inf where all errors were given. Errors that the data lack are found from the scatter
+    in two rounds; a third changes them by less than 1 %.
     """
-    values = predictor.values
-    fitted, slopes = descent.predicted(np.log(at)), descent.slopes(np.log(at))
-    off = values.value / fitted - 1.0
-    left = np.ones_like(off)
-    for _ in range(_SETTLED):
-        left = 1.0 - errors.Linear.of(predictor, slopes, error).leverages()
-        error = error.copy()
-        for part, pool, freedom in _pools(values, left):
-            error[part] = max(math.sqrt(float(np.sum(off[pool] ** 2)) / freedom), _LEAST) * fitted[part]
-    return error, float(left.sum())
+    error, freedom, stages = search.guessed(predictor.values), math.inf, [FINE]
+    if np.isnan(predictor.values.error).any():
+        freedom, stages = error.size - sum(one.is_free for one in predictor.parameters), [COARSE, COARSE, FINE]
+    for n, fineness in enumerate(stages):
+        if n and freedom:
+            error = _scatter(predictor.values, found[0], error, freedom)
+        nearby = replace(predictor, fineness=fineness)
+        found = search.lowest([search.descend(nearby, one.x, error) for one in found])
+    return found, error, freedom
 
 
-def _pools(values: Values, left: Array) -> Iterator[tuple[Mask, Mask, float]]:
-    """Values that share one unknown error, those from whose scatter it is found, and the freedom of these.
+def _scatter(values: Values, best: Basin, error: Array, freedom: float) -> Array:
+    """Errors of the values, from their scatter where they were not given.
 
-    Both are the values of one kind. Kinds with few values take the scatter of all kinds. Of each
-    value `left` is what the parameters leave of its degree of freedom.
+    Values of one kind share one relative error; kinds with few values take the scatter of all.
     """
-    unknown = np.isnan(values.error)
-    counts = np.bincount(values.kind[unknown], minlength=len(KINDS))
-    group = np.where(counts[values.kind] < _POOLED, -1, values.kind)
-    for n in np.unique(group[unknown]):
-        part = unknown & (group == n)
-        pool = unknown if n < 0 else part
-        yield part, pool, max(float(left[pool].sum()), _LEAST_FREEDOM)
+    off, error, estimated = values.value / best.fitted - 1.0, error.copy(), np.isnan(values.error)
+    for kind in np.unique(values.kind[estimated]):
+        part = estimated & (values.kind == kind)
+        variance = np.mean(off[part if part.sum() >= _POOLED else estimated] ** 2) * error.size / freedom
+        error[part] = max(math.sqrt(variance), _LEAST) * best.fitted[part]
+    return error
 
 
-class _State(NamedTuple):
-    """What `Fit.curve` needs of a fit."""
+def _result(predictor: Predictor, found: list[Basin], error: Array, freedom: float) -> Fit:
+    """State the values of the best basin with their errors.
 
-    predictor: Predictor
-    at: Array
-    covariance: Array  # of the logarithms of all parameters
-
-
-def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares) -> Fit:
-    at, error, freedom = ended.basins[0].at, ended.error, ended.freedom
-    values = predictor.values
+    Raises
+    ------
+    UnidentifiedError
+    """
+    best, values = found[0], predictor.values
     names = tuple(one.name for one in predictor.parameters if one.is_unknown)
-    fitted = descent.predicted(np.log(at))
-    hit = predictor.flagged(at)
-    model = errors.model_covariance(predictor, at, hit)
-    slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
-    linear = errors.Linear.of(predictor, slopes, error)
-    found = linear.covariances(error, model)
     unknowns = slice(len(names))  # the unknowns come first
-    model_error = None if model is None else np.abs(model.size)
+    bodies = predictor.setting(best.x)
+    hit = impacts(bodies, predictor.law)
+    shared = model_errors(predictor, best.x, hit)
+    model = np.linalg.norm(shared, axis=1)
     # with as many values as unknowns there is no scatter: only the model's errors are known
-    doubt = error if freedom > 0.0 or model_error is None else model_error
-    _check_strengths(predictor, at, fitted, doubt, model_error)
-    widths = np.zeros(at.size)
-    if freedom > 0.0:
-        pools = [(part, freed) for part, _, freed in _pools(values, 1.0 - linear.leverages())]
-        widths = errors.student(linear.freedoms(pools))
-    found = found.widened(widths)
-    used = found.statistical if freedom > 0.0 else found.total
-    identify.check(names, at[unknowns], used[unknowns, unknowns])
-    found = found.widened(_nonlinearity_factors(predictor, at, fitted, used, doubt))
-    spread = np.sqrt(np.diag(found.total))
-    others = _alternatives(predictor, ended, spread, model)
-    off = values.value / fitted - 1.0
-    relative = None if model_error is None else model_error / fitted
-    kinds = values.by_kind()
-    bodies = predictor.setting(at)
+    doubt = error if freedom or not model.any() else model
+    check_strengths(predictor, best, doubt, model)
+    linear, scaled = covariance_of(best.slopes), np.pad(shared / error[:, None], ((0, best.x.size), (0, 0)))
+    gain = linear @ best.slopes.T @ scaled
+    of_model, of_data = gain @ gain.T, linear * (student(freedom) ** 2 if freedom else 0.0)
+    if len(names) > 1 or not freedom:
+        check(names, best.x, of_data if freedom else of_model)
+    if freedom:
+        widths = profile(predictor, best, linear, error)
+        of_data *= np.outer(widths, widths)
+        check(names, best.x, of_data)
+    covariance = of_data + of_model
+    spread = np.sqrt(np.diag(covariance))
+    weights = np.append(doubt / error, np.ones(best.x.size))
+    squares = [chi_squared(one.off, weights, scaled * (freedom > 0.0)) for one in found]
+    alike = [one.x for one, square in zip(found, squares, strict=True) if square < squares[0] + EXCLUDED]
+    others = [np.exp(x) for x in alike if (np.abs(x - best.x) > 2.0 * spread).any()]
+    off, kinds = values.value / best.fitted - 1.0, values.by_kind()
 
     def named(sizes: Array) -> dict[str, float]:
         return dict(zip(names, sizes[unknowns].tolist(), strict=True))
 
+    at = np.exp(best.x)
+    remarks = notes(predictor, best, hit, error, freedom, model / best.fitted, covariance)
     return Fit(
         unknown=names,
         values=named(at),
         errors=named(at * spread),
-        statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
-        model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(found.model)))),
-        correlation=(found.total / np.outer(spread, spread))[unknowns, unknowns],
+        statistical_errors=named(at * np.sqrt(np.diag(of_data))),
+        model_errors=named(at * (np.sqrt(np.diag(of_model)) if model.any() else np.inf)),
+        correlation=(covariance / np.outer(spread, spread))[unknowns, unknowns],
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
         flags=np.asarray(hit.flags),
-        alternatives=tuple(named(other) for other in others),
-        notes=(
-            *notes(predictor, at, hit, off, error / fitted, freedom, relative, found.total),
-            *(alternative_note(names, other) for other in others),
-        ),
+        alternatives=tuple(map(named, others)),
+        notes=(*remarks, *(alternative_note(named(other)) for other in others)),
         pair=bodies.pair,
         radius=bodies.radius,
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
-        _state=_State(predictor, at, found.total),
-    )
-
-
-def _alternatives(
-    predictor: Predictor, ended: _LeastSquares, spread: Array, model: errors.ModelCovariance | None
-) -> list[Array]:
-    """Values in other basins that fit as well, within the errors of data and model."""
-    best, *others = ended.basins
-    error = ended.error
-    if not ended.freedom > 0.0:  # a fit through all values has no errors but the model's
-        error, model = (error if model is None else np.abs(model.size)), None
-
-    def squares(one: search.Basin) -> float:
-        own = _squares(predictor, predictor.predicted(one.at), ended.error)
-        off = predictor.predicted(one.at) - predictor.values.value
-        whole = float(((off / error) ** 2).sum()) if model is None else model.squares(off, error)
-        return one.squares - own + whole
-
-    least = squares(best)
-    return [
-        one.at
-        for one in others
-        if squares(one) < least + _EXCLUDED and (np.abs(np.log(one.at / best.at)) > 2.0 * spread).any()
-    ]
-
-
-def _squares(predictor: Predictor, values: Array, error: Array) -> float:
-    off = (values - predictor.values.value) / error
-    return float(off @ off)
-
-
-def _nonlinearity_factors(predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array) -> Array:
-    """Factors that widen standard errors where the model is not linear in a parameter.
-
-    Two standard errors off, with the other parameters following, the sum of squares rises by 4 if
-    the model is linear. It does not rise as much for thick plates, whose COR depends ever less on
-    thickness: a thickness that was found too small has too small an error. A value that the data
-    bound on one side only, such as a thickness that may be any larger, is refused.
-
-    Raises
-    ------
-    UnidentifiedError
-    """
-    low, high = search.limits(predictor)
-    factors = np.ones(at.size)
-    priors = np.array([one.prior for one in predictor.parameters])
-    for n, one in enumerate(predictor.parameters):
-        if not one.is_free:
-            continue
-        shift = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
-        for sign, words in ((1.0, "above"), (-1.0, "below")):
-            there = np.clip(at * np.exp(sign * shift), low, high)
-            off = (predictor.at_trials(there[None])[0] - fitted) / error
-            pulled = np.log(there / at) / priors
-            square = float(off @ off + pulled @ pulled)
-            if shift[n] > 2.0 * _CURVED:
-                factors[n] = max(factors[n], math.sqrt(4.0 / max(square, _LEAST_RISE)))
-            if square < _LEAST_RISE:
-                end = float(at[n] * math.exp(-sign * shift[n]))
-                raise identify.UnidentifiedError(
-                    f"the data bound {one.name} on one side only: {words} "
-                    f"{f'{end:.3g} {one.unknown.unit}'.rstrip()}. Measure another quantity, or "
-                    f"other {'angles' if one.name == 'friction' else 'speeds'}",
-                    (one.name,),
-                )
-    return factors
-
-
-def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array, model: Array | None) -> None:
-    """Refuse a strength or a friction that might as well be any larger one.
-
-    Raises
-    ------
-    UnidentifiedError
-    """
-    low, high = search.limits(predictor)
-    for n, one in enumerate(predictor.parameters):
-        if not (one.is_free and (one.is_strength or one.name == "friction")):
-            continue
-        trials = np.tile(at, (_TRIALS, 1))
-        trials[:, n] = np.geomspace(high[n], low[n], _TRIALS)
-        largest = predictor.at_trials(trials[:1])[0]
-        # in a contact that sticks, friction changes less than the model's errors
-        doubt = error if one.is_strength or model is None else np.hypot(error, model)
-        if _squares(predictor, largest, doubt) < _squares(predictor, fitted, doubt) + _EXCLUDED:
-            most = _squares(predictor, largest, error) + _EXCLUDED
-            squares = (_squares(predictor, predictor.at_trials(trial[None])[0], error) for trial in trials)
-            excluded = (trial[n] for trial, square in zip(trials, squares, strict=True) if square > most)
-            why = _any_above(predictor, one, next(excluded, None))
-            raise identify.UnidentifiedError(f"the data do not determine {one.name}: {why}", (one.name,))
-
-
-def _any_above(predictor: Predictor, one: Parameter, least: float | None) -> str:
-    """Say above which strength or friction the data exclude none; None: they exclude no value at all."""
-    if one.name == "friction":
-        if least is None:
-            return "any fits as well. Measure at other angles"
-        stick = "fits as well, since the beads stick. Measure at larger angles from the normal"
-        return f"any above {least:.2g} or so {stick}"
-    if least is None:
-        return f"law {predictor.law.family!r} does not depend on it with these bodies"
-    return (
-        f"any above {least / 1e6:.3g} MPa or so fits as well, since the body does not yield enough. "
-        f"Measure faster impacts, or ask for {OTHER_STRENGTH[one.name]} if that body yields"
+        _predictor=predictor,
+        _x=best.x,
+        _covariance=covariance,
     )

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw.fitting.drops import NAMES, rebounds_of
 from contactlaw.physical import flight
@@ -134,11 +134,26 @@ class Measurements:
         if flat["speed"].size == 0:
             raise ArgumentError("data", None, "got no rebound, at least one is needed")
         check(**sizes)
-        _resolve_angle(flat)
+        if "angle" in flat:
+            if "sliding_speed" in flat:
+                raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
+            angle = flat.pop("angle")
+            within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
+            flat["sliding_speed"] = flat["speed"] * np.sin(np.radians(angle))
+            flat["speed"] = flat["speed"] * np.cos(np.radians(angle))
+            check(speed=flat["speed"])
+        elif "sliding_speed" in flat:
+            flat["sliding_speed"] = np.abs(flat["sliding_speed"])
         for name, kind in KINDS.items():
             _check_kind(name, kind, flat)
-            if name in OBLIQUE and name in flat:
-                _check_sliding(name, flat)
+            if name in OBLIQUE and name in flat:  # friction did nothing to beads that did not slide
+                if "sliding_speed" not in flat:
+                    reason = f"has to be given with {name} [deg], from the normal; or sliding_speed [m/s]"
+                    raise ArgumentError("angle", None, reason)
+                if (still := np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)).any():
+                    n = int(np.argmax(still))
+                    reason = "its bead came without sliding: leave this value out, or state the angle"
+                    raise ArgumentError(name, flat[name][n], reason, n)
         object.__setattr__(self, "angle", None)
         for name, values in flat.items():
             values.flags.writeable = False
@@ -147,6 +162,11 @@ class Measurements:
     def __len__(self) -> int:
         """Count the rebounds."""
         return int(np.size(self.speed))
+
+    def part(self, rows: Collection[int] | Mask) -> Measurements:
+        """Keep some of the rebounds."""
+        given = {name: values[rows] for name, values in vars(self).items() if values is not None}
+        return Measurements(**given)
 
     def rebound(self, n: int) -> str:
         """Name a rebound by its number, and by its line if that is known."""
@@ -210,32 +230,6 @@ def _missing(values: ArrayLike) -> ArrayLike:
     if isinstance(values, list | tuple) and any(value is None for value in values):
         return [np.nan if value is None else value for value in values]
     return values
-
-
-def _resolve_angle(flat: dict[str, Array]) -> None:
-    """Split the speeds of beads that come at angles into their normal and tangential parts."""
-    if "angle" in flat:
-        if "sliding_speed" in flat:
-            raise ArgumentError("angle", None, "give angles or sliding speeds, not both")
-        angle, speed = flat.pop("angle"), flat["speed"]
-        within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
-        flat["speed"] = speed * np.cos(np.radians(angle))
-        flat["sliding_speed"] = speed * np.sin(np.radians(angle))
-        check(speed=flat["speed"])
-    elif "sliding_speed" in flat:
-        flat["sliding_speed"] = np.abs(flat["sliding_speed"])
-
-
-def _check_sliding(name: str, flat: dict[str, Array]) -> None:
-    """Refuse what friction did to beads that did not slide, or nobody knows how fast."""
-    if "sliding_speed" not in flat:
-        reason = f"has to be given with {name} [deg], from the normal; or sliding_speed [m/s]"
-        raise ArgumentError("angle", None, reason)
-    still = np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)
-    if still.any():
-        n = int(np.argmax(still))
-        reason = "its bead came without sliding: leave this value out, or state the angle"
-        raise ArgumentError(name, flat[name][n], reason, n)
 
 
 def _check_kind(name: str, kind: Measurable, flat: dict[str, Array]) -> None:

@@ -1,43 +1,29 @@
 """Remarks on a fit, in words; some name signs of mistaken units, materials or measurements."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from contactlaw._arrays import Array, Places
-from contactlaw._readable import percent, rounded, scale_of
-from contactlaw.fitting import search
+from contactlaw._arrays import Array
+from contactlaw._readable import in_unit, percent, rounded
 from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor
+from contactlaw.fitting.search import Basin
 from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
-from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import count_flags, explain
 
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
-_SLIDES = 1.0 - 1e-6  # share of the friction at which an impulse is that of full sliding
-_LISTED = 8  # rows or runs of rows that are listed; more are only counted
-_SIGNIFICANCE = 1e-3  # a trend is noted if scatter alone gives it in fewer than 1 of 1000 fits
-# Residuals are cut to 3 standard errors or medians, so that one mistake makes no trend.
-_OUTLIER = 3.0
 # Factors by which a value may differ from the one given: a strength depends on the temper. A loss
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
 
 
 def notes(
-    predictor: Predictor,
-    at: Array,
-    hit: Rebound,
-    off: Array,
-    standard: Array,
-    freedom: float,
-    model: Array | None,
-    covariance: Array,
+    predictor: Predictor, best: Basin, hit: Rebound, error: Array, freedom: float, model: Array, covariance: Array
 ) -> Iterator[str]:
     """Say what is unusual about a fit, and what makes it doubtful.
 
@@ -45,58 +31,43 @@ def notes(
     ----------
     predictor : Predictor
         Model and parameters of the fit.
-    at : ndarray (p,)
+    best : Basin
         Values found.
     hit : Rebound
         Fitted rebounds.
-    off : ndarray (m,)
-        Measured over fitted values, minus 1.
-    standard : ndarray (m,)
-        Standard errors of the values, as given or found, relative to the fitted values.
+    error : ndarray (m,)
+        Standard errors of the values, as given or found.
     freedom : float
         Degrees of freedom; inf where all errors were given.
-    model : ndarray (m,) or None
-        Relative errors of the model; None where they are not known.
+    model : ndarray (m,)
+        Errors of the model, relative to the fitted values; 0 if they are not known.
     covariance : ndarray (p, p)
         Covariance of the parameters' logarithms.
     """
-    if freedom <= 0.0:
-        yield ("as many unknowns as values, and no errors of these: the errors stated are those of the model alone")
-    else:
-        yield from _found_errors(predictor, standard)
-    yield from _misfits(predictor, off, np.hypot(standard, 0.0 if model is None else model), freedom)
-    if model is None:
+    parameters, (low, high) = predictor.parameters, predictor.limits
+    off = predictor.values.value / best.fitted - 1.0
+    if not freedom:
+        yield "as many unknowns as values, and no errors of these: the errors stated are those of the model alone"
+    yield from _misfits(predictor, off, np.hypot(error / best.fitted, model), freedom)
+    if not model.any():
         yield (
             f"how far law {predictor.law.family!r} is from finite elements is not known: the "
             "errors stated are those of the data alone"
         )
-    low, high = search.limits(predictor)
-    at_end = np.flatnonzero((at < low * (1.0 + _AT_BOUND)) | (at > high * (1.0 - _AT_BOUND)))
-    for n in at_end:
-        yield f"{predictor.parameters[n].name} is at an end of the range searched, {low[n]:.3g} to {high[n]:.3g}"
-    if any(one.is_strength for one in predictor.parameters):
+    for n in np.flatnonzero((best.x < low + _AT_BOUND) | (best.x > high - _AT_BOUND)):
+        ends = f"{math.exp(low[n]):.3g} to {math.exp(high[n]):.3g}"
+        yield f"{parameters[n].unknown.title} is at an end of the range searched, {ends}"
+    if any(one.is_strength for one in parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
-    friction = predictor.setting(at).friction
-    if isinstance(hit, ObliqueRebound) and friction is not None:
-        sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
-        yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
-    flags = np.asarray(hit.flags)
-    for flag in count_flags(flags):
-        (words,) = explain(flag)
-        yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
     yield from _above_one(predictor)
-    if at_end.size:
-        yield from _outside(predictor, at)
-    yield from _far(predictor, at, covariance)
-    yield from _trends(predictor, off, standard, model)
+    yield from _far(predictor, best.x, covariance)
 
 
-def alternative_note(names: tuple[str, ...], values: Array) -> str:
+def alternative_note(values: Mapping[str, float]) -> str:
     """Say that other values fit as well."""
     what = ", ".join(
-        f"{name} {value:.4g} {UNKNOWNS[name].unit}".rstrip()
-        for name, value in zip(names, values.tolist(), strict=False)
+        f"{UNKNOWNS[name].title} {in_unit(value, UNKNOWNS[name].unit, 4).rstrip()}" for name, value in values.items()
     )
     return (
         f"the data are fitted as well by {what}: the stated errors do not reach there. Measure "
@@ -104,146 +75,61 @@ def alternative_note(names: tuple[str, ...], values: Array) -> str:
     )
 
 
-def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> UnidentifiedError:
-    """Add to a refusal which values are attainable, or which of them cannot be."""
-    (message, *_) = [*_outside(predictor, at), refused.reason]
-    message = ". ".join([message, *_above_one(predictor)])
-    return UnidentifiedError(message, refused.unknown, refused.known)
-
-
-def listed(rows: Places) -> str:
-    """Write indices of rebounds; of three and more in a row only the ends.
-
-    Examples
-    --------
-    >>> listed(np.array([0, 1, 2, 5, 7, 8]))
-    '0 to 2, 5, 7, 8'
-    """
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1)
-    parts = []
-    for run in runs:
-        parts += [f"{run[0]} to {run[-1]}"] if run.size > 2 else [str(row) for row in run]
-    more = len(parts) - _LISTED
-    return ", ".join(parts[:_LISTED]) + (f" and {more} more" if more > 0 else "")
-
-
-def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
-    for name, of_kind in predictor.values.by_kind().items():
-        of_kind = of_kind & np.isnan(predictor.values.error)
-        if of_kind.any():
-            share = float(standard[of_kind][0])
-            yield (
-                f"{name}: no errors were given; one of {percent(share)} was found from the "
-                f"scatter of {np.count_nonzero(of_kind)} values"
-            )
+def explained(refused: UnidentifiedError, predictor: Predictor, extremes: Array) -> UnidentifiedError:
+    """Say what is attainable if no value of the unknowns gives any of the data; else why they are refused."""
+    values, unknown = predictor.values, " and ".join(one.name for one in predictor.parameters if one.is_unknown)
+    grid = np.vstack([predictor.predicted(x) for x in extremes])
+    low, high = np.nanmin(grid, axis=0), np.nanmax(grid, axis=0)
+    near = np.clip(values.value, low, high)
+    margin = 2.0 * np.nan_to_num(values.error) + 1e-6 * near
+    message = refused.reason
+    # else the law does not depend on the unknowns, or some value is attainable
+    if (high > 1.001 * low).any() and (np.abs(values.value - near) > margin).all():
+        n = int(np.argmax(np.abs(values.value / near - 1.0)))
+        kind, row = [*KINDS.values()][values.kind[n]], values.row[n]
+        value, least, most = (one[n] - kind.shift for one in (values.value, low, high))
+        speed, unit = rounded(np.asarray(predictor.data.speed)[row], 3), kind.unit.strip("-")
+        message = f"no {unknown} gives the {kind.title} {value:.4g} of {predictor.data.rebound(row)}, at {speed} m/s: "
+        message += f"attainable is from {least * (least > 1e-3 * most):.3g} to {most:.3g} {unit}".rstrip()
+        if unknown in OTHER_STRENGTH:
+            message += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
+    return UnidentifiedError(". ".join([message, *_above_one(predictor)]), refused.unknown, refused.known)
 
 
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
-    values = predictor.values
-    given = np.isfinite(values.error)
-    free = max(1, sum(one.is_free for one in predictor.parameters))
-    if np.count_nonzero(given) > free:
-        ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
-        if ratio > _MISFIT:
-            yield (
-                f"the values are off by {rounded(ratio)} times what their errors and the model's "
-                "allow: another number may be wrong, or the errors too small"
-            )
-    if freedom < 3.0:
-        return
-    for n in np.flatnonzero(np.abs(off) > _FAR * expected):
-        name = list(KINDS)[values.kind[n]]
-        sign = "+" if off[n] > 0.0 else ""
+    values, deviations = predictor.values, off / expected
+    given = deviations[np.isfinite(values.error)]
+    if given.size and (ratio := math.sqrt(np.mean(given**2))) > _MISFIT:
         yield (
-            f"{name} of {predictor.data.rebound(values.row[n])} is {sign}{percent(off[n])} off the "
-            f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
+            f"the values are off by {rounded(ratio)} times what their errors and the model's "
+            "allow: another number may be wrong, or the errors too small"
+        )
+    for n in np.flatnonzero(np.abs(deviations) > _FAR) if freedom >= 3.0 else ():
+        name = [*KINDS.values()][values.kind[n]].title
+        yield (
+            f"{name} of {predictor.data.rebound(values.row[n])} is {'+' * bool(off[n] > 0.0)}{percent(off[n])} off the "
+            f"fit, {rounded(abs(deviations[n]))} standard errors: a mistake?"
         )
 
 
 def _above_one(predictor: Predictor) -> Iterator[str]:
     for name in ("restitution", "tangential_restitution"):
-        rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
-        if rows.size:
-            which = predictor.data.rebound(rows[0]) if rows.size == 1 else f"rebounds {listed(rows)}"
-            yield f"{name} of {which} is above 1: no impact gains energy, a mistake?"
+        for n in np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0).tolist():
+            which = f"{KINDS[name].title} of {predictor.data.rebound(n)}"
+            yield f"{which} is above 1: no impact gains energy, a mistake?"
 
 
-def _outside(predictor: Predictor, at: Array) -> Iterator[str]:
-    """Say so if no value of the unknowns gives any of the data, and what is attainable."""
-    values = predictor.values
-    grid = np.vstack([search.attainable(predictor), predictor.at_trials(at[None])])
-    low = np.where(grid == 0.0, np.inf, grid).min(axis=0)  # 0: the model has no answer there
-    high = grid.max(axis=0)
-    changes = (high > 1.001 * low).any()  # else the law does not depend on the unknowns
-    near = np.clip(values.value, low, high)
-    margin = 2.0 * np.nan_to_num(values.error) + 1e-6 * near
-    if not (changes and (np.abs(values.value - near) > margin).all()):
-        return
-    n = int(np.argmax(np.abs(values.value / near - 1.0)))
-    name, kind = list(KINDS.items())[values.kind[n]]
-    row, unit = values.row[n], kind.unit.strip("-")
-    speed = float(np.asarray(predictor.data.speed)[row])
-    value, least, most = (float(one[n]) - kind.shift for one in (values.value, low, high))
-    least = least if abs(least) > 1e-3 * most else 0.0
-    unknown = " and ".join(one.name for one in predictor.parameters if one.is_unknown)
-    ends = f"from {least:.3g} to {most:.3g} {unit}".rstrip()
-    ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
-    if unknown in OTHER_STRENGTH:
-        ends += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
-    which = f"{name} {f'{value:.4g} {unit}'.rstrip()} of {predictor.data.rebound(row)}"
-    yield f"no {unknown} gives the {which}, at {rounded(speed, 3)} m/s: attainable is {ends}"
-
-
-def _far(predictor: Predictor, at: Array, covariance: Array) -> Iterator[str]:
+def _far(predictor: Predictor, x: Array, covariance: Array) -> Iterator[str]:
     """Name values that, with two standard errors, are far from those given."""
     for n, one in enumerate(predictor.parameters):
         most = _FACTORS.get(one.unknown.field, math.inf)
-        ratio = at[n] / one.centre  # NaN if none was given
+        ratio = math.exp(x[n]) / one.centre  # NaN if none was given
         apart = abs(math.log(ratio)) - 2.0 * math.sqrt(covariance[n, n])
         if one.is_unknown and apart > math.log(most):
-            unit, size = scale_of(one.centre, one.unknown.unit)
             body = getattr(predictor.pair, one.unknown.body).name
             yield (
-                f"{one.name} is {rounded(max(ratio, 1.0 / ratio))} times "
-                f"{'above' if ratio > 1.0 else 'below'} that of {body}, {one.centre / size:.4g} "
-                f"{unit}: units or materials mistaken, or sphere and plate exchanged?"
+                f"{one.unknown.title} is {rounded(max(ratio, 1.0 / ratio))} times "
+                f"{'above' if ratio > 1.0 else 'below'} that of {body}, "
+                f"{in_unit(one.centre, one.unknown.unit, 4)}: units or materials mistaken, or sphere and plate "
+                "exchanged?"
             )
-
-
-def _trends(predictor: Predictor, off: Array, standard: Array, model: Array | None) -> Iterator[str]:
-    """Name kinds of values whose residuals trend with speed."""
-    speed = np.asarray(predictor.data.speed)[predictor.values.row]
-    for name, of_kind in predictor.values.by_kind().items():
-        order = np.flatnonzero(of_kind)
-        order = order[np.argsort(speed[order])]
-        thirds = np.array_split(order, 3)
-        if chance(thirds, off / standard) >= _SIGNIFICANCE:
-            continue
-        means = [float(off[third].mean()) for third in thirds]
-        slow, middle, fast = map(percent, means)
-        known = 0.0 if model is None else math.sqrt(np.mean(np.square(model[of_kind])))
-        why = "units, materials or the law may be wrong"
-        if max(map(abs, means)) < 2.0 * known:
-            why = f"errors of law {predictor.law.family!r} allow that, those of the data do not"
-        yield (
-            f"residuals of {name} trend with speed: {slow}, {middle} and {fast} in the slow, the "
-            f"middle and the fast third, by chance in fewer than 1 of 1000 fits: {why}"
-        )
-
-
-def chance(thirds: list[Places], off: Array) -> float:
-    """Chance that scatter alone moves the means of the thirds as far apart, by Fisher's test.
-
-    Parameters take up a part of any trend, so that the chance is rather too large.
-    """
-    from scipy.special import fdtrc
-
-    if min(third.size for third in thirds) < 2:
-        return 1.0
-    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[np.concatenate(thirds)]))))
-    parts = [np.clip(off[third], -most, most) for third in thirds]
-    middle = np.concatenate(parts).mean()
-    between = sum(float(part.size * (part.mean() - middle) ** 2) for part in parts)
-    within = sum(float(part.var() * part.size) for part in parts)
-    freedom = sum(part.size for part in parts) - 3
-    return float(fdtrc(2.0, freedom, 0.5 * between * freedom / max(within, 1e-9)))

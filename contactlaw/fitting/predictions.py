@@ -1,14 +1,12 @@
 """Predictions of the model for rebounds with trial values, and their derivatives.
 
 Every trial is integrated, with the law for its bodies: a table for each would take 0.7 s.
-Derivatives are differences, as in `contactlaw.answers.sensitivity`, of contact times and forces
-too.
+Parameters are varied by their logarithms, `x`.
 """
 
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -17,11 +15,11 @@ import numpy as np
 from contactlaw._arrays import Array, Mask, Places
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
+from contactlaw.answers.derivatives import FINE, solver
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.varied import FINE, solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
-from contactlaw.fitting.unknowns import Parameter, Setting, setting
+from contactlaw.fitting.unknowns import Parameter, Setting, bounds, setting
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check
 from contactlaw.physical.bodies import SphereOnPlate
@@ -33,7 +31,7 @@ from contactlaw.physical.rate import REACH, rates
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.strengths import Fineness
 
-_RTOL = 1e-9  # error allowed per step: 1e-8 of a contact time
+_RTOL = 1e-10  # error allowed per step, which derivatives need
 # Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
 # model's, and in the scan before, within 5e-2.
 COARSE = Fineness(1e-6, 6.0, 0.04, REACH, 5e-3)
@@ -66,7 +64,7 @@ class Values(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Predictor:
-    """The model as a function of the values of some parameters."""
+    """The model as a function of the logarithms `x` of some parameters."""
 
     pair: Pair
     law: Law
@@ -87,61 +85,48 @@ class Predictor:
                 parts.append((np.full(rows.size, n), rows, measured[rows] + kind.shift, known))
         return Values(*map(np.concatenate, zip(*parts, strict=True)))
 
-    def setting(self, values: Array) -> Setting:
-        """Bodies and sizes with these values."""
-        return setting(self.pair, self.data, self.parameters, values)
+    @functools.cached_property
+    def limits(self) -> Array:
+        """Logarithms of the least and the largest value of each parameter (2, p)."""
+        return np.log([bounds(one, self.pair, self.data) for one in self.parameters]).T
 
-    def flagged(self, values: Array) -> Rebound:
-        """Everything about the rebounds."""
-        return impacts(self.setting(values), self.law)
+    @functools.cached_property
+    def centres(self) -> Array:
+        """Logarithms of the values of parameters with a prior; 0 of the others."""
+        return np.log([1.0 if one.is_free else one.centre for one in self.parameters])
+
+    def setting(self, x: Array) -> Setting:
+        """Bodies and sizes with these values."""
+        return setting(self.pair, self.data, self.parameters, np.exp(x))
 
     def impacts(self, at: Setting) -> Rebound:
         """Everything about rebounds but the flags, which are those of slow ones."""
         return _integrated(solver(at.pair, self.law, rates(at.speed, at.radius), _RTOL, self.fineness), at)
 
     def predicted(self, *trials: Array) -> Array:
-        """Predict the measured values at one or several trials that differ only in sizes, one after the other."""
-        settings = [self.setting(values) for values in trials]
-        sizes: Any = zip(*(one[1:] for one in settings), strict=True)
-        joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
-        together = Setting(settings[0].pair, *joined)
-        columns = columns_of(self.impacts(together), together).reshape(len(KINDS), len(settings), -1)
-        return np.ravel(columns[self.values.kind, :, self.values.row].T)
+        """Predict the measured values (k, m) at k trials that differ only in sizes, not in materials.
 
-    def at_trials(self, trials: Array) -> Array:
-        """Predict the measured values at trials (k, p) that differ only in sizes, not in materials.
-
-        Where the model has no answer, as for impossible bodies or plates far too thin, predictions
-        are 0, far from any measured value.
+        They are NaN where the model has no answer, as for impossible bodies or plates far too thin.
         """
         try:
-            return self.predicted(*trials).reshape(len(trials), -1)
+            settings = [self.setting(x) for x in trials]
+            sizes: Any = zip(*(one[1:] for one in settings), strict=True)
+            joined: Any = (None if size[0] is None else np.concatenate(size) for size in sizes)
+            together = Setting(settings[0].pair, *joined)
+            columns = columns_of(self.impacts(together), together)
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
-                return np.zeros((1, self.values.value.size))
-            return np.concatenate([self.at_trials(one[None]) for one in trials])
+                return np.full((1, self.values.value.size), np.nan)
+            return np.concatenate([self.predicted(x) for x in trials])
+        return np.asarray(columns.reshape(len(KINDS), len(trials), -1)[self.values.kind, :, self.values.row].T)
 
-    def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
-        """Differentiate with respect to the logarithms of the values; a column for each.
-
-        Where derivatives are known from nearby, those that need another law are not computed anew.
-        """
-        columns = np.empty((here.size, values.size)) if known is None else known.copy()
-        for n, parameter in enumerate(self.parameters):
-            if known is None or not parameter.changes(self.law):
-                columns[:, n] = self._derivative(values, here, n)
+    def derivatives(self, x: Array, here: Array, moved: Places | None = None) -> Array:
+        """Differentiate the values with respect to x; a column for each parameter that is moved."""
+        columns = np.zeros((here.size, x.size))
+        for n in range(x.size) if moved is None else moved:
+            step = -_STEP if x[n] + _STEP > self.limits[1, n] else _STEP
+            columns[:, n] = (self.predicted(x + step * (np.arange(x.size) == n))[0] - here) / step
         return columns
-
-    def _derivative(self, values: Array, here: Array, n: int) -> Array:
-        try:
-            return self._difference(values, here, n, _STEP)
-        except (UnsolvedError, ValueError):  # at an edge of the model: a step to the other side
-            return self._difference(values, here, n, -_STEP)
-
-    def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:
-        moved = values.copy()
-        moved[n] *= math.exp(step)
-        return (self.predicted(moved) - here) / step
 
 
 def impacts(at: Setting, law: Law) -> Rebound:

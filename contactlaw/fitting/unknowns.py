@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.varied import Number, with_numbers
+from contactlaw.answers.derivatives import Number, with_numbers
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law
@@ -54,6 +54,8 @@ OTHER_STRENGTH = {"yield_strength": "plate_yield_strength", "plate_yield_strengt
 _RATIOS = (12.0, 1e4)
 _USUAL_LOSS = 0.05  # tan delta with which a search begins if none is given
 _SIZES = ("radius", "thickness", "friction")
+SLENDERNESS = (0.03, 6.0)  # R/H between which sizes are sought; a thinner plate gives no rebound to measure
+_RADII = np.array([1e-5, 0.05])  # [m] between which a radius is sought if no thickness is known
 _SEARCH_FACTOR = 5.0  # factor by which moduli and densities may differ from the values given
 
 
@@ -98,12 +100,8 @@ class Setting(NamedTuple):
     sliding_speed: Array | None = None
 
 
-def parameters(
-    pair: Pair, data: Measurements, unknown: str | Iterable[str], priors: Mapping[str, float], known: Pair | None = None
-) -> list[Parameter]:
+def parameters(pair: Pair, data: Measurements, unknown: Sequence[str], priors: Mapping[str, float]) -> list[Parameter]:
     """List the parameters: the unknowns first, then given values with priors.
-
-    Priors are of the values of the pair that the user gave.
 
     Raises
     ------
@@ -111,122 +109,111 @@ def parameters(
         A name that is not in `UNKNOWNS`, none or more than three unknowns, a size that is neither
         given nor unknown, or both; a prior that is not positive, or of something without a value.
     """
-    names = [unknown] if isinstance(unknown, str) else list(unknown)
-    for argument, given in (("unknown", names), ("priors", list(priors))):
-        for name in given:
+    for argument, names in (("unknown", unknown), ("priors", priors)):
+        for name in names:
             if name not in UNKNOWNS:
                 raise ArgumentError(argument, name, f"must be of {', '.join(UNKNOWNS)}")
-    if not 1 <= len(names) <= _MOST or len(set(names)) < len(names):
-        raise ArgumentError("unknown", names, f"must be one to {_MOST} different names")
-    if "friction" in [*names, *priors] and not data.is_oblique:
+    if not 1 <= len(unknown) <= _MOST or len(set(unknown)) < len(unknown):
+        raise ArgumentError("unknown", unknown, f"must be one to {_MOST} different names")
+    if "friction" in [*unknown, *priors] and not data.is_oblique:
         kinds = f"{', '.join(NORMAL)} do not depend on friction: measure one of {', '.join(OBLIQUE)}"
         raise ArgumentError("unknown", None, f"{kinds} at an angle")
     for size in _SIZES if data.is_oblique else _SIZES[:2]:
-        _check_size(size, getattr(data, size), size in names, size in priors)
+        _check_size(size, getattr(data, size), size in unknown, size in priors)
     found = []
-    for name in dict.fromkeys([*names, *priors]):
-        prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name]) if name in priors else math.inf
-        found.append(Parameter(name, centre(pair, data, UNKNOWNS[name]), prior, name in names))
+    for name in dict.fromkeys([*unknown, *priors]):
+        centre = _centre(pair, data, UNKNOWNS[name])
+        prior = _prior(name, centre, priors[name]) if name in priors else math.inf
+        found.append(Parameter(name, centre, prior, name in unknown))
     return found
 
 
-def with_loss_factors(pair: Pair, data: Measurements, unknown: Iterable[str]) -> Pair:
-    """Give bodies whose loss factor is unknown one, at the frequency of the impacts.
+def with_guesses(pair: Pair, data: Measurements, parameters: Iterable[Parameter]) -> Pair:
+    """Give bodies strengths and loss factors that are unknown, these at the frequency of the impacts.
 
     Raises
     ------
     ValueError
         If that frequency is not known, because the radius is unknown, too.
     """
-    bodies = {"sphere": pair.sphere, "plate": pair.plate}
-    for name in UNKNOWNS.keys() & unknown:
-        one = UNKNOWNS[name]
-        if one.field != "loss_factor" or bodies[one.body].loss_factor:
+    for one in parameters:
+        role = one.unknown.body
+        if not (math.isnan(one.centre) and role):
+            continue
+        if one.is_strength:
+            guess = math.sqrt(math.prod(bounds(one, pair, data)))
+            pair = with_numbers((pair.sphere, pair.plate), {(role, "yield_strength"): guess})
             continue
         if data.radius is None:
-            guess = f"Material(..., loss_factor=(a guess, frequency)) of the {one.body}"
-            reason = f"needs the frequency of the impacts: give their radius, or {guess}"
-            raise ArgumentError("unknown", name, reason)
-        sizes = np.asarray(data.radius) / np.asarray(data.speed) ** 0.2
-        time = CONTACT_TIME * unit_time(pair) * np.median(sizes)
-        loss_factor = _USUAL_LOSS, float(0.5 / time)
-        bodies[one.body] = dataclasses.replace(bodies[one.body], loss_factor=loss_factor)
-    return Pair(**bodies)
+            remedy = f"give their radius, or Material(..., loss_factor=(a guess, frequency)) of the {role}"
+            raise ArgumentError("unknown", one.name, f"needs the frequency of the impacts: {remedy}")
+        time = CONTACT_TIME * unit_time(pair) * np.median(np.asarray(data.radius) / np.asarray(data.speed) ** 0.2)
+        body = dataclasses.replace(getattr(pair, role), loss_factor=(_USUAL_LOSS, float(0.5 / time)))
+        pair = Pair(**{"sphere": pair.sphere, "plate": pair.plate, role: body})
+    return pair
 
 
 def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
     if values is None and not unknown:
         unit = UNKNOWNS[name].unit or "-"
         reason = f"has to be given [{unit}], for each rebound or one for all, or to be unknown"
-        raise ArgumentError(name, None, reason)
-    if values is not None and unknown and not prior:
+    elif values is not None and unknown and not prior:
         reason = "is unknown and given: leave it out of the data, or give its error as a prior"
-        raise ArgumentError(name, None, reason)
-    if values is not None and prior and not np.isfinite(values).all():
-        raise ArgumentError(name, None, f"a half-space has no error: leave {name} out of priors")
+    else:
+        return
+    raise ArgumentError(name, None, reason)
 
 
-def centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
+def _centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
     """Value given for an unknown, the median of a size; NaN: none."""
-    if unknown.body:
-        value = getattr(getattr(pair, unknown.body), unknown.field)
-        value = value[0] if isinstance(value, tuple) else value
-        return math.nan if value is None else float(value)
-    sizes = getattr(data, unknown.field)
-    return math.nan if sizes is None else float(np.median(sizes))
+    value = getattr(getattr(pair, unknown.body) if unknown.body else data, unknown.field)
+    value = value[0] if isinstance(value, tuple) else value
+    return float(np.median(value)) if value is not None and np.isfinite(value).all() else math.nan
 
 
 def _prior(name: str, centre: float, error: float) -> float:
     size = number(name, error)
-    if not 0.0 < size < math.inf:
-        raise ArgumentError("priors", error, f"the standard error of {name} must be positive")
     if math.isnan(centre):
-        reason = f"{name} has no value that {error!r} could be the error of"
-        raise ArgumentError("priors", None, reason)
-    if size >= centre:
-        reason = f"the error of {name} must be below it, {centre:.6g}; left out, it is unknown"
+        raise ArgumentError("priors", None, f"{name} has no value that {error!r} could be the error of")
+    if not 0.0 < size < centre:
+        reason = f"the error of {name} must be positive and below it, {centre:.6g}; left out, it is unknown"
         raise ArgumentError("priors", error, reason)
     return size / centre
 
 
-def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
+def bounds(parameter: Parameter, pair: Pair, data: Measurements) -> tuple[float, float]:
     """Least and largest value of a parameter in a fit."""
     unknown = parameter.unknown
     low, high = unknown.least, unknown.largest
     if parameter.is_strength:
         low, high = (pair.effective_modulus / ratio for ratio in reversed(_RATIOS))
         body = getattr(pair, unknown.body)
-        if _by_hardness(body):
+        if isinstance(body.hardening, float):  # hardening follows from the hardness
             high = min(high, body.hardness / CONSTRAINT)  # no metal softens
     elif unknown.body and unknown.field != "loss_factor":
         low = max(low, parameter.centre / _SEARCH_FACTOR)
         high = min(high, parameter.centre * _SEARCH_FACTOR)
+    elif parameter.is_free and unknown.field in _SIZES[:2]:
+        least, most = SLENDERNESS
+        if unknown.field == "thickness":
+            radius = _RADII if data.radius is None else data.radius
+            return float(np.min(radius) / most), float(np.max(radius) / least)
+        thickness = np.append([], [] if data.thickness is None else data.thickness)
+        thickness = thickness[np.isfinite(thickness)]
+        low, high = (least * thickness.min(), most * thickness.max()) if thickness.size else _RADII.tolist()
     return low, high
-
-
-def _by_hardness(body: Any) -> bool:
-    """Whether a body's hardening follows from its hardness and an exponent."""
-    return isinstance(body.hardening, float)
 
 
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
-    numbers: dict[Number, float] = {}
-    sizes = {name: getattr(data, name) for name in ("speed", *_SIZES, "sliding_speed")}
-    for parameter, value in zip(parameters, values.tolist(), strict=True):
-        role, field = parameter.unknown.body, parameter.unknown.field
-        if role:
-            body = getattr(pair, role)
-            if field == "yield_strength" and _by_hardness(body):
-                # a search may try a strength above that of the hardness: without hardening then
-                numbers[role, "hardness"] = max(body.hardness, CONSTRAINT * value)
-            numbers[role, field] = value
-        elif sizes[field] is None:
-            sizes[field] = np.full(len(data), value)
-        else:
-            sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
-    if not data.is_oblique:
-        sizes["friction"] = sizes["sliding_speed"] = None
     # copies: for read-only arrays kernels would be compiled once more
-    copies: Any = (None if size is None else np.array(size) for size in sizes.values())
-    return Setting(with_numbers((pair.sphere, pair.plate), numbers), *copies)
+    names = "speed", "radius", "thickness", *(("friction", "sliding_speed") if data.is_oblique else ())
+    sizes: Any = {name: None if getattr(data, name) is None else np.array(getattr(data, name)) for name in names}
+    numbers: dict[Number, float] = {}
+    for one, value in zip(parameters, values.tolist(), strict=True):
+        if one.unknown.body:
+            numbers[one.unknown.body, one.unknown.field] = value
+        else:
+            size = sizes[one.name]
+            sizes[one.name] = np.full(len(data), value) if size is None else size * (value / one.centre)
+    return Setting(with_numbers((pair.sphere, pair.plate), numbers), **sizes)

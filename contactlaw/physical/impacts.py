@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,26 @@ from contactlaw.physical.plates import Thickness, Wall, wall_of
 _ENDLESS = np.array([math.inf])  # distance from an edge, and radius of a hole, where there is none
 
 
+class PlateEdge(NamedTuple):
+    """The edge of the plate of each impact."""
+
+    kind: str
+    distance: Array  # [m]; inf where a plate has none
+    hole_radius: Array  # [m]; inf where the edge is straight
+
+    @staticmethod
+    def of(kind: str, distance: Array, hole_radius: Array, thickness: Array) -> PlateEdge | None:
+        """Check edges; half-spaces have none. None if no plate has one."""
+        check_kind(kind)
+        check(edge_distance=distance, hole_radius=hole_radius)
+        if kind != "free" and (hole_radius < math.inf).any():
+            reason = f"the rim of a hole is a free edge, not {kind!r}; leave it out"
+            raise ArgumentError("hole_radius", None, reason)
+        if not (distance < math.inf).any():
+            return None
+        return PlateEdge(kind, np.where(thickness < math.inf, distance, math.inf), hole_radius)
+
+
 @dataclass(frozen=True, eq=False)
 class Impacts:
     """Impacts that a user gave, as flat arrays, and the shape of the answer (None: scalars)."""
@@ -27,9 +47,7 @@ class Impacts:
     radius: Array  # [m], R* of two spheres
     thickness: Array  # [m]
     shape: tuple[int, ...] | None
-    edge: str = "free"  # kind of the edges
-    edge_distance: Array | None = None  # [m]; None for plates without edges
-    hole_radius: Array | None = None  # [m]; inf for straight edges, None without edges
+    edge: PlateEdge | None = None  # None for plates without edges
     mass: Array | None = None  # that answers at the contact [kg]; None for solid spheres
     wall: Wall | None = None  # None for sheets of the pair's material
     bending: Array | None = None  # R* over the radius on curved walls; None for flat ones
@@ -40,12 +58,12 @@ class Impacts:
         """Impacts on plates from which something comes back; None if there are none."""
         if self.frequency is not None:
             return np.asarray(self.frequency > 0.0)
-        return None if self.edge_distance is None else np.asarray(self.edge_distance < math.inf)
+        return None if self.edge is None else np.asarray(self.edge.distance < math.inf)
 
     @property
     def forgetting(self) -> Impacts:
         """The same impacts on plates from which nothing comes back."""
-        return replace(self, edge_distance=None, frequency=None)
+        return replace(self, edge=None, frequency=None)
 
     @staticmethod
     def on_plates(
@@ -68,8 +86,8 @@ class Impacts:
         plate = replace(wall, numbers={name: known.pop(name) for name in wall.numbers})
         h = plate.numbers.pop("thickness")
         check(speed=v, radius=r, thickness=h, **known)
-        edges = edges_as_given(edge, s, a, h)
-        return Impacts(v, r, h, shape, edge, *edges, **known, wall=plate if plate.numbers else None)
+        around = PlateEdge.of(edge, s, a, h)
+        return Impacts(v, r, h, shape, around, **known, wall=plate if plate.numbers else None)
 
     def part(self, some: Places) -> Impacts:
         """Choose some of the impacts."""
@@ -77,24 +95,8 @@ class Impacts:
             name: value[some] for name, value in vars(self).items() if isinstance(value, np.ndarray)
         }
         wall = None if self.wall is None else self.wall.part(some)
-        return replace(self, shape=(some.size,), wall=wall, **arrays)
-
-
-def edges_as_given(
-    edge: str, distance: Array, hole_radius: Array, thickness: Array
-) -> tuple[Array | None, Array | None]:
-    """Check distances from edges, inf for half-spaces, and radii of holes [m].
-
-    Both are None if no plate has edges.
-    """
-    check_kind(edge)
-    check(edge_distance=distance, hole_radius=hole_radius)
-    if edge != "free" and (hole_radius < math.inf).any():
-        reason = f"the rim of a hole is a free edge, not {edge!r}; leave it out"
-        raise ArgumentError("hole_radius", None, reason)
-    if not (distance < math.inf).any():
-        return None, None
-    return np.where(thickness < math.inf, distance, math.inf), hole_radius
+        edge = self.edge and PlateEdge(self.edge.kind, self.edge.distance[some], self.edge.hole_radius[some])
+        return replace(self, shape=(some.size,), wall=wall, edge=edge, **arrays)
 
 
 def check_kind(edge: str) -> None:

@@ -1,7 +1,8 @@
 """Outcomes of impacts in SI units."""
 
+import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.outcome import Extremes, Outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
@@ -59,57 +60,29 @@ class Rebound(ByValue):
     flags: Validity | Integers
 
 
-class Units(NamedTuple):
-    """Fields of `Rebound` that `_with_units` computes."""
-
-    contact_time: Array
-    peak_compression: Array
-    wave_fraction: Array
-    overload: Array
-
-
 def shaped_flags(flags: Integers, shape: tuple[int, ...] | None) -> Validity | Integers:
     """Undo `broadcast` for flags, which of a single impact have a type of their own."""
     return Validity(int(flags[0])) if shape is None else flags.reshape(shape)
 
 
 @kernel(cache=True)
-def _with_units(
+def _flag(
     limits: Array,
-    speed: Array,
+    strength: Array,
     radius: Array,
     thickness: Array,
-    time: Array,
-    mass: Array,
-    unclamped_y: Array,
-    outcome: Outcome,
-    extremes: Extremes,
-    out: Units,
+    scale: Array,
+    contact_time: Array,
+    compression: Array,
+    force: Array,
     flags: Integers,
-) -> float:
-    """Convert outcomes to SI units, those of `extremes` in place; `unclamped_y` as in `rebound`.
-
-    Returns 0, or NaN where a field is not finite.
-    """
-    wrong, same = 0.0, limits_at(limits, 0.0)
-    for n in range(speed.size):
-        own = same if limits.shape[0] == 1 else limits_at(limits, outcome.strength[n])
-        v, t = speed[n], time[n]
-        contact_time = outcome.contact_time[n] * t
-        out.contact_time[n] = contact_time
-        w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
-        unit = v * t
-        out.peak_compression[n] = w * unit
-        out.wave_fraction[n] = outcome.inelasticity[n] * outcome.wave_rate[n]
-        out.overload[n] = outcome.elastic_compression[n] / unclamped_y[n]
-        extremes.peak_force[n] *= mass[n] * v / t
-        extremes.residual_compression[n] *= unit
-        flags[n] |= flags_of(own, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n])
-        total = contact_time + w * unit + out.wave_fraction[n] + out.overload[n]
-        total += extremes.peak_force[n] + extremes.residual_compression[n]
-        total += outcome.restitution[n] + extremes.plastic_fraction[n] + extremes.other_fraction[n]
-        wrong += total - total
-    return wrong
+) -> None:
+    """Add the limits that impacts exceed, see `contactlaw.physical.validity.flags_of`."""
+    own = limits_at(limits, 0.0)
+    for n in range(flags.size):
+        if limits.shape[0] > 1:
+            own = limits_at(limits, strength[n])
+        flags[n] |= flags_of(own, radius[n], thickness[n], scale[n], contact_time[n], compression[n], force[n])
 
 
 def rebound(
@@ -131,45 +104,25 @@ def rebound(
     """
     found = outcomes.extremes(time.size)
     zener.extremes(bodies.data, outcome, found)
-    if edges is not None and impacts.edge_distance is not None:
-        deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
-        for n in range(flags.size):
-            flags[n] |= edge_flags(
-                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n], edges.again[n]
-            )
     inelasticity, yield_ratio = unclamped
-    out = Units(*np.empty((len(Units._fields), time.size)))
-    wrong = _with_units(
-        bodies.limits_by_strength,
-        impacts.speed,
-        impacts.radius,
-        impacts.thickness,
-        time,
-        bodies.mass(impacts),
-        yield_ratio,
-        outcome,
-        found,
-        out,
-        flags,
-    )
+    scale, radius, thickness = impacts.speed * time, impacts.radius, impacts.thickness
+    contact_time = outcome.contact_time * time
+    deepest = outcome.compression_ratio * outcome.elastic_compression * scale
+    force = found.peak_force * (bodies.mass(impacts) * impacts.speed / time)
+    shares = found.plastic_fraction, outcome.inelasticity * outcome.wave_rate, found.other_fraction
     if interpolated:
-        lost = found.plastic_fraction + out.wave_fraction + found.other_fraction
-        for share in (found.plastic_fraction, out.wave_fraction, found.other_fraction):
-            share *= outcomes.balance(outcome.restitution, lost)
+        factor = outcomes.balance(outcome.restitution, sum(shares))
+        shares = tuple(share * factor for share in shares)
+    left, overload = found.residual_compression * scale, outcome.elastic_compression / yield_ratio
+    fields = outcome.restitution, contact_time, force, deepest, left, *shares, inelasticity, overload
+    check_finite(bodies.pair, impacts, *fields)
+    _flag(bodies.limits_by_strength, outcome.strength, radius, thickness, scale, contact_time, deepest, force, flags)
     if impacts.mass is not None:
         flags |= bodies.mass_flags(impacts)
     if impacts.wall is not None:
-        flags |= wall_flags(
-            impacts.wall.numbers, impacts.radius, impacts.bending, out.contact_time, out.peak_compression
-        )
-    if edges is not None and impacts.frequency is not None:
-        flags |= np.where(edges.again > 0.0, int(Validity.STRIKES_AGAIN), 0)
-    shape = impacts.shape
-    named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
-    if wrong != 0.0:
-        check_finite(bodies.pair, impacts, *named.values())
-    return Rebound(
-        **{name: shaped(values, shape) for name, values in named.items()},
-        inelasticity=shaped(inelasticity, shape),
-        flags=shaped_flags(flags, impacts.shape),
-    )
+        flags |= wall_flags(impacts.wall.numbers, radius, impacts.bending, contact_time, deepest)
+    if edges is not None:
+        distance = np.full(1, math.inf) if impacts.edge is None else impacts.edge.distance
+        flags |= edge_flags(radius, thickness, deepest, distance, edges.again)
+    columns: Any = zip(Rebound.__dataclass_fields__, (shaped(one, impacts.shape) for one in fields), strict=False)
+    return Rebound(**dict(columns), flags=shaped_flags(flags, impacts.shape))

@@ -14,7 +14,6 @@ from contactlaw.cli.parts import bands
 from validation.accuracy import acceptance
 
 INF = math.inf
-STIFF = {"youngs_modulus": 0.03, "poissons_ratio": 0.05, "density": 0.02}
 
 
 def known_to(body, **errors):
@@ -27,40 +26,22 @@ def steel(name, strength, error):
 
 
 COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", hardening=(292e6, 0.31), rate=(0.025, 1.0))
-# name: bead, plate, speeds, thicknesses for a bead of 1 mm, errors of speed, radius, thickness
-CASES = {
-    "the bead flows": (
-        known_to("stainless-steel-304", yield_strength=0.3, **STIFF),
-        known_to("soda-lime-glass", **STIFF),
-        [0.1, 2.0],
-        [0.4e-3, 2e-3],
-        (),
-    ),
-    "flow begins": (
-        known_to("gamma-alumina", yield_strength=0.2, youngs_modulus=0.1),
-        "glass",
-        [4.0, 6.0, 8.0],
-        [0.8e-3, 2e-3, INF],
-        (),
-    ),
-    "elastic, near 0 and 1": (
-        known_to("soda-lime-glass", youngs_modulus=0.3),
-        "alumina",
-        [1.0],
-        [0.3e-3, 1e-3, 6e-3],
-        (0.1, 0.05, 0.1),
-    ),
-    "either may flow": (steel("a", 4e8, 0.2), steel("b", 4.5e8, 0.2), [2.0], [0.8e-3, 5e-3], ()),
-    "hardening and rate": (
-        known_to(COPPER, yield_strength=0.2, hardening=0.15, rate=0.3),
-        "glass",
-        [1.0],
-        [2e-3],
-        (0.0, 0.0, 0.05),
-    ),
-}
 
-SLOW = "the bead flows", "either may flow", "hardening and rate"
+
+def random_body(rng, yields):
+    """A metal or a ceramic with errors; of the metals some harden, and of these half have a rate."""
+    modulus = math.exp(rng.uniform(math.log(60e9), math.log(400e9)))
+    numbers = {"youngs_modulus": modulus, "poissons_ratio": rng.uniform(0.2, 0.35), "density": rng.uniform(2300, 8500)}
+    errors = {"youngs_modulus": rng.choice([0.02, 0.05, 0.15]), "poissons_ratio": 0.05, "density": 0.02}
+    if yields:
+        strength = modulus * math.exp(rng.uniform(-math.log(1500), -math.log(150)))
+        numbers["yield_strength"], errors["yield_strength"] = strength, rng.choice([0.05, 0.1, 0.2, 0.3])
+        if rng.random() < 0.15:
+            numbers["hardening"] = strength * rng.uniform(0.3, 2.0), rng.uniform(0.2, 0.6)
+            errors["hardening"] = 0.15
+            if rng.random() < 0.5:
+                numbers["rate"], errors["rate"] = (rng.uniform(0.01, 0.05), 1.0), 0.2
+    return cl.Material("random", kind="metal" if yields else "ceramic", uncertainty=errors, **numbers)
 
 
 def drawn(body, deviates):
@@ -73,39 +54,37 @@ def drawn(body, deviates):
 
 
 @pytest.mark.parametrize(
-    "case", [pytest.param(name, marks=pytest.mark.long) if name in SLOW else name for name in CASES]
+    "case", [1, 5, 18, *(pytest.param(n, marks=pytest.mark.long) for n in range(6, 54) if n != 18)]
 )
 def test_the_band_is_that_of_random_pairs(case):
-    """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""
-    bead, plate, speed, thickness, sizes = CASES[case]
-    pair = cl.Pair(bead, plate)
-    speed = np.array(speed)[:, None]
+    """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones.
+
+    Every third pair is next to yield.
+    """
+    rng = np.random.default_rng(case)
+    pair = cl.Pair(random_body(rng, rng.random() < 0.75 or case % 3 == 0), random_body(rng, rng.random() < 0.4))
+    model, radius, thickness = cl.ImpactModel(pair), 1e-3, 1e-3 * rng.choice([0.4, 0.8, 1.5, 3.0, 10.0, INF])
+    speed = math.exp(rng.uniform(math.log(0.05), math.log(8.0)))
+    if case % 3 == 0:
+        speed = model.yield_speed(radius, max(thickness, 0.8e-3)) * math.exp(rng.uniform(-0.35, 0.35))
+    sizes = np.array([rng.choice([0.0, 0.02, 0.1]), rng.choice([0.0, 0.02]), rng.choice([0.0, 0.05])])
     count = len(pair.sphere.uncertainty) + len(pair.plate.uncertainty)
-    rows = norm.ppf(qmc.Sobol(count + 4, rng=3).random(512))
-    answers = "restitution", "contact_time", "peak_force"
-    hits = []
-    for row in rows:
-        deviates, own = list(row[:count]), row[count : count + 3] * (sizes or (0, 0, 0))
-        other = cl.ImpactModel(cl.Pair(drawn(pair.sphere, deviates), drawn(pair.plate, deviates)))
-        v, r, h = np.exp(own)
-        hit = other.solve(v * speed, r * 1e-3, h * np.array(thickness))
-        hits.append([getattr(hit, name) for name in answers])
-    model = cl.ImpactModel(pair)
-    hit = model.solve(speed, 1e-3, thickness)
-    flat = cl.Rebound(**{name: np.ravel(values) for name, values in vars(hit).items()})
-    ratio = np.broadcast_to(1e-3 / np.array(thickness), np.shape(hit.flags)).ravel()
-    law = law_errors.law_errors(model.force_law, pair, flat, ratio).reshape(3, *np.shape(hit.flags))
-    found = np.array(hits) + law * rows[:, -1, None, None, None]
+    hits, deviates = [], norm.ppf(qmc.Sobol(count + 4, rng=3).random(512))
+    for row in deviates:
+        left = list(row[:count])
+        other = cl.ImpactModel(cl.Pair(drawn(pair.sphere, left), drawn(pair.plate, left)))
+        hit = other.solve(*(np.exp(row[count : count + 3] * sizes) * [speed, radius, thickness]), rtol=1e-8)
+        hits.append([hit.restitution, hit.contact_time, hit.peak_force])
+    flat = cl.Rebound(**{name: np.ravel(one) for name, one in vars(model.solve(speed, radius, thickness)).items()})
+    law = law_errors.law_errors(model.force_law, pair, flat, np.array([radius / thickness]))
+    found = np.array(hits) + law.T * deviates[:, -1:]
     found[:, 0] = np.clip(found[:, 0], 0.0, 1.0)
-    expected = np.quantile(found, norm.cdf([-1.0, 1.0]), axis=0)
-    named = dict(zip(("speed_error", "radius_error", "thickness_error"), sizes, strict=False))
-    bands = model.uncertainty(speed, 1e-3, thickness, **named)
-    for n, name in enumerate(answers):
-        low, high = expected[:, n]
-        band = getattr(bands, name)
-        off = np.abs([band.low - low, band.high - high]) / (0.5 * (high - low))
-        # flow that begins is not all that the overload decides
-        assert off.max() < (0.15 if case == "flow begins" else 0.1), name
+    low, high = np.quantile(found, norm.cdf([-1.0, 1.0]), axis=0)
+    names = "speed_error", "radius_error", "thickness_error"
+    bands = model.uncertainty(speed, radius, thickness, **dict(zip(names, sizes.tolist(), strict=True)))
+    for n, band in enumerate(vars(bands).values()):
+        off = np.abs([band.low - low[n], band.high - high[n]]) / (0.5 * (high[n] - low[n]))
+        assert off.max() < 0.15, n
 
 
 def test_without_errors_only_the_law_is_uncertain():

@@ -271,7 +271,7 @@ def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(tmp_path, capsys)
     path.write_bytes("\r\n".join([heads, *rows]).encode("cp1252"))
     assert measured(path).contact_time == pytest.approx([7.9e-6, 7.5e-6])
     assert main(["fit", str(path), *FIT]) == 1
-    assert "restitution of rebound 1, line 4 is above 1" in capsys.readouterr().err
+    assert "COR of rebound 1, line 4 is above 1" in capsys.readouterr().err
 
 
 @pytest.fixture

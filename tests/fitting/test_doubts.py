@@ -6,15 +6,13 @@ import re
 import numpy as np
 import pytest
 from rebounds import RADIUS, STEEL, rebounds
-from scipy import stats
 
 import contactlaw as cl
-from contactlaw.fitting.notes import chance
-from contactlaw.fitting.predictions import Predictor, impacts
-from contactlaw.fitting.unknowns import Setting, parameters
+from contactlaw.fitting.predictions import impacts
+from contactlaw.fitting.unknowns import Setting
 from contactlaw.physical.law import law_of
 
-DOUBT = re.compile(r"trend with|times (above|below) that|above 1:|no \w+ gives")
+DOUBT = re.compile(r"times (above|below) that|above 1:|no \w+ gives")
 ALUMINA = cl.Pair("gamma-alumina", "glass")
 FAST = np.geomspace(2.0, 40.0, 12)
 
@@ -51,7 +49,7 @@ def test_honest_data_raise_no_doubt(pair, unknown, speed, stated, seeds):
             "yield_strength",
             "restitution",
             1e-3,
-            r"yield_strength is 2\d times below that of gamma-alumina, 472.5 MPa: units",
+            r"yield strength of the bead is 2\d times below that of gamma-alumina, 472.5 MPa: units",
         ),
         (STEEL, "plate_density", "contact_time", 1e3, r"3.\d times below .*: units"),
     ],
@@ -63,36 +61,10 @@ def test_a_value_that_speeds_in_other_units_give_is_named_as_far_off(pair, unkno
     assert re.search(words, said(pair, data, unknown))
 
 
-def test_another_law_leaves_a_trend_and_one_mistake_does_not():
-    data = rebounds(STEEL, noise=0.01, seed=1)
-    for stated in (True, False):
-        assert "restitution trend with speed" in said(STEEL, data, "thickness", "hertz", stated)
-    data["restitution"][4] *= 1.2
-    assert "trend" not in said(STEEL, data, "thickness")
-
-
-@pytest.mark.parametrize("stated", [True, False])
-def test_chances_of_trends_are_those_of_noise(stated):
-    """They are uniform over sets of pure noise, so that 1 in 1000 has one below the limit."""
-    data = rebounds(STEEL, without=("thickness",))
-    data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
-    moved = parameters(STEEL, data, "thickness", {})
-    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved)
-    fitted = predictor.predicted(np.array([1.2e-3]))
-    slopes = predictor.derivatives(np.array([1.2e-3]), fitted)
-    z, random, found = slopes / (0.01 * fitted[:, None]), np.random.default_rng(5), []
-    for _ in range(500):
-        off = random.standard_normal(12)
-        off -= z @ np.linalg.lstsq(z, off, rcond=None)[0]
-        off *= 1.0 if stated else np.sqrt(11.0 / (off @ off))
-        found.append(chance(np.array_split(np.arange(12), 3), off))
-    assert stats.kstest(found, "uniform").pvalue > 0.01
-
-
 def test_what_no_thickness_gives_is_refused_with_what_is_attainable():
     one = {"speed": 2.0, "radius": RADIUS, "restitution": 0.8}
     half_space = float(cl.ImpactModel(STEEL).solve(2.0, RADIUS, np.inf).restitution)
-    words = rf"no thickness gives .* 0\.8 .* to {half_space:.3g}, that of a half-space"
+    words = rf"no thickness gives .* 0\.8 .* to {half_space:.3g}"
     with pytest.raises(cl.UnidentifiedError, match=words):
         cl.fit(STEEL, one, "thickness")
     assert said(STEEL, one | {"restitution": half_space - 0.01}, "thickness") == ""
@@ -108,7 +80,7 @@ def test_foils_are_refused_before_they_are_integrated():
 def test_a_restitution_above_one_is_named_by_its_rebound():
     data = rebounds(ALUMINA, noise=0.005)
     data["restitution"][3] = 1.05
-    assert "restitution of rebound 3 is above 1" in said(ALUMINA, data, "thickness")
+    assert "COR of rebound 3 is above 1" in said(ALUMINA, data, "thickness")
 
 
 @pytest.mark.parametrize("harder", [1.0, 1.5])

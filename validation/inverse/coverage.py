@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from contactlaw.fitting import errors
+from contactlaw.fitting.errors import model_errors
 from contactlaw.fitting.measurements import KINDS, NORMAL
 from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.unknowns import UNKNOWNS, parameters
@@ -31,7 +31,7 @@ from validation.inverse.model import rebounds, true
 Array = NDArray[np.float64]
 
 QUESTIONS = (
-    *((name,) for name in UNKNOWNS if name != "friction"),
+    *((name,) for name in UNKNOWNS if name != "friction" and "loss" not in name),
     ("yield_strength", "thickness"),
     ("radius", "thickness", "plate_yield_strength"),
 )
@@ -128,14 +128,11 @@ def _model_error(
     random: np.random.Generator, one: Configuration, exact: dict[str, Array], law: str
 ) -> dict[str, Array]:
     data = cl.Measurements(speed=one.speed, radius=one.radius, thickness=one.thickness, **exact)
-    moved = parameters(one.pair, data, "density", {})
-    predictor = Predictor(one.pair, law_of(one.pair, law), data, moved)
-    at = np.array([one.pair.sphere.density])
-    covariance = errors.model_covariance(predictor, at, predictor.impacts(predictor.setting(at)))
-    if covariance is None:
-        return {}
-    correlation = covariance.correlation[np.ix_(covariance.cell, covariance.cell)]
-    drawn = covariance.size * random.multivariate_normal(np.zeros(len(correlation)), correlation, method="cholesky")
+    varied = parameters(one.pair, data, ["density"], {})
+    predictor = Predictor(one.pair, law_of(one.pair, law), data, varied)
+    x = np.log([one.pair.sphere.density])
+    shared = model_errors(predictor, x, predictor.impacts(predictor.setting(x)))
+    drawn = shared @ random.standard_normal(shared.shape[1])
     names = list(KINDS)
     return {name: drawn[predictor.values.kind == names.index(name)] for name in exact}
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw import laws
+from contactlaw._readable import percent
 from contactlaw.cli.compare import figure
 from contactlaw.cli.parts import bands, chosen, impacts, measured, options
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
@@ -87,7 +88,7 @@ def _judged(found: Comparison, pair: Pair) -> Iterator[str]:
     agree = found.probability >= _UNLIKELY
     yield from wrapped(
         f"Chi-squared is {found.chi_squared:.3g} for {len(found.data)} rebounds. If the model and all stated errors "
-        f"are right, it is as large or larger in {100.0 * found.probability:.3g} % of cases: the data "
+        f"are right, it is as large or larger in {percent(found.probability)} of cases: the data "
         f"{'agree with the model' if agree else 'differ from the model by more than the stated errors explain'}."
     )
 

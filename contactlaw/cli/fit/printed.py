@@ -12,7 +12,6 @@ from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
 from contactlaw.fitting import Fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
-from contactlaw.physical.validity import Validity
 
 _IN_JSON = (
     *("values", "errors", "statistical_errors", "correlation", "alternatives"),
@@ -33,8 +32,7 @@ def text(found: Fit) -> Iterator[str]:
         values = f"{off.size} value{'s' * (off.size > 1)}"
         yield f"{KINDS[kind].title}: {values}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
     for note in found.notes:
-        if note.partition(",")[0] not in Validity.__members__:  # the table of the rebounds explains flags
-            yield from wrapped(f"- {note}", "  ")
+        yield from wrapped(f"- {note}", "  ")
 
 
 def values_in_words(found: Fit) -> list[str]:
