@@ -195,7 +195,7 @@ def fit(
     enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    unknown, priors = (unknown,) if isinstance(unknown, str) else tuple(unknown), priors or {}
+    unknown, priors = [unknown] if isinstance(unknown, str) else list(unknown), priors or {}
     data = Measurements.of(data, {*unknown} - {*priors}, pair.sphere.density)
     varied = parameters(pair, data, unknown, priors)
     pair = with_guesses(pair, data, varied)

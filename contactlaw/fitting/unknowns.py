@@ -176,7 +176,7 @@ def _prior(name: str, centre: float, error: float) -> float:
     if math.isnan(centre):
         raise ArgumentError("priors", None, f"{name} has no value that {error!r} could be the error of")
     if not 0.0 < size < centre:
-        reason = f"the error of {name} must be positive and below it, {centre:.6g}; left out, it is unknown"
+        reason = f"the standard error of {name} must be positive and below it, {centre:.6g}; left out, it is unknown"
         raise ArgumentError("priors", error, reason)
     return size / centre
 

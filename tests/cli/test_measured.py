@@ -180,7 +180,6 @@ def test_no_line_on_a_terminal_is_wider_than_80_columns(capsys):
     )
     body = f"name={names[0]} E=70GPa nu=0.33 rho=2700 yield=250MPa kind=metal"
     for command in (
-        ["fit", "--unknown", "friction,yield_strength"],
         ["fit", "--unknown", "youngs_modulus", "--friction", "0.2", "--plate", "glass"],
         ["compare"],
         ["compare", "--law", "hertz"],

@@ -384,8 +384,8 @@ def test_what_is_refused(change, asked, message):
     ("priors", "message"),
     [
         ({"colour": 1.0}, "priors: got 'colour'"),
-        ({"density": 0.0}, "the error of density must be positive"),
-        ({"density": 9000.0}, "got 9000.0; the error of density must be positive and below it"),
+        ({"density": 0.0}, "the standard error of density must be positive"),
+        ({"density": 9000.0}, "got 9000.0; the standard error of density must be positive and below it"),
         ({"density": "1"}, "density: got '1'; expected one number"),
         ({"yield_strength": 1e6}, "has no value that"),
     ],
