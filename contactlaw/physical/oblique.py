@@ -153,6 +153,7 @@ def unit_all(normal: Array) -> None:
     normal[:] = np.transpose(unit(normal.T))  # type: ignore[arg-type]
 
 
+@np.errstate(all="ignore")  # callers refuse what is not finite
 def approach_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array, size: Array
 ) -> None:
@@ -162,6 +163,7 @@ def approach_all(
         speed[:], size[:], _ = sliding(*vectors, radius)  # type: ignore[call-arg]
 
 
+@np.errstate(all="ignore")  # of beads that recede the numbers have no meaning
 def rebound_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array, changed: Array
 ) -> None:
@@ -169,8 +171,7 @@ def rebound_all(
     v, omega, n, w, r = velocity.T, spin.T, normal.T, wall.T, radius
     came: Any = sliding(v, omega, n, w, r)  # type: ignore[arg-type]
     hit = came.speed >= lookup.V_MIN
-    with np.errstate(all="ignore"):  # of beads that recede the numbers have no meaning
-        after = rebound_of(v, omega, n, came, r, e, changed)  # type: ignore[arg-type]
+    after = rebound_of(v, omega, n, came, r, e, changed)  # type: ignore[arg-type]
     for rows, new in zip((velocity, spin), after, strict=True):
         rows[hit] = np.transpose(new)[hit]
 
