@@ -49,7 +49,7 @@ def test_a_second_regime_that_fits_as_well_is_told():
         bead = dataclasses.replace(found.pair.sphere, yield_strength=regime["yield_strength"])
         there = cl.ImpactModel(cl.Pair(bead, found.pair.plate)).solve(data["speed"], 1e-3, regime["thickness"])
         assert np.sqrt(np.mean((there.restitution / data["restitution"] - 1.0) ** 2)) < 0.05
-    assert any("fitted as well by yield_strength" in note for note in found.notes)
+    assert any("fitted as well by yield strength of the bead" in note for note in found.notes)
 
 
 def log(low, high):
