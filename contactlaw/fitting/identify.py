@@ -158,7 +158,7 @@ def profile(predictor: Predictor, best: Basin, covariance: Array, error: Array) 
             rise = functools.partial(_rise, predictor, best, error, n, sign * covariance[n] / spread)
             last = min(2.0, abs(end - best.x[n]) / spread)
             rises = rise(last) + 1.0
-            if rises < _LEAST_RISE and (bound := _bound(predictor, best, error, n, other)):
+            if best.x.size == 1 and rises < _LEAST_RISE and (bound := _bound(predictor, best, error, n, other)):
                 raise UnidentifiedError(
                     f"the data bound {one.name} on one side only: {side} {f'{bound:.3g} {one.unknown.unit}'.rstrip()}. "
                     "Measure another quantity, or other speeds or angles",

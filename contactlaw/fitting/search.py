@@ -24,7 +24,7 @@ _POINTS = (20, 9, 7)  # points of an axis by the number of axes; one may need it
 _BETWEEN = 0.01  # relative error of the splines between the points
 _PLACES = 20  # points of the grid, no two beside each other, from which descents on the splines start
 _SAME_MINIMUM = 0.05  # distance in logarithms within which two results on the splines are one
-_MOST, _KEPT = 6, 3  # basins from which descents of the model start: by few rebounds, and by all
+_MOST = 6  # basins from which descents of the model start, by few rebounds; the best three go on with all
 _STEPS = 6  # steps after which a basin may be dropped: the splines' minimum is within 1 % of it
 # A basin whose sum of squares is above 3 times the least plus this is neither the best one with all
 # rebounds nor as good.
@@ -56,7 +56,7 @@ def basins(predictor: Predictor) -> tuple[list[Basin], Array]:
     chosen = replace(predictor, fineness=COARSE, data=some)
     starts, extremes = _scan(replace(chosen, fineness=ROUGH))
     error = guessed(chosen.values)
-    return lowest([descend(chosen, x, error, steps=_STEPS) for x in starts])[:_KEPT], extremes
+    return lowest([descend(chosen, x, error, steps=_STEPS) for x in starts])[:3], extremes
 
 
 def guessed(values: Values) -> Array:

@@ -148,7 +148,7 @@ def with_guesses(pair: Pair, data: Measurements, parameters: Iterable[Parameter]
             remedy = f"give their radius, or Material(..., loss_factor=(a guess, frequency)) of the {role}"
             raise ArgumentError("unknown", one.name, f"needs the frequency of the impacts: {remedy}")
         time = CONTACT_TIME * unit_time(pair) * np.median(np.asarray(data.radius) / np.asarray(data.speed) ** 0.2)
-        body = dataclasses.replace(getattr(pair, role), loss_factor=(_USUAL_LOSS, float(0.5 / time)))
+        body = dataclasses.replace(getattr(pair, role), loss_factor=(_USUAL_LOSS, 0.5 / time))
         pair = Pair(**{"sphere": pair.sphere, "plate": pair.plate, role: body})
     return pair
 
