@@ -20,8 +20,10 @@ from the constant one up:
                        FIRST, NEXT    pieces that begin at the kink below, and at that above
     row of unloading   SCALE, OFFSET  of t, and for each function of dm its power, DEGREE and AT
 
-Coefficients are padded with zeros to a multiple of four. The last of the starts, and of the family
-starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
+Coefficients are padded with zeros to a multiple of four. The last of the starts is infinity, the last of the family
+starts is the dm at which the law ends, infinity for one without unloading curves. Beyond its end the
+force goes on along its tangent over the compression, the residual keeps its share of dm, the exponent
+its value, and plastic work its share of the loading work. Between two kinks the loading curve is smooth, however many pieces it has: an
 integration has to stop at kinks only.
 
 The laws of a pair that grows stronger with the rate of an impact stand in one array, too, a ladder:
@@ -35,8 +37,7 @@ The law of an impact is a blend of the two rungs around its strength. At the sam
 the d_Y of each, these are linear in ln k: ln d_Y, the end, the force, the residual compression, the
 losses, and the work that unloading gives back, from which its exponent follows. So the energies of a
 blend add up as those of its laws. A stronger law ends at fewer d_Y; each rung follows its formulas up
-to the end of its weaker neighbour. Beyond its own end a blend goes on as any law does: its force along
-a tangent, with the same exponent and shares.
+to the end of its weaker neighbour.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
@@ -56,7 +57,7 @@ FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
 STRENGTH, BEGINS, SIZE, LOG_SCALE, LOG_ONSET, END, RUNG = range(7)
-_STEP = 1e-4  # relative step in d of the slope at the end of a blend
+_STEP = 2e-5  # relative step in d to either side of a law's end, of the difference that is its slope
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -87,13 +88,13 @@ class BlendedLaw(NamedTuple):
     low: Array
     high: Array
     share: float  # 0: `low` alone
-    end: float  # compression up to which it holds; infinite for a law with tangents of its own
+    end: float  # compression up to which it holds
 
 
 @kernel(inline=True)
 def alone(law: Array) -> BlendedLaw:
     """Take a law by itself."""
-    return BlendedLaw(law, law, 0.0, math.inf)
+    return BlendedLaw(law, law, 0.0, law[int(law[FAMILY_STARTS] + law[UNLOADINGS])])
 
 
 @kernel
@@ -117,7 +118,7 @@ def _law_of_rung(ladder: Array, row: int) -> Array:
 def at_strength(laws: Array, strength: float) -> BlendedLaw:
     """Law of an impact; beyond a ladder's ends that of its last rung."""
     if laws[PIECES] > 0.0:
-        return BlendedLaw(laws[0:], laws[0:], 0.0, math.inf)
+        return alone(laws[0:])
     low, high, share = _rungs_around(laws, strength)
     end = laws[low + END] + share * (laws[high + END] - laws[low + END])
     return BlendedLaw(_law_of_rung(laws, low), _law_of_rung(laws, high), share, end)
@@ -214,9 +215,9 @@ def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
         return float(_blended_loading(law, q))
-    last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
-    slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
-    return float(last + slope * (q * q - law.end))
+    step = _STEP * law.end
+    rise = _blended_loading(law, math.sqrt(law.end + step)) - _blended_loading(law, math.sqrt(law.end - step))
+    return float(_blended_loading(law, math.sqrt(law.end)) + 0.5 * rise / step * (q * q - law.end))
 
 
 @kernel(inline=True)
@@ -421,7 +422,7 @@ def check(law: Array) -> None:
             raise ValueError(f"its law ends within its {name}")
     starts, curve, family_starts, family = (law[at : at + length] for at, length in blocks.values())
     for values in (starts, family_starts):
-        if not (np.diff(values[:-1]) > 0.0).all() or values[-1] != math.inf:
+        if not (np.diff(values) > 0.0).all() or starts[-1] != math.inf:
             raise ValueError("the pieces of its law do not follow each other")
     curve, family = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)
     entries = [(row, DEGREE) for row in curve]

@@ -85,10 +85,7 @@ def _along_loading(law: BlendedLaw, part: int, first: int, last: int, level: flo
 def up(law: BlendedLaw, first: int) -> Leg:
     """Leg of loading from a kink to the next; `first` is the piece that begins at the kink."""
     following = int(law.low[force.row_of(law.low, first) + force.NEXT])
-    level = force.start_of(law.low, following)
-    if level < math.inf:
-        level = min(level, math.sqrt(law.end))
-    return _along_loading(law, _LOADING, first, following - 1, level)
+    return _along_loading(law, _LOADING, first, following - 1, force.start_of(law.low, following))
 
 
 @kernel

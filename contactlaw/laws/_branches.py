@@ -31,6 +31,10 @@ class Loading:
     start: float
     force: Formula | Polynomial
 
+    def at(self, d: Array) -> Array:
+        """Force at compressions."""
+        return self.force(np.sqrt(d)) if isinstance(self.force, Polynomial) else self.force(d)
+
 
 @dataclass(frozen=True)
 class Unloading:

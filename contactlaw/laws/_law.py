@@ -14,8 +14,8 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
-from contactlaw.laws._branches import END, Loading, Unloading
-from contactlaw.laws._expansion import Resolution, check_yield, expanded, packed
+from contactlaw.laws._branches import END, HERTZ, Loading, Unloading
+from contactlaw.laws._expansion import Resolution, check_formulas, check_unloading, check_yield, expanded, packed
 
 
 class Strengths(NamedTuple):
@@ -145,11 +145,12 @@ class Law:
         name = _written(family, parameters)
         check_yield(name, yield_coefficient, loading, unloading)
         end = range[1] if range[1] < math.inf else END
-        made = expanded(name, loading, unloading, end, Resolution())
-        curve = made.curve
-        starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
-        if curve.stiffer:  # friction takes energy below yield, too: its branch begins no kink
-            starts = {start for start in starts if start >= 1.0}
+        check_formulas(name, loading, unloading, end)
+        curve, rows = expanded(name, loading, unloading, end, Resolution())
+        check_unloading(name, curve, unloading, loading[0].force != HERTZ)
+        kinks = tuple(float(branch.start) for branch in loading[1:])
+        # friction takes energy below yield, too: its branch begins no kink
+        starts = {*kinks, *(float(branch.start) for branch in unloading if branch.start >= 1.0)}
         if range[1] < math.inf:
             starts.add(range[1])
         return Law(
@@ -157,9 +158,9 @@ class Law:
             parameters=parameters,
             source=source,
             yield_coefficient=yield_coefficient,
-            loading_kinks=curve.kinks,
+            loading_kinks=kinks,
             outcome_kinks=tuple(sorted(starts)),
-            data=packed(made),
+            data=packed(curve, rows),
             yield_strains=yield_strains,
             scale=scale,
             range=range,
