@@ -44,12 +44,6 @@ def is_loading(leg: Leg) -> bool:
 
 
 @kernel(inline=True)
-def unloads(leg: Leg) -> bool:
-    """Whether a leg is on the unloading curve, not on the loading curve."""
-    return leg.exponent > 0.0
-
-
-@kernel(inline=True)
 def force_on(leg: Leg, kind: int, law: BlendedLaw, q: float) -> float:
     """Force on a leg; its kind is an argument so that the compiler knows it."""
     if kind == CUBIC:  # Hertz's law, the linear branch of MYC, most unloading
@@ -69,15 +63,11 @@ def force_on(leg: Leg, kind: int, law: BlendedLaw, q: float) -> float:
 @kernel
 def _along_loading(law: BlendedLaw, part: int, first: int, last: int, level: float) -> Leg:
     """Leg on pieces of the loading curve."""
-    own = law.low
-    row = force.row_of(own, first)
-    degree, at = int(own[row + force.DEGREE]), int(own[row + force.AT])
-    plain = law.share == 0.0 and own[row + force.SCALE] == 1.0 and own[row + force.OFFSET] == 0.0
-    if plain and last == first and degree <= 3:
-        c1 = own[at + 1] if degree > 0 else 0.0
-        c2 = own[at + 2] if degree > 1 else 0.0
-        c3 = own[at + 3] if degree > 2 else 0.0
-        return Leg(part, level, 0.0, CUBIC, first, last, own[at], c1, c2, c3, 0.0)
+    c, row = law.low, force.row_of(law.low, first)
+    plain = law.share == 0.0 and c[row + force.SCALE] == 1.0 and c[row + force.OFFSET] == 0.0
+    if plain and last == first and c[row + force.DEGREE] <= 3.0:
+        at = int(c[row + force.AT])
+        return Leg(part, level, 0.0, CUBIC, first, last, c[at], c[at + 1], c[at + 2], c[at + 3], 0.0)
     return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 

@@ -5,15 +5,13 @@ mobility, since that has a limit where the mobility is 0. The other channels tak
 follows from the largest compression. `Losses` lists all of them; its members and the square of the
 restitution add up to one.
 
-Legend: q root compression, f contact force, dm largest compression, u0 impact speed, in the law's
-scale; ds = dt/(2 q).
+Legend: q root compression, f contact force, u0 impact speed, in the law's scale; ds = dt/(2 q).
 """
 
 from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force
-from contactlaw.equation.force import BlendedLaw
+from contactlaw.equation.force import Deepest
 
 
 class Losses(NamedTuple):
@@ -39,14 +37,7 @@ def power(q: float, f: float) -> float:
 
 
 @kernel(inline=True)
-def at_the_contact(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
-    """Residual compression, and plastic and other work, of a contact that was loaded to dm."""
-    residual, loss, other = force.residual_and_losses(law, dm)
-    return residual, loss - other, other
-
-
-@kernel(inline=True)
-def shares(plastic: float, work: float, other: float, mobility: float, u0: float) -> Losses:
-    """Losses of a contact that has ended."""
+def shares(turned: Deepest, wave: float, u0: float) -> Losses:
+    """Losses of a contact that has ended, from the work of the waves."""
     per_energy = 2.0 / (u0 * u0)
-    return Losses(per_energy * plastic, per_energy * mobility * work, per_energy * other)
+    return Losses(per_energy * (turned.loss - turned.other), per_energy * wave, per_energy * turned.other)

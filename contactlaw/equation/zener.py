@@ -29,7 +29,6 @@ from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
-_CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
@@ -109,7 +108,7 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
     """Integrate one impact, and note points of its path in row n."""
     y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, lam * scale.t)
+    contact = ScaledContact(law, lam * scale.t, (integrator.LEAST_RESTITUTION * scale.u) ** 2)
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
@@ -143,8 +142,8 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
     dm = top.q * top.q
-    residual, plastic, other = losses.at_the_contact(law, dm)
-    lost = losses.shares(plastic, state.work, other, contact.mobility, scale.u)
+    turned = force.deepest(law, dm)
+    lost = losses.shares(turned, contact.mobility * state.work, scale.u)
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
@@ -153,7 +152,7 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         state.t / scale.t,
         top.f * y * math.sqrt(y),
         dm * y,
-        residual * y,
+        turned.residual * y,
         lost.plastic,
         lost.wave,
         lost.other,
@@ -172,8 +171,8 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
     unit = math.sqrt(math.sqrt(y))
     speed = 1.0 / (y * unit)
-    residual, plastic, other = losses.at_the_contact(law, one.largest)
-    lost = losses.shares(plastic, 0.0, other, 0.0, speed)
+    turned = force.deepest(law, one.largest)
+    lost = losses.shares(turned, 0.0, speed)
     left = max(1.0 - lost.plastic - lost.other, 0.0)
     rebound = min(near_edge.restitution(one, y), math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
@@ -189,7 +188,7 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
         one.duration / unit,
         one.peak_force * y * math.sqrt(y),
         one.largest * y,
-        residual * y,
+        turned.residual * y,
         lost.plastic,
         wave,
         lost.other,
@@ -349,27 +348,16 @@ def overload_at(
 def extremes(laws: Array, outcome: Outcome, out: Extremes) -> None:
     """Peak force, residual compression and shares of the energy of impacts.
 
-    Most laws are Hertz's below yield; y may be inf there. Impacts beyond that are gathered first,
-    because a branch in the loop would be mispredicted for half of them.
+    Contacts that follow Hertz's law need no yield compression, which is inf for an elastic law.
     """
     leaves = force.leaves_hertz(force.at_strength(laws, 0.0))
-    beyond, dm = np.empty(_CHUNK, dtype=np.int64), np.empty(_CHUNK)
-    for start in range(0, out.peak_force.size, _CHUNK):
-        count = 0
-        for n in range(start, min(start + _CHUNK, out.peak_force.size)):
-            w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
-            out.peak_force[n] = w * math.sqrt(w)
-            out.residual_compression[n] = 0.0
-            out.plastic_fraction[n] = out.other_fraction[n] = 0.0
-            beyond[count] = n
-            dm[count] = w / outcome.yield_ratio[n]
-            count += w > outcome.yield_ratio[n] * leaves
-        for k in range(count):
-            n = beyond[k]
-            law, y = force.at_strength(laws, outcome.strength[n]), outcome.yield_ratio[n]
-            left, plastic, other = losses.at_the_contact(law, dm[k])
+    for n in range(out.peak_force.size):
+        w, y = outcome.compression_ratio[n] * outcome.elastic_compression[n], outcome.yield_ratio[n]
+        out.peak_force[n] = w * math.sqrt(w)
+        out.residual_compression[n] = out.plastic_fraction[n] = out.other_fraction[n] = 0.0
+        if w > y * leaves:
+            turned = force.deepest(force.at_strength(laws, outcome.strength[n]), w / y)
             unit = y * math.sqrt(y)  # F_Y
-            out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
-            out.residual_compression[n] = left * y
-            out.plastic_fraction[n] = 2.0 * plastic * y * unit
-            out.other_fraction[n] = 2.0 * other * y * unit
+            out.peak_force[n], out.residual_compression[n] = turned.force * unit, turned.residual * y
+            out.plastic_fraction[n] = 2.0 * (turned.loss - turned.other) * y * unit
+            out.other_fraction[n] = 2.0 * turned.other * y * unit

@@ -115,10 +115,10 @@ def _values(name: str, part: _Function, at: Array) -> tuple[Array, Array]:
 
 
 class LoadingCurve:
-    """The loading curve in pieces, and the force and the work at any compressions."""
+    """The loading curve in pieces, and force and work at any compressions."""
 
     def __init__(self, name: str, branches: Sequence[Loading], end: float, resolution: Resolution) -> None:
-        self.end = end
+        self.branches, self.end = branches, end
         self.pieces: list[_Piece] = []
         self.kinks: list[int] = []  # first piece of each branch, and the number of all pieces
         for branch, stop in ends(branches, end):
@@ -130,7 +130,6 @@ class LoadingCurve:
                 self.pieces += _expand(name, part, math.sqrt(branch.start), math.sqrt(stop), resolution)
         self.kinks.append(len(self.pieces))
         terms = max(piece.parts[0].size for piece in self.pieces)
-        self._force = np.zeros((len(self.pieces), terms))
         self._work = np.zeros((len(self.pieces), terms + 2))
         starts, self._scale, self._offset = np.array([piece[:3] for piece in self.pieces]).T
         self._starts, done = starts, 0.0
@@ -140,21 +139,21 @@ class LoadingCurve:
             rate = force * Polynomial([piece.offset, 1.0]) * (2.0 / piece.scale**2)
             work = rate.integ(lbnd=piece.scale * piece.start - piece.offset, k=done)
             done = work(piece.scale * stop - piece.offset)
-            self._force[n, : force.coef.size], self._work[n, : work.coef.size] = force.coef, work.coef
+            self._work[n, : work.coef.size] = work.coef
 
     def force(self, d: Array) -> Array:
-        """Force at compressions."""
-        return self._at(d, self._force)
+        """Force at compressions, by the formulas: pieces would meet with small jumps."""
+        k, force = np.searchsorted([branch.start for branch in self.branches], d, side="right") - 1, np.empty_like(d)
+        for n in np.unique(k):
+            force[k == n] = self.branches[n].at(d[k == n])
+        return force
 
     def work(self, d: Array) -> Array:
         """Integral of the force up to compressions."""
-        return self._at(d, self._work)
-
-    def _at(self, d: Array, coefficients: Array) -> Array:
         q = np.sqrt(d)
         k = np.searchsorted(self._starts, q, side="right") - 1
         t, value = self._scale[k] * q - self._offset[k], np.zeros_like(q)
-        for c in coefficients.T[::-1]:
+        for c in self._work.T[::-1]:
             value = value * t + c[k]
         return value
 
@@ -231,70 +230,91 @@ def check_unloading(name: str, curve: LoadingCurve, branches: Sequence[Unloading
     before: Any = None if stiffer else (0.0, 0.0)
     for branch, stop in ends(branches, curve.end):
         dm = np.array([branch.start * (1.0 + 1e-9), stop * (1.0 - 1e-9)])
-        values = [np.asarray(formula(dm)) for formula in _residual_and_loss(curve, branch)]
+        contacts = _Contacts(curve, branch)
+        values = contacts.residual(dm), contacts.loss(dm)
         if before is None:  # a stiffer law has friction: any contact loses energy
-            before = [value[0] for value in values]
+            before = values[0][0], values[1][0]
         scales = dm[0], curve.work(dm)[0]
         for what, value, last, scale in zip(("residual compression", "loss"), values, before, scales, strict=True):
             if not abs(value[0] - last) <= 1e-6 * scale:
                 jump = f"at {branch.start:.9g} d_Y, from {last:.6g} to {value[0]:.6g}"
                 raise ArgumentError("law", name, f"its {what} jumps {jump}")
-        before = [value[-1] for value in values]
+        before = values[0][-1], values[1][-1]
 
 
-def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
-    """Residual compression and loss of a branch, multiplied by their powers of dm - 1."""
-    exponent, divided_loss = branch.exponent, branch.loss
+class _Contacts:
+    """Contacts of one branch, as its formulas have them, for arrays of largest compressions."""
 
-    def residual(dm: Array) -> Array:
-        return branch.residual(dm) * (dm - 1.0) ** branch.order
+    def __init__(self, curve: LoadingCurve, branch: Unloading) -> None:
+        self.curve, self.branch = curve, branch
 
-    def loss(dm: Array) -> Array:
-        if divided_loss is not None:
-            return divided_loss(dm) * (dm - 1.0) ** branch.loss_order
-        n = exponent(dm) if callable(exponent) else exponent
-        return curve.work(dm) - curve.force(dm) * (dm - residual(dm)) / (n + 1.0)
+    def residual(self, dm: Array) -> Array:
+        return self.branch.residual(dm) * (dm - 1.0) ** self.branch.order
 
-    return residual, loss
+    def per_exponent(self, dm: Array) -> Array:
+        """Share of the loading work that comes back, times the exponent and 1."""
+        return self.curve.force(dm) * (dm - self.residual(dm)) / self.curve.work(dm)
 
+    def exponent(self, dm: Array) -> Array:
+        exponent, recovery = self.branch.exponent, self.branch.recovery
+        if recovery is not None:
+            return self.per_exponent(dm) / recovery(dm) - 1.0
+        return exponent(dm) if callable(exponent) else np.full_like(dm, exponent)
 
-def _unloading_rows(
-    name: str, curve: LoadingCurve, branch: Unloading, edges: Sequence[float], resolution: Resolution
-) -> list[_Piece]:
-    exponent = branch.exponent
-    residual, loss = _residual_and_loss(curve, branch)
+    def loss(self, dm: Array) -> Array:
+        if self.branch.loss is not None:
+            return self.branch.loss(dm) * (dm - 1.0) ** self.branch.loss_order
+        recovery = self.branch.recovery
+        back = recovery(dm) if recovery is not None else self.per_exponent(dm) / (self.exponent(dm) + 1.0)
+        return (1.0 - back) * self.curve.work(dm)
 
-    # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
-    # for a loss, the loss itself. Rounding does not allow less than 0.05 of dm and of the work.
-    def smaller(dm: Array) -> Array:
-        return branch.residual(dm) * np.clip(1.0 - residual(dm) / dm, 0.05, 1.0)
+    def rows(self, name: str, edges: Sequence[float], resolution: Resolution) -> list[_Piece]:
+        """Pieces of the unloading curves."""
+        branch, curve = self.branch, self.curve
 
-    def lost(dm: Array) -> Array:
-        work = curve.work(dm)
-        return np.clip(loss(dm), 0.05 * work, 0.2 * work)
+        # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
+        # for a loss, the loss itself; for an exponent, what rounding of the span leaves. Rounding does
+        # not allow less than 0.05 of dm and of the work.
+        def smaller(dm: Array) -> Array:
+            return branch.residual(dm) * np.clip(1.0 - self.residual(dm) / dm, 0.05, 1.0)
 
-    parts = [
-        _Function("residual compression", branch.residual, smaller if branch.order else np.positive),
-        _Function("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent,
-        # divided by its power of dm - 1, a loss does not vanish and is its own size
-        _Function("loss", branch.loss or loss, None if branch.loss_order else lost),
-        0.0 if branch.other is None else _Function("other loss", branch.other, lost),
-    ]
-    powers = branch.order, 0.0, branch.loss_order, 0.0
-    return [
-        row for low, high in itertools.pairwise(edges) for row in _expand(name, parts, low, high, resolution, powers)
-    ]
+        def lost(dm: Array) -> Array:
+            work = curve.work(dm)
+            return np.clip(self.loss(dm), 0.05 * work, 0.2 * work)
+
+        def per_span(dm: Array) -> Array:
+            return 2.0 * dm / (dm - self.residual(dm))
+
+        exponent: _Function | float = _Function("exponent", lambda dm: 2.0 * self.exponent(dm), per_span)
+        if branch.recovery is None and not callable(branch.exponent):
+            exponent = 2.0 * branch.exponent
+        other = branch.other
+        parts = [
+            _Function("residual compression", branch.residual, smaller if branch.order else np.positive),
+            exponent,
+            # divided by its power of dm - 1, a loss does not vanish and is its own size
+            _Function("loss", branch.loss or self.loss, None if branch.loss_order else lost),
+            _Function("other loss", lambda dm: other(dm) * curve.work(dm), lost) if other else 0.0,
+        ]
+        powers = branch.order, 0.0, branch.loss_order, 0.0
+        return [
+            row
+            for low, high in itertools.pairwise(edges)
+            for row in _expand(name, parts, low, high, resolution, powers)
+        ]
 
 
 def expanded(
     name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, resolution: Resolution
 ) -> tuple[LoadingCurve, list[_Piece]]:
     """Expand the formulas of a law: the loading curve, and pieces of the unloading curves."""
-    curve, rows = LoadingCurve(name, loading, end, resolution), []
+    curve, rows = LoadingCurve(name, loading, end, resolution), list[_Piece]()
+    # pieces that are no finer than the resolution would meet with jumps that no expansion follows
+    exact = LoadingCurve(name, loading, end, Resolution())
     for branch, stop in ends(unloading, end):
         # the loss has kinks where the loading curve has them
         kinks = [one.start for one in loading if branch.start < one.start < stop]
-        rows += _unloading_rows(name, curve, branch, [branch.start, *kinks, stop], resolution)
+        rows += _Contacts(exact, branch).rows(name, [branch.start, *kinks, stop], resolution)
     return curve, rows
 
 

@@ -225,7 +225,7 @@ class Law:
         """Kinks, and values along the curves, by which laws are compared."""
         values = [*self.loading_kinks, *self.outcome_kinks]
         for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
-            lost = _force.residual_and_losses(self._law, d)[1:]
+            lost = _force.deepest(self._law, d)[3:]
             values += [self.loading(math.sqrt(d)), *self.unloading_curve(d), *lost]
         return values
 
@@ -235,7 +235,7 @@ class Law:
 
     def residual(self, dm: float) -> float:
         """Compression [d_Y] left after unloading from the largest one, dm."""
-        return _force.residual_and_losses(self._law, dm)[0]
+        return _force.deepest(self._law, dm).residual
 
     def unloading_curve(self, dm: float) -> UnloadingCurve:
         """Find the unloading curve from dm."""
@@ -247,7 +247,7 @@ class Law:
 
     def dissipation(self, dm: float) -> float:
         """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
-        return _force.residual_and_losses(self._law, dm)[1]
+        return _force.deepest(self._law, dm).loss
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

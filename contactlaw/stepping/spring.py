@@ -406,6 +406,5 @@ def at_largest(law: Array, spring: Spring, state: State) -> Largest:
     unit = spring.stiffness * scale * math.sqrt(scale)
     if state.stiffening > 0.0:
         unit *= state.stiffening
-    dm = state.largest_compression / scale
-    residual, lost, other = forces.residual_and_losses(own, dm)
-    return Largest(scale, unit, lost, other, residual, forces.loading(own, math.sqrt(dm)))
+    turned = forces.deepest(own, state.largest_compression / scale)
+    return Largest(scale, unit, turned.loss, turned.other, turned.residual, turned.force)

@@ -35,7 +35,7 @@ READING = {
     for kernel in (kernel for module in MODULES for kernel in vars(module).values())
     if hasattr(kernel, "py_func") and READ & kernel.py_func.__annotations__.keys()
 }
-INNER = "locate", "cor_at", "_unloading_of"  # take a place in the table, or a contact with a loss
+INNER = "locate", "cor_at"  # take a place in the table
 FLOATS = st.sampled_from([np.nan, np.inf, 0.5, 1.5]) | st.floats()
 CALLED = set()
 
