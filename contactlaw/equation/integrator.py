@@ -15,8 +15,7 @@ import math
 from typing import NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force, legs, losses, motion
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation import legs, losses, motion
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
 
@@ -178,27 +177,16 @@ def follow(
 
 
 @kernel
-def _to_leg(contact: ScaledContact, leg: Leg, residual: float, state: ScaledState) -> ScaledState:
-    """Convert a state from the root compression over `residual` to that of a leg."""
-    q = state.q
-    if leg.residual != residual:
-        q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
-    return motion.start(contact, leg, q, state.u, state.t, state.work)
-
-
-@kernel
-def after(
-    contact: ScaledContact, curve: UnloadingCurve, leg: Leg, event: int, state: ScaledState
-) -> tuple[UnloadingCurve, Leg, ScaledState]:
+def after(contact: ScaledContact, leg: Leg, event: int, state: ScaledState) -> tuple[Leg, ScaledState]:
     """Next leg, and the state on it, after a leg that ended at its level or with loading."""
-    residual = leg.residual
+    residual, q = leg.residual, state.q
     if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
-        dm = state.q * state.q
-        curve = force.unloading(contact.law, dm)
-        leg = legs.down(contact.law, curve, dm)
+        leg = legs.down(contact.law, q * q)
     else:
         leg = legs.up(contact.law, leg.last + 1)
-    return curve, leg, _to_leg(contact, leg, residual, state)
+    if leg.residual != residual:
+        q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
+    return leg, motion.start(contact, leg, q, state.u, state.t, state.work)
 
 
 @kernel

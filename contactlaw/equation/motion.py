@@ -28,7 +28,6 @@ from contactlaw.equation import legs, plate
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import Leg
 
-
 _SLOW = 1e8  # square of a speed over `least` from which on less than 1e-8 of v is missing
 
 
@@ -77,10 +76,3 @@ def start(contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: 
     """State on a leg, with the rates there."""
     dq, du, f = rates(contact, leg, leg.kind, q, u)
     return ScaledState(q, u, t, work, dq, du, f)
-
-
-@kernel
-def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
-    """Leg that begins at first touch, and the state there."""
-    leg = legs.up(contact.law, legs.FIRST)
-    return leg, start(contact, leg, 0.0, speed, 0.0, 0.0)

@@ -24,7 +24,6 @@ from contactlaw.equation import edge, elastic, force, integrator, legs, losses, 
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
-from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 
@@ -109,8 +108,9 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
     y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
     contact = ScaledContact(law, lam * scale.t, (integrator.LEAST_RESTITUTION * scale.u) ** 2)
-    leg, state = motion.touch(contact, scale.u)
-    curve, top, total, longest = NO_CURVE, state, 0, 0
+    leg = legs.up(law, legs.FIRST)
+    top = state = motion.start(contact, leg, 0.0, scale.u, 0.0, 0.0)
+    total = longest = 0
     marks, noted, going = notes.at.shape[1], 0, True
     while going:
         level, until, loading = leg.level, math.inf, legs.is_loading(leg)
@@ -140,7 +140,7 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         # absurd impacts overflow: no event comes after a time that is infinite or no number
         going = going and (goal < AT_TIMES or noted < marks) and state.t < math.inf
         if going and ends:
-            curve, leg, state = integrator.after(contact, curve, leg, event, state)
+            leg, state = integrator.after(contact, leg, event, state)
     dm = top.q * top.q
     turned = force.deepest(law, dm)
     lost = losses.shares(turned, contact.mobility * state.work, scale.u)
@@ -295,13 +295,6 @@ def _scale(y: Array) -> Array:
     return np.where(y < math.inf, y, 1.0)
 
 
-def _put(one: Solution, w_m: Array, out: Outcome) -> None:
-    """Write solutions into outcomes."""
-    out.restitution[:], out.contact_time[:] = one.restitution, one.contact_time
-    out.wave_rate[:], out.elastic_compression[:] = one.wave_rate, w_m
-    out.compression_ratio[:] = one.peak_compression / w_m
-
-
 def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None) -> tuple[int, int]:
     """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
@@ -312,7 +305,9 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: E
     one = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
     if one.status.any():
         return failure(one.status)
-    _put(one, elastic_compression(law, lam, s), out)  # of an endless plate, near edges, too
+    out.restitution[:], out.contact_time[:], out.wave_rate[:] = one.restitution, one.contact_time, one.wave_rate
+    out.elastic_compression[:] = elastic_compression(law, lam, s)  # of an endless plate, near edges, too
+    out.compression_ratio[:] = one.peak_compression / out.elastic_compression
     return OK, 0
 
 
@@ -330,16 +325,14 @@ def overload_at(
         reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
         return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
 
-    before = np.log(np.broadcast_to(dm, np.shape(lam)))
-    gap_before = gap(before)
-    at = before - gap_before
+    at, slope = np.log(np.broadcast_to(dm, np.shape(lam))), 1.0
+    gap_at = gap(at)
     for _ in range(100):
-        gap_at = gap(at)
-        if not (abs(gap_at) > _CLOSE).any():
+        step = np.where(abs(gap_at) > _CLOSE, -gap_at / slope, 0.0)
+        if not step.any():
             break
-        rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
-        step = np.where(abs(gap_at) > _CLOSE, gap_at * (at - before) / rise, 0.0)
-        before, gap_before, at = at, gap_at, at - step
+        at, before, gap_at = at + step, gap_at, gap(at + step)
+        slope = np.where(gap_at == before, 1.0, (gap_at - before) / np.where(step == 0.0, 1.0, step))
     found = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
     return found if found.shape else found.item()
 

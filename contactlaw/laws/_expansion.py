@@ -54,14 +54,9 @@ class _Function(NamedTuple):
 
 
 def _expand(
-    name: str,
-    parts: Sequence[_Function | float],
-    low: float,
-    high: float,
-    resolution: Resolution,
-    powers: Sequence[float] = (),
+    name: str, parts: Sequence[_Function], low: float, high: float, resolution: Resolution, powers: Sequence[float] = ()
 ) -> list[_Piece]:
-    """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
+    """Expand functions on [low, high], all on the same pieces."""
     count = max(1, math.ceil(math.log(high / low) / math.log(resolution.widest)))
     edges = low * np.power(high / low, np.linspace(0.0, 1.0, count + 1))
     edges[[0, -1]] = low, high
@@ -82,10 +77,8 @@ def _expand(
     return sorted(done, key=lambda piece: piece.start)
 
 
-def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> tuple[Array, Mask]:
+def _powers(name: str, part: _Function, at: Array, vanished: float) -> tuple[Array, Mask]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
-    if isinstance(part, float):
-        return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
     values, size = _values(name, part, at)
     level = values[:, :1]  # subtracted, so that rounding is relative to the values' variation
     terms = (values - level) @ _TO_CHEBYSHEV
@@ -169,7 +162,7 @@ def ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
     if any(not low < high for low, high in itertools.pairwise([*starts, last])):
         reason = f"branches have to begin one after the other, below {last:g} d_Y"
         raise ArgumentError("law", None, reason)
-    return list(zip(branches, [*starts[1:], last], strict=True)) if starts else []
+    return list(zip(branches, [*starts[1:], last], strict=False))  # no branch, no end
 
 
 def check_yield(
@@ -225,9 +218,9 @@ def check_formulas(name: str, loading: Sequence[Loading], unloading: Sequence[Un
             raise ArgumentError("law", name, reason)
 
 
-def check_unloading(name: str, curve: LoadingCurve, branches: Sequence[Unloading], stiffer: bool) -> None:
+def check_unloading(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
     """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
-    before: Any = None if stiffer else (0.0, 0.0)
+    before: Any = (0.0, 0.0) if curve.branches[0].force == HERTZ else None
     for branch, stop in ends(branches, curve.end):
         dm = np.array([branch.start * (1.0 + 1e-9), stop * (1.0 - 1e-9)])
         contacts = _Contacts(curve, branch)
@@ -251,22 +244,22 @@ class _Contacts:
     def residual(self, dm: Array) -> Array:
         return self.branch.residual(dm) * (dm - 1.0) ** self.branch.order
 
-    def per_exponent(self, dm: Array) -> Array:
-        """Share of the loading work that comes back, times the exponent and 1."""
-        return self.curve.force(dm) * (dm - self.residual(dm)) / self.curve.work(dm)
-
     def exponent(self, dm: Array) -> Array:
         exponent, recovery = self.branch.exponent, self.branch.recovery
         if recovery is not None:
-            return self.per_exponent(dm) / recovery(dm) - 1.0
+            return self._over_work(dm) / recovery(dm) - 1.0
         return exponent(dm) if callable(exponent) else np.full_like(dm, exponent)
 
     def loss(self, dm: Array) -> Array:
         if self.branch.loss is not None:
             return self.branch.loss(dm) * (dm - 1.0) ** self.branch.loss_order
         recovery = self.branch.recovery
-        back = recovery(dm) if recovery is not None else self.per_exponent(dm) / (self.exponent(dm) + 1.0)
-        return (1.0 - back) * self.curve.work(dm)
+        share = recovery(dm) if recovery is not None else self._over_work(dm) / (self.exponent(dm) + 1.0)
+        return (1.0 - share) * self.curve.work(dm)
+
+    def _over_work(self, dm: Array) -> Array:
+        """Force times the compression that is given back, over the loading work."""
+        return self.curve.force(dm) * (dm - self.residual(dm)) / self.curve.work(dm)
 
     def rows(self, name: str, edges: Sequence[float], resolution: Resolution) -> list[_Piece]:
         """Pieces of the unloading curves."""
@@ -285,18 +278,15 @@ class _Contacts:
         def per_span(dm: Array) -> Array:
             return 2.0 * dm / (dm - self.residual(dm))
 
-        exponent: _Function | float = _Function("exponent", lambda dm: 2.0 * self.exponent(dm), per_span)
-        if branch.recovery is None and not callable(branch.exponent):
-            exponent = 2.0 * branch.exponent
-        other = branch.other
+        other = branch.other or np.zeros_like
         parts = [
             _Function("residual compression", branch.residual, smaller if branch.order else np.positive),
-            exponent,
+            _Function("exponent", lambda dm: 2.0 * self.exponent(dm), branch.recovery and per_span),
             # divided by its power of dm - 1, a loss does not vanish and is its own size
             _Function("loss", branch.loss or self.loss, None if branch.loss_order else lost),
-            _Function("other loss", lambda dm: other(dm) * curve.work(dm), lost) if other else 0.0,
+            _Function("other loss", lambda dm: other(dm) * curve.work(dm), lost),
         ]
-        powers = branch.order, 0.0, branch.loss_order, 0.0
+        powers = (branch.order, 0.0, branch.loss_order, 0.0)
         return [
             row
             for low, high in itertools.pairwise(edges)
@@ -309,12 +299,10 @@ def expanded(
 ) -> tuple[LoadingCurve, list[_Piece]]:
     """Expand the formulas of a law: the loading curve, and pieces of the unloading curves."""
     curve, rows = LoadingCurve(name, loading, end, resolution), list[_Piece]()
-    # pieces that are no finer than the resolution would meet with jumps that no expansion follows
-    exact = LoadingCurve(name, loading, end, Resolution())
     for branch, stop in ends(unloading, end):
         # the loss has kinks where the loading curve has them
         kinks = [one.start for one in loading if branch.start < one.start < stop]
-        rows += _Contacts(exact, branch).rows(name, [branch.start, *kinks, stop], resolution)
+        rows += _Contacts(curve, branch).rows(name, [branch.start, *kinks, stop], resolution)
     return curve, rows
 
 
@@ -323,12 +311,8 @@ def packed(curve: LoadingCurve, rows: Sequence[_Piece]) -> Array:
     pieces = curve.pieces
     starts = [*(piece.start for piece in pieces), math.inf]
     family_starts = [*(row.start for row in rows), curve.end if rows else math.inf]
-    starts_at = _force.HEADER
-    curve_at = starts_at + len(starts)
-    family_starts_at = curve_at + len(pieces) * _force.PIECE
-    family_at = family_starts_at + len(family_starts)
-    at = family_at + len(rows) * _force.UNLOADING_ROW
-    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at]
+    sizes = len(starts), len(pieces) * _force.PIECE, len(family_starts), len(rows) * _force.UNLOADING_ROW
+    *places, at = itertools.accumulate(sizes, initial=_force.HEADER)
     coefficients: list[Array] = []
 
     def put(part: Array, length: int) -> list[float]:
@@ -351,7 +335,7 @@ def packed(curve: LoadingCurve, rows: Sequence[_Piece]) -> Array:
         family_rows += [row.scale, row.offset]
         for power, part, length in zip(row.powers, row.parts, lengths, strict=True):
             family_rows += [power, *put(part, length)]
-    numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
+    numbers = [len(pieces), len(rows), *places, *starts, *curve_rows, *family_starts, *family_rows]
     return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])
 
 

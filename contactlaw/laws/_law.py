@@ -14,7 +14,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
-from contactlaw.laws._branches import END, HERTZ, Loading, Unloading
+from contactlaw.laws._branches import END, Loading, Unloading
 from contactlaw.laws._expansion import Resolution, check_formulas, check_unloading, check_yield, expanded, packed
 
 
@@ -147,7 +147,7 @@ class Law:
         end = range[1] if range[1] < math.inf else END
         check_formulas(name, loading, unloading, end)
         curve, rows = expanded(name, loading, unloading, end, Resolution())
-        check_unloading(name, curve, unloading, loading[0].force != HERTZ)
+        check_unloading(name, curve, unloading)
         kinks = tuple(float(branch.start) for branch in loading[1:])
         # friction takes energy below yield, too: its branch begins no kink
         starts = {*kinks, *(float(branch.start) for branch in unloading if branch.start >= 1.0)}
@@ -225,8 +225,7 @@ class Law:
         """Kinks, and values along the curves, by which laws are compared."""
         values = [*self.loading_kinks, *self.outcome_kinks]
         for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
-            lost = _force.deepest(self._law, d)[3:]
-            values += [self.loading(math.sqrt(d)), *self.unloading_curve(d), *lost]
+            values += _force.deepest(self._law, d)
         return values
 
     def loading(self, q: float) -> float:

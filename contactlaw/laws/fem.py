@@ -231,12 +231,9 @@ class Curves:
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
         # shares of the work and of the compression that come back, and of the energy lost before
-        self.returned, self.recovered, self.lost_before = 1.0, 1.0, 0.0
-        if given.loss_factor:
-            a = given.relaxation
-            sums = [a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"]]
-            self.returned, self.recovered = math.exp(-sums[0]), math.exp(-sums[1])
-            self.lost_before = sums[2]
+        a = given.relaxation
+        work, span, self.lost_before = (a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"])
+        self.returned, self.recovered = math.exp(-work), math.exp(-span)
         self._terms: dict[str, Array] = {}
         weights = given.weights(blend, found["stiffest"]) if self.ratio else {}
         for name, cases in found["curves"].items():

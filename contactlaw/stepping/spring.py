@@ -56,6 +56,7 @@ from contactlaw.equation.numbers import (
     numbers,
     relaxed,
     relaxes,
+    scaled,
 )
 from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
@@ -261,15 +262,7 @@ def curved(spring: Spring, bending: float) -> Spring:
         spring.scale * bending,
         spring.relaxation / faster,
         spring.ratio,
-        PlateConstants(
-            plate.inelasticity * faster,
-            plate.transit * faster,
-            plate.x_at_one * (faster * faster),
-            plate.saturated * (faster * root),
-            plate.corrections,
-            plate.growth,
-            plate.rate,
-        ),
+        scaled(plate, faster, faster, faster * faster, faster * root),
     )
 
 
