@@ -5,13 +5,12 @@ mobility, since that has a limit where the mobility is 0. The other channels tak
 follows from the largest compression. `Losses` lists all of them; its members and the square of the
 restitution add up to one.
 
-Legend: q root compression, f contact force, u0 impact speed, in the law's scale; ds = dt/(2 q).
+Legend: q root compression, f contact force, in the law's scale; ds = dt/(2 q).
 """
 
 from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation.force import Deepest
 
 
 class Losses(NamedTuple):
@@ -34,10 +33,3 @@ DESCRIPTIONS = Losses(
 def power(q: float, f: float) -> float:
     """Work that the waves take per ds, over the plate's mobility."""
     return 2.0 * q * f * f
-
-
-@kernel(inline=True)
-def shares(turned: Deepest, wave: float, u0: float) -> Losses:
-    """Losses of a contact that has ended, from the work of the waves."""
-    per_energy = 2.0 / (u0 * u0)
-    return Losses(per_energy * (turned.loss - turned.other), per_energy * wave, per_energy * turned.other)

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion, near_edge
+from contactlaw.equation import edge, elastic, force, integrator, legs, motion, near_edge
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
@@ -141,22 +141,51 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         going = going and (goal < AT_TIMES or noted < marks) and state.t < math.inf
         if going and ends:
             leg, state = integrator.after(contact, leg, event, state)
-    dm = top.q * top.q
-    turned = force.deepest(law, dm)
-    lost = losses.shares(turned, contact.mobility * state.work, scale.u)
-    return Solution(
+    return _solution(
+        law,
+        y,
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
         min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
-        top.f * y * math.sqrt(y),
+        top.f,
+        top.q * top.q,
+        lam,
+        2.0 * scale.t * state.work / scale.u**2,
+    )
+
+
+@kernel
+def _solution(
+    law: BlendedLaw,
+    y: float,
+    status: float,
+    steps: float,
+    restitution: float,
+    loading_time: float,
+    contact_time: float,
+    f: float,
+    dm: float,
+    lam: float,
+    wave_rate: float,
+) -> Solution:
+    """Solution of a contact that has ended, from its peak force and compression in the law's scale."""
+    turned, unit = force.deepest(law, dm), y * math.sqrt(y)
+    per_energy = 2.0 * y * unit
+    return Solution(
+        status,
+        steps,
+        restitution,
+        loading_time,
+        contact_time,
+        f * unit,
         dm * y,
         turned.residual * y,
-        lost.plastic,
-        lost.wave,
-        lost.other,
-        2.0 * scale.t * state.work / scale.u**2,
+        per_energy * (turned.loss - turned.other),
+        lam * wave_rate,
+        per_energy * turned.other,
+        wave_rate,
     )
 
 
@@ -170,28 +199,24 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
     one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
     unit = math.sqrt(math.sqrt(y))
-    speed = 1.0 / (y * unit)
-    turned = force.deepest(law, one.largest)
-    lost = losses.shares(turned, 0.0, speed)
-    left = max(1.0 - lost.plastic - lost.other, 0.0)
+    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, one.largest).loss, 0.0)
     rebound = min(near_edge.restitution(one, y), math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
     again = one.stays or edge.comes_back(
         response, one.memory, coupling, rate / unit, one.speed, lam * unit, one.duration
     )
     edges.again[n] = 1.0 if again else 0.0
-    return Solution(
+    return _solution(
+        law,
+        y,
         float(OK if one.ended else TOO_MANY_STEPS),
         float(one.steps),
         rebound,
         one.loading_time / unit,
         one.duration / unit,
-        one.peak_force * y * math.sqrt(y),
-        one.largest * y,
-        turned.residual * y,
-        lost.plastic,
-        wave,
-        lost.other,
+        one.peak_force,
+        one.largest,
+        lam,
         wave / lam if lam > 0.0 else 0.0,
     )
 
