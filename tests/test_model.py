@@ -32,7 +32,7 @@ def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
     hit = model.solve(model.yield_speed(radius, thickness), radius, thickness, rtol=1e-10)
     strain = math.pi * model.pair.sphere.yield_strength / model.pair.effective_modulus
     assert hit.peak_compression == pytest.approx(0.68 * strain**2 * radius, rel=1e-9)
-    assert hit.overload == pytest.approx(1.0, rel=2e-6)  # w_m is a polynomial, within 1.1e-6
+    assert hit.overload == pytest.approx(1.0, rel=1e-9)
 
 
 def test_shapes(model):

@@ -82,8 +82,8 @@ _COEFFICIENTS = np.array(
 def compression(law: BlendedLaw, lam: float) -> float:
     """Largest compression of an impact that just yields."""
     softer = 0.4 / force.work_at_yield(law)  # 1 - h
-    own = lam * softer**-0.4
-    x, power, total, at = own / (own + _HALF), 1.0, 0.0, 0
+    like_hertz = lam * softer**-0.4
+    x, power, total, at = like_hertz / (like_hertz + _HALF), 1.0, 0.0, 0
     t = min(2.5 * x - 1.0, 1.0)
     for row in range(_DEGREES.size):
         value = 0.0

@@ -150,7 +150,7 @@ def scaled(plate: PlateConstants, inelasticity: float, transit: float, x: float,
 def relaxed(plate: PlateConstants, root: float, log_time: float) -> tuple[PlateConstants, float, float]:
     """Plate and V^(1/5) with the moduli of an impact, from ln T_H without their growth; ln g.
 
-    What is given for V^(1/5) is V^(1/5) g^(2/5): T_H is that of a faster impact.
+    Returns V^(1/5) g^(2/5) in place of V^(1/5): T_H is that of a faster impact.
     """
     shorter = plate.growth.log_time - log_time
     growth, slower = plate.growth.modulus_power * shorter, math.exp(-0.5 * plate.growth.plate_power * shorter)
@@ -216,9 +216,9 @@ def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
 
 @kernel(cache=True)
 def fill(pair: PairConstants, laws: Array, impact: Impact, out: Numbers) -> None:
-    """`numbers` of many impacts; all arrays have one length."""
+    """`numbers` of many impacts; all arrays have scales length."""
     speed, radius, thickness, mass = impact.speed, impact.radius, impact.thickness, impact.mass
     for n in range(speed.size):
-        one = numbers(pair, laws, Impact(speed[n], radius[n], thickness[n], mass[n]))
-        for k in range(len(one)):
-            out[k][n] = one[k]
+        scales = numbers(pair, laws, Impact(speed[n], radius[n], thickness[n], mass[n]))
+        for k in range(len(scales)):
+            out[k][n] = scales[k]

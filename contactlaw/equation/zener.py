@@ -82,12 +82,12 @@ def _integrate(
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
             law = force.at_strength(laws, s[n])
             if edges is None:
-                one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
+                solution = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
             else:
-                one = follow_near(law, lam[n], y[n], notes, n, edges)
-            for k in range(len(one)):
-                out[k, n] = one[k]
-                if out[0, n] == OK and not abs(one[k]) < math.inf:
+                solution = follow_near(law, lam[n], y[n], notes, n, edges)
+            for k in range(len(solution)):
+                out[k, n] = solution[k]
+                if out[0, n] == OK and not abs(solution[k]) < math.inf:
                     out[0, n] = BAD_INPUT
 
 
@@ -119,7 +119,7 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
-        event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
+        event, turns, reached = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
             state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
@@ -128,15 +128,15 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
             going = longest < MAX_STEPS and not (event == LEVEL and not loading)
-            here = noted if going else marks
+            reached = noted if going else marks
         if turns:
             top, going = state, going and goal != TO_THE_TOP
-            here = marks // 2 if goal == _AT_COMPRESSIONS else noted
-        for k in range(noted, here):
+            reached = marks // 2 if goal == _AT_COMPRESSIONS else noted
+        for k in range(noted, reached):
             notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
-        noted = here
+        noted = reached
         # absurd impacts overflow: no event comes after a time that is infinite or no number
         going = going and (goal < AT_TIMES or noted < marks) and state.t < math.inf
         if going and ends:
@@ -197,25 +197,25 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     """
     y = _shallow(law, y)
     response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
-    one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
+    contact = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
     unit = math.sqrt(math.sqrt(y))
-    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, one.largest).loss, 0.0)
-    rebound = min(near_edge.restitution(one, y), math.sqrt(left))
+    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, contact.largest).loss, 0.0)
+    rebound = min(near_edge.restitution(contact, y), math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
-    again = one.stays or edge.comes_back(
-        response, one.memory, coupling, rate / unit, one.speed, lam * unit, one.duration
+    again = contact.stays or edge.comes_back(
+        response, contact.memory, coupling, rate / unit, contact.speed, lam * unit, contact.duration
     )
     edges.again[n] = 1.0 if again else 0.0
     return _solution(
         law,
         y,
-        float(OK if one.ended else TOO_MANY_STEPS),
-        float(one.steps),
+        float(OK if contact.ended else TOO_MANY_STEPS),
+        float(contact.steps),
         rebound,
-        one.loading_time / unit,
-        one.duration / unit,
-        one.peak_force,
-        one.largest,
+        contact.loading_time / unit,
+        contact.duration / unit,
+        contact.peak_force,
+        contact.largest,
         lam,
         wave / lam if lam > 0.0 else 0.0,
     )
@@ -237,8 +237,8 @@ def _run(
     strength: ArrayLike = 0.0,
 ) -> Solution:
     """Integrate impacts, broadcasting; y is arbitrary for a law that never yields."""
-    given = (np.array(one, np.float64, ndmin=1) for one in (lam, y, strength))
-    lams, ys, s = (each.copy() for each in np.broadcast_arrays(*given))
+    arguments = (np.array(values, np.float64, ndmin=1) for values in (lam, y, strength))
+    lams, ys, s = (each.copy() for each in np.broadcast_arrays(*arguments))
     out = np.zeros((len(Solution._fields), lams.size))
     integrate = _integrate_few if few else _integrate
     integrate(goal, law, lams, ys, s, rtol, notes, out, edges)
@@ -253,8 +253,8 @@ def failure(status: Array) -> tuple[int, int]:
 
 def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) -> Solution:
     """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
-    found = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
-    return Solution(*(each.item() for each in found))
+    solutions = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
+    return Solution(*(each.item() for each in solutions))
 
 
 def history(
@@ -303,13 +303,13 @@ def shape(
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    found = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
-    return found.status, notes.time, notes.speed
+    solutions = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    return solutions.status, notes.time, notes.speed
 
 
 def elastic_compression(law: Array, lam: ArrayLike, strength: ArrayLike = 0.0) -> Any:
     """Largest compression w_m [V0 T_H] of impacts that just yield, see `contactlaw.equation.elastic`."""
-    lams, strengths = (np.array(one, np.float64) for one in np.broadcast_arrays(lam, strength))
+    lams, strengths = (np.array(values, np.float64) for values in np.broadcast_arrays(lam, strength))
     w_m = np.empty(lams.shape)
     elastic.fill(law, lams.ravel(), strengths.ravel(), w_m.reshape(-1))
     return w_m if w_m.shape else w_m.item()
@@ -327,12 +327,13 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: E
     """
     y = _scale(out.yield_ratio)
     lam, s = out.inelasticity, out.strength
-    one = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
-    if one.status.any():
-        return failure(one.status)
-    out.restitution[:], out.contact_time[:], out.wave_rate[:] = one.restitution, one.contact_time, one.wave_rate
+    solutions = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
+    if solutions.status.any():
+        return failure(solutions.status)
+    out.restitution[:], out.contact_time[:] = solutions.restitution, solutions.contact_time
+    out.wave_rate[:] = solutions.wave_rate
     out.elastic_compression[:] = elastic_compression(law, lam, s)  # of an endless plate, near edges, too
-    out.compression_ratio[:] = one.peak_compression / out.elastic_compression
+    out.compression_ratio[:] = solutions.peak_compression / out.elastic_compression
     return OK, 0
 
 
@@ -346,11 +347,12 @@ def overload_at(
 
     def gap(log_chi: Array) -> Array:
         y = w_m / np.exp(log_chi)
-        found = _run(TO_THE_TOP, law, lam, y, rtol, few=few, strength=strength)
-        reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
-        return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
+        solutions = _run(TO_THE_TOP, law, lam, y, rtol, few=few, strength=strength)
+        reached = np.log(solutions.peak_compression.reshape(y.shape) / (y * dm))
+        return np.where(solutions.status.reshape(y.shape) == OK, reached, math.nan)
 
-    at, slope = np.log(np.broadcast_to(dm, np.shape(lam))), 1.0
+    at = np.log(np.broadcast_to(dm, np.shape(lam)))
+    slope = np.ones_like(at)
     gap_at = gap(at)
     for _ in range(100):
         step = np.where(abs(gap_at) > _CLOSE, -gap_at / slope, 0.0)
@@ -358,8 +360,8 @@ def overload_at(
             break
         at, before, gap_at = at + step, gap_at, gap(at + step)
         slope = np.where(gap_at == before, 1.0, (gap_at - before) / np.where(step == 0.0, 1.0, step))
-    found = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
-    return found if found.shape else found.item()
+    overload = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
+    return overload if overload.shape else overload.item()
 
 
 @kernel(cache=True)

@@ -74,7 +74,7 @@ def _expand(
             near = f"{todo[0][0]:.6g} d_Y"
             reason = f"it is not smooth near {near}; give each kink a branch that begins there"
             raise ArgumentError("law", name, reason)
-    return sorted(done, key=lambda piece: piece.start)
+    return sorted(done)  # by their starts
 
 
 def _powers(name: str, part: _Function, at: Array, vanished: float) -> tuple[Array, Mask]:
@@ -117,7 +117,9 @@ class LoadingCurve:
         for branch, stop in ends(branches, end):
             self.kinks.append(len(self.pieces))
             if isinstance(branch.force, Polynomial):
-                self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [branch.force.coef]))
+                self.pieces.append(
+                    _Piece(math.sqrt(branch.start), 1.0, 0.0, [np.asarray(branch.force.coef, dtype=np.float64)])
+                )
             else:
                 part = [_Function("loading force", _over_root(branch.force))]
                 self.pieces += _expand(name, part, math.sqrt(branch.start), math.sqrt(stop), resolution)
@@ -193,7 +195,7 @@ def check_yield(
 def check_formulas(name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float) -> None:
     """Refuse a loading curve that does not begin as Hertz's, falls or jumps, and too large residuals."""
     first = loading[0].force if loading and loading[0].start == 0.0 else None
-    powers = first.coef if isinstance(first, Polynomial) else np.zeros(4)
+    powers: Any = first.coef if isinstance(first, Polynomial) else np.zeros(4)
     if not np.array_equal(powers[:4], HERTZ.coef) or (powers[4:] < 0.0).any():
         forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
         raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
@@ -301,7 +303,7 @@ def expanded(
     curve, rows = LoadingCurve(name, loading, end, resolution), list[_Piece]()
     for branch, stop in ends(unloading, end):
         # the loss has kinks where the loading curve has them
-        kinks = [one.start for one in loading if branch.start < one.start < stop]
+        kinks = [above.start for above in loading if branch.start < above.start < stop]
         rows += _Contacts(curve, branch).rows(name, [branch.start, *kinks, stop], resolution)
     return curve, rows
 
@@ -318,7 +320,7 @@ def packed(curve: LoadingCurve, rows: Sequence[_Piece]) -> Array:
     def put(part: Array, length: int) -> list[float]:
         nonlocal at
         room = np.zeros(length + -length % 4)  # np.pad takes ten times as long
-        room[: min(part.size, length)] = part[:length]
+        room[:length] = part[:length]
         coefficients.append(room)
         at += room.size
         return [length - 1, at - room.size]
