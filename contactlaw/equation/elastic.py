@@ -10,7 +10,7 @@ The first term is exact for lam = 0; the second has the power with which w_m fal
 The sum was fitted to impacts under loading curves q^3 (1 + s q), integrated with an error of 1e-13
 a step. Up to lam' = 12, where t is 1, ln w_m is within 4e-12 for Hertz's law, 6e-9 up to h = 0.06,
 4e-7 up to h = 0.85. For larger lam' the sum keeps its value at t = 1, and w_m is within 5 %. For a
-curve with higher powers of q it may err by 0.5 %. No rebound depends on it: w_m only makes the
+curve with higher powers of q it may err by 1 %. No rebound depends on it: w_m only makes the
 overload.
 
 Legend, as in `contactlaw.equation.zener`: lam inelasticity parameter lambda, w_m in V0 T_H.
@@ -82,8 +82,8 @@ _COEFFICIENTS = np.array(
 def compression(law: BlendedLaw, lam: float) -> float:
     """Largest compression of an impact that just yields."""
     softer = 0.4 / force.work_at_yield(law)  # 1 - h
-    own = lam * softer**-0.4
-    x, power, total, at = own / (own + _HALF), 1.0, 0.0, 0
+    like_hertz = lam * softer**-0.4
+    x, power, total, at = like_hertz / (like_hertz + _HALF), 1.0, 0.0, 0
     t = min(2.5 * x - 1.0, 1.0)
     for row in range(_DEGREES.size):
         value = 0.0

@@ -20,9 +20,11 @@ from the constant one up:
                        FIRST, NEXT    pieces that begin at the kink below, and at that above
     row of unloading   SCALE, OFFSET  of t, and for each function of dm its power, DEGREE and AT
 
-Coefficients are padded with zeros to a multiple of four. The last of the starts, and of the family
-starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
-integration has to stop at kinks only.
+Coefficients are padded with zeros to a multiple of four. The last of the starts is infinity. The last of the family
+starts is the dm at which the law ends, infinity for a law without unloading curves. Beyond its end
+the force goes on along its tangent over the compression, the residual keeps its share of dm, the
+exponent its value, and plastic work its share of the loading work. Between two kinks the loading
+curve is smooth, however many pieces it has: an integration has to stop at kinks only.
 
 The laws of a pair that grows stronger with the rate of an impact stand in one array, too, a ladder:
 minus the number of its rungs, then a row for each rung, with rising strengths, then their laws:
@@ -35,8 +37,7 @@ The law of an impact is a blend of the two rungs around its strength. At the sam
 the d_Y of each, these are linear in ln k: ln d_Y, the end, the force, the residual compression, the
 losses, and the work that unloading gives back, from which its exponent follows. So the energies of a
 blend add up as those of its laws. A stronger law ends at fewer d_Y; each rung follows its formulas up
-to the end of its weaker neighbour. Beyond its own end a blend goes on as any law does: its force along
-a tangent, with the same exponent and shares.
+to the end of its weaker neighbour.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
@@ -56,7 +57,7 @@ FUNCTIONS = 4
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
 STRENGTH, BEGINS, SIZE, LOG_SCALE, LOG_ONSET, END, RUNG = range(7)
-_STEP = 1e-4  # relative step in d of the slope at the end of a blend
+_STEP = 2e-5  # relative step in d to either side of a law's end, of the difference that is its slope
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -81,19 +82,29 @@ class UnloadingCurve(NamedTuple):
     exponent: float  # b
 
 
+class Deepest(NamedTuple):
+    """What follows from the largest compression dm of a contact."""
+
+    force: float
+    residual: float  # dr
+    exponent: float  # b
+    loss: float  # loading work minus unloading work
+    other: float  # part of the loss that is not plastic work
+
+
 class BlendedLaw(NamedTuple):
     """The law of an impact, a share of the way from one law to another."""
 
     low: Array
     high: Array
     share: float  # 0: `low` alone
-    end: float  # compression up to which it holds; infinite for a law with tangents of its own
+    end: float  # compression up to which it holds
 
 
 @kernel(inline=True)
 def alone(law: Array) -> BlendedLaw:
     """Take a law by itself."""
-    return BlendedLaw(law, law, 0.0, math.inf)
+    return BlendedLaw(law, law, 0.0, law[int(law[FAMILY_STARTS] + law[UNLOADINGS])])
 
 
 @kernel
@@ -117,7 +128,7 @@ def _law_of_rung(ladder: Array, row: int) -> Array:
 def at_strength(laws: Array, strength: float) -> BlendedLaw:
     """Law of an impact; beyond a ladder's ends that of its last rung."""
     if laws[PIECES] > 0.0:
-        return BlendedLaw(laws[0:], laws[0:], 0.0, math.inf)
+        return alone(laws[0:])
     low, high, share = _rungs_around(laws, strength)
     end = laws[low + END] + share * (laws[high + END] - laws[low + END])
     return BlendedLaw(_law_of_rung(laws, low), _law_of_rung(laws, high), share, end)
@@ -214,9 +225,9 @@ def loading(law: BlendedLaw, q: float) -> float:
     """Force while the compression q^2 grows."""
     if not q * q > law.end:
         return float(_blended_loading(law, q))
-    last, step = _blended_loading(law, math.sqrt(law.end)), _STEP * law.end
-    slope = (last - _blended_loading(law, math.sqrt(law.end - step))) / step
-    return float(last + slope * (q * q - law.end))
+    step = _STEP * law.end
+    rise = _blended_loading(law, math.sqrt(law.end + step)) - _blended_loading(law, math.sqrt(law.end - step))
+    return float(_blended_loading(law, math.sqrt(law.end)) + 0.5 * rise / step * (q * q - law.end))
 
 
 @kernel(inline=True)
@@ -247,54 +258,58 @@ def _function(law: Array, row: int, which: int, dm: float) -> float:
 
 
 @kernel(inline=True)
-def _losses_of(law: Array, dm: float) -> tuple[float, float, float]:
-    row = _unloading_row(law, dm)
+def _deepest_of(law: Array, dm: float) -> Deepest:
+    f, row = loading_of(law, math.sqrt(dm)), _unloading_row(law, dm)
     if row == 0:
-        return 0.0, 0.0, 0.0
-    return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm), _function(law, row, OTHER, dm)
+        return Deepest(f, 0.0, 3.0, 0.0, 0.0)
+    return Deepest(
+        f,
+        _function(law, row, RESIDUAL, dm),
+        _function(law, row, EXPONENT, dm),
+        _function(law, row, LOSS, dm),
+        _function(law, row, OTHER, dm),
+    )
 
 
-@kernel(cache=True)
-def residual_and_losses(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
-    """Compression left after unloading from dm, the loss, and the part of it that is not plastic."""
+@kernel(inline=True)
+def deepest(law: BlendedLaw, dm: float) -> Deepest:
+    """Find what follows from the largest compression."""
     inside = min(dm, law.end)
-    left, lost, other = _losses_of(law.low, inside)
+    f, left, exponent, lost, other = _deepest_of(law.low, inside)
     if law.share > 0.0:
-        high = _losses_of(law.high, inside)
-        left += law.share * (high[0] - left)
-        lost += law.share * (high[1] - lost)
-        other += law.share * (high[2] - other)
+        high = _deepest_of(law.high, inside)
+        back = f * (inside - left) / (exponent + 2.0)  # half the work that is given back
+        back += law.share * (high.force * (inside - high.residual) / (high.exponent + 2.0) - back)
+        f += law.share * (high.force - f)
+        left += law.share * (high.residual - left)
+        lost += law.share * (high.loss - lost)
+        other += law.share * (high.other - other)
+        exponent = f * (inside - left) / back - 2.0
     if dm > inside:  # plastic work stays the same share of the loading work
-        curve, last, f = unloading(law, inside), loading(law, math.sqrt(inside)), loading(law, math.sqrt(dm))
-        work = lost + 2.0 * last * (inside - left) / (curve.exponent + 2.0)
-        plastic, more = (lost - other) / work, 0.5 * (last + f) * (dm - inside)
+        work, last = lost + 2.0 * f * (inside - left) / (exponent + 2.0), f
+        f, plastic = loading(law, math.sqrt(dm)), (lost - other) / work
+        work += 0.5 * (last + f) * (dm - inside)
         left *= dm / inside
-        lost = work + more - 2.0 * f * (dm - left) / (curve.exponent + 2.0)
-        other = lost - plastic * (work + more)
-    return left, lost, other
+        lost = work - 2.0 * f * (dm - left) / (exponent + 2.0)
+        other = lost - plastic * work
+    return Deepest(f, left, exponent, lost, other)
 
 
 @kernel(inline=True)
 def is_hertz(law: BlendedLaw) -> bool:
-    """Whether the loading curve begins as Hertz's, q^3."""
-    row = row_of(law.low, 0)
-    at = int(law.low[row + AT])
-    same = law.low[row + DEGREE] == 3.0 and law.low[row + SCALE] == 1.0 and law.low[row + OFFSET] == 0.0
-    return bool(same and law.low[at] == law.low[at + 1] == law.low[at + 2] == 0.0 and law.low[at + 3] == 1.0)
+    """Whether the loading curve begins as Hertz's, q^3, and not as one that is stiffer."""
+    return bool(law.low[row_of(law.low, 0) + DEGREE] == 3.0)
 
 
 @kernel(inline=True)
 def _stiffening_of(law: Array) -> float:
     row = row_of(law, 0)
-    at = int(law[row + AT])
-    same = law[row + DEGREE] == 4.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
-    same &= law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0
-    return float(law[at + 4]) if same else 0.0
+    return float(law[int(law[row + AT]) + 4]) if law[row + DEGREE] > 3.0 else 0.0
 
 
 @kernel(inline=True)
 def stiffening(law: BlendedLaw) -> float:
-    """Return s of a loading curve that begins as q^3 (1 + s q); 0 for Hertz's and for others."""
+    """Return s of a loading curve that begins as q^3 (1 + s q); 0 for Hertz's."""
     s = _stiffening_of(law.low)
     return s + law.share * (_stiffening_of(law.high) - s)
 
@@ -340,34 +355,14 @@ def leaves_hertz(law: BlendedLaw) -> float:
     return min(leaves * leaves, lossless(law))
 
 
-@kernel(inline=True)
-def _unloading_of(law: Array, dm: float) -> tuple[float, float, float]:
-    """Force at dm, residual compression, and exponent of unloading."""
-    row = _unloading_row(law, dm)
-    return loading_of(law, math.sqrt(dm)), _function(law, row, RESIDUAL, dm), _function(law, row, EXPONENT, dm)
-
-
 @kernel
 def unloading(law: BlendedLaw, dm: float) -> UnloadingCurve:
     """Find the unloading curve from dm."""
     if not dm > lossless(law):
         return UnloadingCurve(0.0, 0.0, 3.0)
-    inside = min(dm, law.end)
-    f, left, exponent = _unloading_of(law.low, inside)
-    if law.share > 0.0:
-        high = _unloading_of(law.high, inside)
-        back = f * (inside - left) / (exponent + 2.0)  # half the work that is given back
-        back += law.share * (high[0] * (inside - high[1]) / (high[2] + 2.0) - back)
-        f += law.share * (high[0] - f)
-        left += law.share * (high[1] - left)
-        exponent = f * (inside - left) / back - 2.0
-    if dm > inside:
-        f, left = loading(law, math.sqrt(dm)), left * (dm / inside)
+    f, left, exponent, _, _ = deepest(law, dm)
     span = dm - left
-    if exponent == 3.0:
-        reach = span * math.sqrt(span)
-    else:
-        reach = math.pow(span, 0.5 * exponent)
+    reach = span * math.sqrt(span) if exponent == 3.0 else math.pow(span, 0.5 * exponent)
     return UnloadingCurve(left, f / reach, exponent)
 
 
@@ -405,33 +400,21 @@ def check(law: Array) -> None:
     ValueError
         If the array is not a law; the message says what is wrong.
     """
-    size = law.size
-    header = [_whole(law, n, size) for n in range(HEADER)]
-    pieces, rows = header[PIECES], header[UNLOADINGS]
-    if pieces < 1:
-        raise ValueError("its law has no loading curve")
-    blocks = {
-        "starts": (header[STARTS], pieces + 1),
-        "loading curve": (header[CURVE], pieces * PIECE),
-        "starts of unloading": (header[FAMILY_STARTS], rows + 1),
-        "unloading": (header[FAMILY], rows * UNLOADING_ROW),
-    }
-    for name, (at, length) in blocks.items():
-        if not HEADER <= at <= at + length <= size:
-            raise ValueError(f"its law ends within its {name}")
-    starts, curve, family_starts, family = (law[at : at + length] for at, length in blocks.values())
+    pieces, rows = (_whole(law, n, law.size) for n in (PIECES, UNLOADINGS))
+    places = np.cumsum([HEADER, pieces + 1, pieces * PIECE, rows + 1, rows * UNLOADING_ROW])
+    if pieces < 1 or places[-1] > law.size or (law[STARTS:HEADER] != places[:-1]).any():
+        raise ValueError("its law ends within its pieces")
+    starts, curve, family_starts, family = np.split(law[HEADER : places[-1]], places[1:-1] - HEADER)
     for values in (starts, family_starts):
-        if not (np.diff(values[:-1]) > 0.0).all() or values[-1] != math.inf:
+        if not (np.diff(values) > 0.0).all() or starts[-1] != math.inf:
             raise ValueError("the pieces of its law do not follow each other")
-    curve, family = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)
-    entries = [(row, DEGREE) for row in curve]
-    entries += [(row, OFFSET + 1 + n * FUNCTION + FUNCTION_DEGREE) for row in family for n in range(FUNCTIONS)]
-    for row, column in entries:
-        degree, start = _whole(row, column, size), _whole(row, column + 1, size)
-        if not start + degree // 4 * 4 + 4 <= size:
+    curve, functions = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :]
+    for entry in (*curve[:, DEGREE:], *functions.reshape(-1, FUNCTION)[:, FUNCTION_DEGREE:]):
+        degree, start = (_whole(entry, n, law.size) for n in range(2))
+        if not start + degree // 4 * 4 + 4 <= law.size:
             raise ValueError("its law has coefficients beyond its end")
     for n, row in enumerate(curve):
-        if not _whole(row, FIRST, size) <= n < _whole(row, NEXT, size) <= pieces:
+        if not _whole(row, FIRST, law.size) <= n < _whole(row, NEXT, law.size) <= pieces:
             raise ValueError("the pieces of its law belong to no kink")
 
 

@@ -2,10 +2,10 @@
 
 A sphere that has flattened far on a compliant plate need not rebound. Where the force falls more
 slowly than the elastic compression that is left, with an exponent below 2, the contact becomes ever
-stiffer beside the plate: the energy that is left goes into the plate, and the sphere stays. Once
-that energy could throw the sphere off with no more than `LEAST_RESTITUTION` of its impact speed,
-the plate is held and the sphere leaves with that energy. A restitution below `LEAST_RESTITUTION`
-is thus rounded up to it. The less energy is left, the finer are the steps, so that they resolve it.
+stiffer beside the plate: the energy that is left goes into the plate, and the sphere stays. As that
+energy falls to what throws the sphere off with `LEAST_RESTITUTION` of its impact speed, the plate is
+held, see `contactlaw.equation.motion`, and the sphere leaves with such a speed. The less energy is
+left, the finer are the steps, so that they resolve it.
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -14,9 +14,8 @@ u speed, t time, s the variable of integration, y yield compression.
 import math
 from typing import NamedTuple
 
-from contactlaw._jit import kernel, tuple_of
-from contactlaw.equation import force, legs, losses, motion
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw._jit import kernel
+from contactlaw.equation import legs, losses, motion
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
 
@@ -24,12 +23,12 @@ MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at
 # separation are stationary, so they err only by its square.
 _LANDED = 1e-9
-# Smallest restitution, to which smaller ones are rounded up; tables err by ten times as much.
+# Size of the smallest restitution; tables err by ten times as much.
 LEAST_RESTITUTION = 1e-7
-# Steps get finer each time the largest possible restitution falls by this factor.
-FINER_EVERY = 1e-2
-# no event; end of loading; a root compression is reached; a time is reached; little energy is left
-NONE, TURN, LEVEL, TIME, _ENERGY_LOW = range(5)
+# Steps get finer in proportion to the largest restitution that is still possible, from this one on.
+_FINER_FROM = 1e-2
+# no event; end of loading; a root compression is reached; a time is reached
+NONE, TURN, LEVEL, TIME = range(4)
 
 
 class Scale(NamedTuple):
@@ -40,25 +39,13 @@ class Scale(NamedTuple):
     t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
-    energy_low: float  # square of the possible rebound speed at the event _ENERGY_LOW
 
 
 @kernel
-def _rebound_speed_squared(leg: Leg, state: ScaledState) -> float:
-    """Square of the speed with which the sphere would rebound if the plate were held from now on.
-
-    The work of a force that falls as q^b is 2 f q^2/(b + 2).
-    """
-    return state.u * state.u + 4.0 * state.f * state.q * state.q / (leg.exponent + 2.0)
-
-
-@kernel
-def _gap(event: int, leg: Leg, state: ScaledState, level: float, until: float, scale: Scale) -> float:
+def _gap(event: int, state: ScaledState, level: float, until: float, scale: Scale) -> float:
     """Distance to an event in units of its scale; its sign changes at the event."""
     if event == TURN:
         return state.dq / scale.u
-    if event == _ENERGY_LOW:
-        return 1.0 - _rebound_speed_squared(leg, state) / scale.energy_low
     return (until - state.t) / scale.t if event == TIME else (level - state.q) / scale.q
 
 
@@ -134,6 +121,9 @@ def _follow(
     for steps in range(1, MAX_STEPS):
         trial, error = _step(contact, leg, kind, state, h, scale)
         if event == NONE:
+            if kind == POWER and abs(trial.u) < _FINER_FROM * scale.u:
+                possible = math.sqrt(motion.left(leg, trial.q, trial.u, trial.f) + contact.least) / scale.u
+                error *= max(_FINER_FROM / possible, 1.0)
             if not error <= 1.0:  # NaN, too: the step was so long that it overflowed
                 h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # pow is slower than a step
                 continue
@@ -143,20 +133,13 @@ def _follow(
                 event = LEVEL
             elif trial.t > until:
                 event = TIME
-            elif (
-                legs.unloads(leg)
-                and contact.mobility > 0.0
-                and trial.u * trial.u < scale.energy_low
-                and _rebound_speed_squared(leg, trial) < scale.energy_low
-            ):
-                event = _ENERGY_LOW
             else:
                 state = trial
                 h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
                 continue
             following = h
         else:
-            gap = _gap(event, leg, trial, level, until, scale)
+            gap = _gap(event, trial, level, until, scale)
             if abs(gap) > _LANDED:
                 if gap * gap_b < 0.0:
                     a, gap_a = b, gap_b
@@ -171,21 +154,10 @@ def _follow(
                 event = TIME
             else:
                 return trial, event, following, steps
-        a, gap_a = 0.0, _gap(event, leg, state, level, until, scale)
-        b, gap_b = h, _gap(event, leg, trial, level, until, scale)
-        if event == _ENERGY_LOW:
-            h *= gap_a / (gap_a - gap_b)
-        else:
-            h = _guess(event, state, trial, h, level, until)
+        a, gap_a = 0.0, _gap(event, state, level, until, scale)
+        b, gap_b = h, _gap(event, trial, level, until, scale)
+        h = _guess(event, state, trial, h, level, until)
     return state, event, h, MAX_STEPS
-
-
-@kernel
-def _finer(scale: Scale, spent: float) -> Scale:
-    """Scale after event _ENERGY_LOW, with the next, lower limit and tighter tolerances."""
-    energy_low = max(FINER_EVERY * FINER_EVERY * scale.energy_low, spent)
-    per_q, per_u = scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY
-    return tuple_of(Scale, scale, per_q=per_q, per_u=per_u, energy_low=energy_low)
 
 
 @kernel
@@ -197,50 +169,24 @@ def follow(
     Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
-    spent = (LEAST_RESTITUTION * scale.u) ** 2
-    steps = 0
-    while True:
-        if legs.unloads(leg):
-            # a little less, because the last event _ENERGY_LOW was met only to 1e-9
-            energy_low = (1.0 - 1e-6) * _rebound_speed_squared(leg, state)
-            while energy_low < scale.energy_low and scale.energy_low > spent:
-                scale = _finer(scale, spent)
-            if energy_low < spent:
-                contact = ScaledContact(contact.law, 0.0)
-                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
-        if leg.kind == CUBIC:
-            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
-        elif leg.kind == POWER:
-            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, until)
-        else:
-            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
-        steps += more
-        if event != _ENERGY_LOW or more == MAX_STEPS:
-            return state, event, h, steps
+    if leg.kind == CUBIC:
+        return _follow(contact, leg, CUBIC, state, h, scale, level, until)
+    if leg.kind == POWER:
+        return _follow(contact, leg, POWER, state, h, scale, level, until)
+    return _follow(contact, leg, PIECES, state, h, scale, level, until)
 
 
 @kernel
-def _to_leg(contact: ScaledContact, leg: Leg, residual: float, state: ScaledState) -> ScaledState:
-    """Convert a state from the root compression over `residual` to that of a leg."""
-    q = state.q
-    if leg.residual != residual:
-        q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
-    return motion.start(contact, leg, q, state.u, state.t, state.work)
-
-
-@kernel
-def after(
-    contact: ScaledContact, curve: UnloadingCurve, leg: Leg, event: int, state: ScaledState
-) -> tuple[UnloadingCurve, Leg, ScaledState]:
+def after(contact: ScaledContact, leg: Leg, event: int, state: ScaledState) -> tuple[Leg, ScaledState]:
     """Next leg, and the state on it, after a leg that ended at its level or with loading."""
-    residual = leg.residual
+    residual, q = leg.residual, state.q
     if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
-        dm = state.q * state.q
-        curve = force.unloading(contact.law, dm)
-        leg = legs.down(contact.law, curve, dm)
+        leg = legs.down(contact.law, q * q)
     else:
         leg = legs.up(contact.law, leg.last + 1)
-    return curve, leg, _to_leg(contact, leg, residual, state)
+    if leg.residual != residual:
+        q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
+    return leg, motion.start(contact, leg, q, state.u, state.t, state.work)
 
 
 @kernel
@@ -248,5 +194,5 @@ def scale_of(y: float, rtol: float) -> tuple[Scale, float]:
     """Scales of an impact in the law's units, and a first step that the error control accepts."""
     y4 = math.sqrt(math.sqrt(y))
     q, u = 1.0 / (y4 * y4), 1.0 / (y * y4)
-    scale = Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol), (FINER_EVERY * u) ** 2)
+    scale = Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol))
     return scale, 0.7 * rtol**0.2 * y4**3

@@ -15,7 +15,6 @@ from contactlaw.equation import force
 from contactlaw.equation.force import BlendedLaw, UnloadingCurve
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
-_LOADING, _UNLOADING = range(2)
 FIRST = 0  # index of the first piece of a loading curve
 NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0)
 """Placeholder of the unloading curve while a contact loads."""
@@ -24,8 +23,7 @@ NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0)
 class Leg(NamedTuple):
     """Part of a contact's path on which the force is one smooth function of q."""
 
-    part: int  # _LOADING or _UNLOADING
-    level: float  # root compression at which it ends
+    level: float  # root compression at which it ends; 0 if it unloads
     residual: float  # d = residual + q^2
     kind: int  # CUBIC, PIECES or POWER
     first: int  # first and last piece of the loading curve
@@ -40,13 +38,7 @@ class Leg(NamedTuple):
 @kernel(inline=True)
 def is_loading(leg: Leg) -> bool:
     """Whether the contact loads on a leg."""
-    return leg.part == _LOADING
-
-
-@kernel(inline=True)
-def unloads(leg: Leg) -> bool:
-    """Whether a leg is on the unloading curve, not on the loading curve."""
-    return leg.exponent > 0.0
+    return leg.level > 0.0
 
 
 @kernel(inline=True)
@@ -59,7 +51,7 @@ def force_on(leg: Leg, kind: int, law: BlendedLaw, q: float) -> float:
     if q * q > law.end:
         return force.loading(law, q)
     # a trial step may pass the end of a loading leg: the next piece of the law goes on there
-    k, last = leg.first, int(law.low[force.PIECES]) - 1 if leg.part == _LOADING else leg.last
+    k, last = leg.first, int(law.low[force.PIECES]) - 1 if is_loading(leg) else leg.last
     while k < last and q >= force.start_of(law.low, k + 1):
         k += 1
     f = force.piece_force(law.low, k, q)
@@ -67,37 +59,31 @@ def force_on(leg: Leg, kind: int, law: BlendedLaw, q: float) -> float:
 
 
 @kernel
-def _along_loading(law: BlendedLaw, part: int, first: int, last: int, level: float) -> Leg:
+def _along_loading(law: BlendedLaw, first: int, last: int, level: float) -> Leg:
     """Leg on pieces of the loading curve."""
-    own = law.low
-    row = force.row_of(own, first)
-    degree, at = int(own[row + force.DEGREE]), int(own[row + force.AT])
-    plain = law.share == 0.0 and own[row + force.SCALE] == 1.0 and own[row + force.OFFSET] == 0.0
-    if plain and last == first and degree <= 3:
-        c1 = own[at + 1] if degree > 0 else 0.0
-        c2 = own[at + 2] if degree > 1 else 0.0
-        c3 = own[at + 3] if degree > 2 else 0.0
-        return Leg(part, level, 0.0, CUBIC, first, last, own[at], c1, c2, c3, 0.0)
-    return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 0.0)
+    c, row = law.low, force.row_of(law.low, first)
+    plain = law.share == 0.0 and c[row + force.SCALE] == 1.0 and c[row + force.OFFSET] == 0.0
+    if plain and last == first and c[row + force.DEGREE] <= 3.0:
+        at = int(c[row + force.AT])
+        return Leg(level, 0.0, CUBIC, first, last, c[at], c[at + 1], c[at + 2], c[at + 3], 0.0)
+    return Leg(level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
 def up(law: BlendedLaw, first: int) -> Leg:
     """Leg of loading from a kink to the next; `first` is the piece that begins at the kink."""
     following = int(law.low[force.row_of(law.low, first) + force.NEXT])
-    level = force.start_of(law.low, following)
-    if level < math.inf:
-        level = min(level, math.sqrt(law.end))
-    return _along_loading(law, _LOADING, first, following - 1, level)
+    return _along_loading(law, first, following - 1, force.start_of(law.low, following))
 
 
 @kernel
-def down(law: BlendedLaw, curve: UnloadingCurve, dm: float) -> Leg:
+def down(law: BlendedLaw, dm: float) -> Leg:
     """Leg of unloading from dm, with which the contact ends."""
+    curve = force.unloading(law, dm)
     if curve.stiffness > 0.0:
         kind = CUBIC if curve.exponent == 3.0 else POWER
-        return Leg(_UNLOADING, 0.0, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
+        return Leg(0.0, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent)
     k, q = FIRST, math.sqrt(dm)
     while force.start_of(law.low, k + 1) < q:
         k += 1
-    return _along_loading(law, _UNLOADING, FIRST, k, 0.0)
+    return _along_loading(law, FIRST, k, 0.0)

@@ -5,15 +5,12 @@ mobility, since that has a limit where the mobility is 0. The other channels tak
 follows from the largest compression. `Losses` lists all of them; its members and the square of the
 restitution add up to one.
 
-Legend: q root compression, f contact force, dm largest compression, u0 impact speed, in the law's
-scale; ds = dt/(2 q).
+Legend: q root compression, f contact force, in the law's scale; ds = dt/(2 q).
 """
 
 from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force
-from contactlaw.equation.force import BlendedLaw
 
 
 class Losses(NamedTuple):
@@ -36,17 +33,3 @@ DESCRIPTIONS = Losses(
 def power(q: float, f: float) -> float:
     """Work that the waves take per ds, over the plate's mobility."""
     return 2.0 * q * f * f
-
-
-@kernel(inline=True)
-def at_the_contact(law: BlendedLaw, dm: float) -> tuple[float, float, float]:
-    """Residual compression, and plastic and other work, of a contact that was loaded to dm."""
-    residual, loss, other = force.residual_and_losses(law, dm)
-    return residual, loss - other, other
-
-
-@kernel(inline=True)
-def shares(plastic: float, work: float, other: float, mobility: float, u0: float) -> Losses:
-    """Losses of a contact that has ended."""
-    per_energy = 2.0 / (u0 * u0)
-    return Losses(per_energy * plastic, per_energy * mobility * work, per_energy * other)

@@ -11,6 +11,9 @@ f = q^3, the equation becomes polynomial:
 
     dq/ds = u - v(f),    du/ds = -2 q f,    dt/ds = 2 q
 
+Where a sphere would stay on its plate, see `contactlaw.equation.integrator`, v falls to 0 as the
+energy that is left does.
+
 Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(m d_Y/F_Y).
 
     d   compression                          u      speed of the sphere towards the plate
@@ -25,12 +28,15 @@ from contactlaw.equation import legs, plate
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import Leg
 
+_SLOW = 1e8  # square of a speed over `least` from which on less than 1e-8 of v is missing
+
 
 class ScaledContact(NamedTuple):
     """A contact in the law's scale: its force law and its plate."""
 
     law: BlendedLaw
     mobility: float  # beta, lambda y^(1/4)
+    least: float  # square of the speed with which a sphere leaves that would stay
 
 
 class ScaledState(NamedTuple):
@@ -46,10 +52,23 @@ class ScaledState(NamedTuple):
 
 
 @kernel(inline=True)
+def left(leg: Leg, q: float, u: float, f: float) -> float:
+    """Square of the speed with which a sphere would leave if the plate were held from now on.
+
+    The work of a force that falls as q^b is 2 f q^2/(b + 2).
+    """
+    return u * u + 4.0 * abs(f) * (q * q) / (leg.exponent + 2.0)
+
+
+@kernel(inline=True)
 def rates(contact: ScaledContact, leg: Leg, kind: int, q: float, u: float) -> tuple[float, float, float]:
     """dq/ds, du/ds and the force."""
     f = legs.force_on(leg, kind, contact.law, q)
-    return u - plate.speed(contact.mobility, f), -2.0 * q * f, f
+    v = plate.speed(contact.mobility, f)
+    if kind == legs.POWER and u * u < _SLOW * contact.least:  # its exponent is not Hertz's: it may stay
+        square = left(leg, q, u, f)
+        v *= square / (square + contact.least)
+    return u - v, -2.0 * q * f, f
 
 
 @kernel
@@ -57,10 +76,3 @@ def start(contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: 
     """State on a leg, with the rates there."""
     dq, du, f = rates(contact, leg, leg.kind, q, u)
     return ScaledState(q, u, t, work, dq, du, f)
-
-
-@kernel
-def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
-    """Leg that begins at first touch, and the state there."""
-    leg = legs.up(contact.law, legs.FIRST)
-    return leg, start(contact, leg, 0.0, speed, 0.0, 0.0)

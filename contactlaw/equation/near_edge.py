@@ -18,7 +18,7 @@ from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.edge import LONGEST, NO_MEMORY, Memories
-from contactlaw.equation.force import BlendedLaw, UnloadingCurve
+from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.recall import recalled, remembered
 
@@ -43,13 +43,6 @@ class Contact(NamedTuple):
     largest: float  # compression
     peak_force: float
     memory: Memories
-
-
-@kernel(inline=True)
-def _force(law: BlendedLaw, loading: bool, curve: UnloadingCurve, q: float) -> float:
-    if loading or curve.stiffness == 0.0:
-        return float(force.loading(law, q))
-    return float(force.unloading_force(law, curve, q))
 
 
 @kernel
@@ -81,7 +74,7 @@ def follow(
         back, gain = beta * coupling * later.known, beta * (1.0 + coupling * later.per_force)
         x, before, gap_before = guess, q, 0.0
         for k in range(20):
-            f_new = _force(law, loading, curve, x)
+            f_new = force.unloading_force(law, curve, x)
             u_new = u + 0.5 * h * (du - 2.0 * x * f_new)
             gap = q + 0.5 * h * (dq + u_new - gain * f_new - back) - x
             if abs(gap) < _SOLVED * least:
@@ -97,7 +90,7 @@ def follow(
         share = h / (3.0 * (h + last))
         x += share * (guess - x)
         u_new += share * (guess_u - u_new)
-        f_new = _force(law, loading, curve, x)
+        f_new = force.unloading_force(law, curve, x)
         dq_new = u_new - gain * f_new - back
         turns, ended = loading and dq_new < 0.0, not loading and x < 0.0
         if turns and dq_new < -_TURNED * speed:
@@ -117,7 +110,7 @@ def follow(
             d = q * q + rise * (x * x - q * q) + turn * time * ((1.0 - z) * dq - z * dq_new)
             d = 0.0 if ended and z == 1.0 else max(d, 0.0)
             notes.speed[n, noted] = (u + rise * (u_new - u) + turn * time * (z * f_new - (1.0 - z) * f)) / speed
-            notes.force[n, noted] = _force(law, loading, curve, math.sqrt(d)) * y * math.sqrt(y)
+            notes.force[n, noted] = force.unloading_force(law, curve, math.sqrt(d)) * y * math.sqrt(y)
             notes.compression[n, noted] = (d + curve.residual) * y
             notes.time[n, noted] = (t + z * time) / unit
             noted += 1

@@ -133,21 +133,27 @@ def inelasticity_of(plate: PlateConstants, root: float, ratio: float, stiffer: f
 
 
 @kernel(inline=True)
+def scaled(plate: PlateConstants, inelasticity: float, transit: float, x: float, saturated: float) -> PlateConstants:
+    """Plate whose constants are multiplied by these factors."""
+    return tuple_of(
+        PlateConstants,
+        plate,
+        inelasticity=plate.inelasticity * inelasticity,
+        transit=plate.transit * transit,
+        x_at_one=plate.x_at_one * x,
+        saturated=plate.saturated * saturated,
+    )
+
+
+@kernel(inline=True)
 def relaxed(plate: PlateConstants, root: float, log_time: float) -> tuple[PlateConstants, float, float]:
     """Plate and V^(1/5) with the moduli of an impact, from ln T_H without their growth; ln g.
 
-    What is given for V^(1/5) is V^(1/5) g^(2/5): T_H is that of a faster impact.
+    Returns V^(1/5) g^(2/5) in place of V^(1/5): T_H is that of a faster impact.
     """
-    known = plate.growth
-    shorter = known.log_time - log_time
-    growth, slower = known.modulus_power * shorter, math.exp(-0.5 * known.plate_power * shorter)
-    plate = tuple_of(
-        PlateConstants,
-        plate,
-        inelasticity=plate.inelasticity * slower,
-        transit=plate.transit * slower,
-        x_at_one=plate.x_at_one * math.exp(-growth),
-    )
+    shorter = plate.growth.log_time - log_time
+    growth, slower = plate.growth.modulus_power * shorter, math.exp(-0.5 * plate.growth.plate_power * shorter)
+    plate = scaled(plate, slower, slower, math.exp(-growth), 1.0)
     return plate, root * math.exp(0.4 * growth), growth
 
 
@@ -159,12 +165,6 @@ def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> f
 
 
 @kernel(inline=True)
-def with_saturation(plate: PlateConstants, saturated: float) -> PlateConstants:
-    """Plate under a pair whose x is constant from another V^(1/5) on."""
-    return tuple_of(PlateConstants, plate, saturated=saturated)
-
-
-@kernel(inline=True)
 def of_mass(pair: PairConstants, mass: float) -> PairConstants:
     """Constants for spheres whose mass is a multiple of a solid one's.
 
@@ -172,15 +172,7 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
     """
     slower = mass**0.4
     root = math.sqrt(slower)
-    plate = pair.plate
-    plate = tuple_of(
-        PlateConstants,
-        plate,
-        inelasticity=plate.inelasticity * mass / slower,
-        transit=plate.transit / slower,
-        x_at_one=plate.x_at_one * root,
-        saturated=plate.saturated / math.sqrt(root),
-    )
+    plate = scaled(pair.plate, mass / slower, 1.0 / slower, root, 1.0 / math.sqrt(root))
     return PairConstants(plate, pair.time * slower, pair.mass * mass, pair.yield_compression)
 
 
@@ -208,7 +200,7 @@ def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
     root, time, growth = speed**0.2, pair.time * radius, 0.0
     yielding *= later
     if later != 1.0:  # a stronger pair yields later, and x is constant from a later speed on
-        plate = with_saturation(plate, plate.saturated * math.sqrt(math.sqrt(later)))
+        plate = scaled(plate, 1.0, 1.0, 1.0, math.sqrt(math.sqrt(later)))
     if relaxes(plate):
         plate, root, growth = relaxed(plate, root, math.log(time / root))
         yielding *= math.exp(plate.growth.yield_power * growth)
@@ -223,10 +215,9 @@ def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
 
 @kernel(cache=True)
 def fill(pair: PairConstants, laws: Array, impact: Impact, out: Numbers) -> None:
-    """`numbers` of many impacts; all arrays have one length."""
+    """`numbers` of many impacts; all arrays have scales length."""
     speed, radius, thickness, mass = impact.speed, impact.radius, impact.thickness, impact.mass
     for n in range(speed.size):
-        one = numbers(pair, laws, Impact(speed[n], radius[n], thickness[n], mass[n]))
-        out.inelasticity[n], out.yield_ratio[n] = one.inelasticity, one.yield_ratio
-        out.time[n], out.compression[n] = one.time, one.compression
-        out.force[n], out.stiffer[n], out.strength[n] = one.force, one.stiffer, one.strength
+        scales = numbers(pair, laws, Impact(speed[n], radius[n], thickness[n], mass[n]))
+        for k in range(len(scales)):
+            out[k][n] = scales[k]

@@ -52,9 +52,9 @@ def _half(r: Array, at: int, m: Memory, force: float, half: float) -> tuple[Memo
 
 
 @kernel
-def remembered(found: Recalled, force: float) -> Memories:
+def remembered(step: Recalled, force: float) -> Memories:
     """Memory at the end of a step, from the force there."""
-    z, q = found.memory, found.gain
+    z, q = step.memory, step.gain
     return Memories(_after(z.first, q.first, force), _after(z.second, q.second, force))
 
 

@@ -86,8 +86,9 @@ def stiffness_at(law: BlendedLaw, y: float, unit: float, largest: float, d: floa
     if work < 1.0:
         dm = largest / y
         if dm > 1.0:
-            back = force.loading(law, math.sqrt(dm)) * (dm - left / y) / (exponent + 1.0)
-            work += early * (work - back / (back + force.residual_and_losses(law, dm)[1]))
+            turned = force.deepest(law, dm)
+            back = turned.force * (dm - turned.residual) / (exponent + 1.0)
+            work += early * (work - back / (back + turned.loss))
         exponent = (exponent + 1.0) * work / span - 1.0
     power = 2.0 if exponent == 1.5 else 1.0 / max(exponent - 1.0, FLATTEST)
     k = span * exponent * f / (d - left) if d > left else 0.0

@@ -20,16 +20,14 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import edge, elastic, force, integrator, legs, losses, motion, near_edge
+from contactlaw.equation import edge, elastic, force, integrator, legs, motion, near_edge
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
-from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
-_CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
@@ -84,12 +82,12 @@ def _integrate(
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
             law = force.at_strength(laws, s[n])
             if edges is None:
-                one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
+                solution = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
             else:
-                one = follow_near(law, lam[n], y[n], notes, n, edges)
-            for k in range(len(one)):
-                out[k, n] = one[k]
-                if out[0, n] == OK and not abs(one[k]) < math.inf:
+                solution = follow_near(law, lam[n], y[n], notes, n, edges)
+            for k in range(len(solution)):
+                out[k, n] = solution[k]
+                if out[0, n] == OK and not abs(solution[k]) < math.inf:
                     out[0, n] = BAD_INPUT
 
 
@@ -109,9 +107,10 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
     """Integrate one impact, and note points of its path in row n."""
     y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, lam * scale.t)
-    leg, state = motion.touch(contact, scale.u)
-    curve, top, total, longest = NO_CURVE, state, 0, 0
+    contact = ScaledContact(law, lam * scale.t, (integrator.LEAST_RESTITUTION * scale.u) ** 2)
+    leg = legs.up(law, legs.FIRST)
+    top = state = motion.start(contact, leg, 0.0, scale.u, 0.0, 0.0)
+    total = longest = 0
     marks, noted, going = notes.at.shape[1], 0, True
     while going:
         level, until, loading = leg.level, math.inf, legs.is_loading(leg)
@@ -120,7 +119,7 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
-        event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
+        event, turns, reached = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
             state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
@@ -129,35 +128,64 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
             going = longest < MAX_STEPS and not (event == LEVEL and not loading)
-            here = noted if going else marks
+            reached = noted if going else marks
         if turns:
             top, going = state, going and goal != TO_THE_TOP
-            here = marks // 2 if goal == _AT_COMPRESSIONS else noted
-        for k in range(noted, here):
+            reached = marks // 2 if goal == _AT_COMPRESSIONS else noted
+        for k in range(noted, reached):
             notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
-        noted = here
+        noted = reached
         # absurd impacts overflow: no event comes after a time that is infinite or no number
         going = going and (goal < AT_TIMES or noted < marks) and state.t < math.inf
         if going and ends:
-            curve, leg, state = integrator.after(contact, curve, leg, event, state)
-    dm = top.q * top.q
-    residual, plastic, other = losses.at_the_contact(law, dm)
-    lost = losses.shares(plastic, state.work, other, contact.mobility, scale.u)
-    return Solution(
+            leg, state = integrator.after(contact, leg, event, state)
+    return _solution(
+        law,
+        y,
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
         min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
-        top.f * y * math.sqrt(y),
-        dm * y,
-        residual * y,
-        lost.plastic,
-        lost.wave,
-        lost.other,
+        top.f,
+        top.q * top.q,
+        lam,
         2.0 * scale.t * state.work / scale.u**2,
+    )
+
+
+@kernel
+def _solution(
+    law: BlendedLaw,
+    y: float,
+    status: float,
+    steps: float,
+    restitution: float,
+    loading_time: float,
+    contact_time: float,
+    f: float,
+    dm: float,
+    lam: float,
+    wave_rate: float,
+) -> Solution:
+    """Solution of a contact that has ended, from its peak force and compression in the law's scale."""
+    turned, unit = force.deepest(law, dm), y * math.sqrt(y)
+    per_energy = 2.0 * y * unit
+    return Solution(
+        status,
+        steps,
+        restitution,
+        loading_time,
+        contact_time,
+        f * unit,
+        dm * y,
+        turned.residual * y,
+        per_energy * (turned.loss - turned.other),
+        lam * wave_rate,
+        per_energy * turned.other,
+        wave_rate,
     )
 
 
@@ -169,30 +197,26 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     """
     y = _shallow(law, y)
     response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
-    one = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
+    contact = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
     unit = math.sqrt(math.sqrt(y))
-    speed = 1.0 / (y * unit)
-    residual, plastic, other = losses.at_the_contact(law, one.largest)
-    lost = losses.shares(plastic, 0.0, other, 0.0, speed)
-    left = max(1.0 - lost.plastic - lost.other, 0.0)
-    rebound = min(near_edge.restitution(one, y), math.sqrt(left))
+    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, contact.largest).loss, 0.0)
+    rebound = min(near_edge.restitution(contact, y), math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
-    again = one.stays or edge.comes_back(
-        response, one.memory, coupling, rate / unit, one.speed, lam * unit, one.duration
+    again = contact.stays or edge.comes_back(
+        response, contact.memory, coupling, rate / unit, contact.speed, lam * unit, contact.duration
     )
     edges.again[n] = 1.0 if again else 0.0
-    return Solution(
-        float(OK if one.ended else TOO_MANY_STEPS),
-        float(one.steps),
+    return _solution(
+        law,
+        y,
+        float(OK if contact.ended else TOO_MANY_STEPS),
+        float(contact.steps),
         rebound,
-        one.loading_time / unit,
-        one.duration / unit,
-        one.peak_force * y * math.sqrt(y),
-        one.largest * y,
-        residual * y,
-        lost.plastic,
-        wave,
-        lost.other,
+        contact.loading_time / unit,
+        contact.duration / unit,
+        contact.peak_force,
+        contact.largest,
+        lam,
         wave / lam if lam > 0.0 else 0.0,
     )
 
@@ -213,8 +237,8 @@ def _run(
     strength: ArrayLike = 0.0,
 ) -> Solution:
     """Integrate impacts, broadcasting; y is arbitrary for a law that never yields."""
-    given = (np.array(one, np.float64, ndmin=1) for one in (lam, y, strength))
-    lams, ys, s = (each.copy() for each in np.broadcast_arrays(*given))
+    arguments = (np.array(values, np.float64, ndmin=1) for values in (lam, y, strength))
+    lams, ys, s = (each.copy() for each in np.broadcast_arrays(*arguments))
     out = np.zeros((len(Solution._fields), lams.size))
     integrate = _integrate_few if few else _integrate
     integrate(goal, law, lams, ys, s, rtol, notes, out, edges)
@@ -229,8 +253,8 @@ def failure(status: Array) -> tuple[int, int]:
 
 def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) -> Solution:
     """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
-    found = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
-    return Solution(*(each.item() for each in found))
+    solutions = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
+    return Solution(*(each.item() for each in solutions))
 
 
 def history(
@@ -279,13 +303,13 @@ def shape(
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    found = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
-    return found.status, notes.time, notes.speed
+    solutions = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    return solutions.status, notes.time, notes.speed
 
 
 def elastic_compression(law: Array, lam: ArrayLike, strength: ArrayLike = 0.0) -> Any:
     """Largest compression w_m [V0 T_H] of impacts that just yield, see `contactlaw.equation.elastic`."""
-    lams, strengths = (np.array(one, np.float64) for one in np.broadcast_arrays(lam, strength))
+    lams, strengths = (np.array(values, np.float64) for values in np.broadcast_arrays(lam, strength))
     w_m = np.empty(lams.shape)
     elastic.fill(law, lams.ravel(), strengths.ravel(), w_m.reshape(-1))
     return w_m if w_m.shape else w_m.item()
@@ -296,13 +320,6 @@ def _scale(y: Array) -> Array:
     return np.where(y < math.inf, y, 1.0)
 
 
-def _put(one: Solution, w_m: Array, out: Outcome) -> None:
-    """Write solutions into outcomes."""
-    out.restitution[:], out.contact_time[:] = one.restitution, one.contact_time
-    out.wave_rate[:], out.elastic_compression[:] = one.wave_rate, w_m
-    out.compression_ratio[:] = one.peak_compression / w_m
-
-
 def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None) -> tuple[int, int]:
     """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
@@ -310,10 +327,13 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: E
     """
     y = _scale(out.yield_ratio)
     lam, s = out.inelasticity, out.strength
-    one = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
-    if one.status.any():
-        return failure(one.status)
-    _put(one, elastic_compression(law, lam, s), out)  # of an endless plate, near edges, too
+    solutions = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
+    if solutions.status.any():
+        return failure(solutions.status)
+    out.restitution[:], out.contact_time[:] = solutions.restitution, solutions.contact_time
+    out.wave_rate[:] = solutions.wave_rate
+    out.elastic_compression[:] = elastic_compression(law, lam, s)  # of an endless plate, near edges, too
+    out.compression_ratio[:] = solutions.peak_compression / out.elastic_compression
     return OK, 0
 
 
@@ -327,49 +347,37 @@ def overload_at(
 
     def gap(log_chi: Array) -> Array:
         y = w_m / np.exp(log_chi)
-        found = _run(TO_THE_TOP, law, lam, y, rtol, few=few, strength=strength)
-        reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
-        return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
+        solutions = _run(TO_THE_TOP, law, lam, y, rtol, few=few, strength=strength)
+        reached = np.log(solutions.peak_compression.reshape(y.shape) / (y * dm))
+        return np.where(solutions.status.reshape(y.shape) == OK, reached, math.nan)
 
-    before = np.log(np.broadcast_to(dm, np.shape(lam)))
-    gap_before = gap(before)
-    at = before - gap_before
+    at = np.log(np.broadcast_to(dm, np.shape(lam)))
+    slope = np.ones_like(at)
+    gap_at = gap(at)
     for _ in range(100):
-        gap_at = gap(at)
-        if not (abs(gap_at) > _CLOSE).any():
+        step = np.where(abs(gap_at) > _CLOSE, -gap_at / slope, 0.0)
+        if not step.any():
             break
-        rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
-        step = np.where(abs(gap_at) > _CLOSE, gap_at * (at - before) / rise, 0.0)
-        before, gap_before, at = at, gap_at, at - step
-    found = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
-    return found if found.shape else found.item()
+        at, before, gap_at = at + step, gap_at, gap(at + step)
+        slope = np.where(gap_at == before, 1.0, (gap_at - before) / np.where(step == 0.0, 1.0, step))
+    overload = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
+    return overload if overload.shape else overload.item()
 
 
 @kernel(cache=True)
 def extremes(laws: Array, outcome: Outcome, out: Extremes) -> None:
     """Peak force, residual compression and shares of the energy of impacts.
 
-    Most laws are Hertz's below yield; y may be inf there. Impacts beyond that are gathered first,
-    because a branch in the loop would be mispredicted for half of them.
+    Contacts that follow Hertz's law need no yield compression, which is inf for an elastic law.
     """
     leaves = force.leaves_hertz(force.at_strength(laws, 0.0))
-    beyond, dm = np.empty(_CHUNK, dtype=np.int64), np.empty(_CHUNK)
-    for start in range(0, out.peak_force.size, _CHUNK):
-        count = 0
-        for n in range(start, min(start + _CHUNK, out.peak_force.size)):
-            w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
-            out.peak_force[n] = w * math.sqrt(w)
-            out.residual_compression[n] = 0.0
-            out.plastic_fraction[n] = out.other_fraction[n] = 0.0
-            beyond[count] = n
-            dm[count] = w / outcome.yield_ratio[n]
-            count += w > outcome.yield_ratio[n] * leaves
-        for k in range(count):
-            n = beyond[k]
-            law, y = force.at_strength(laws, outcome.strength[n]), outcome.yield_ratio[n]
-            left, plastic, other = losses.at_the_contact(law, dm[k])
+    for n in range(out.peak_force.size):
+        w, y = outcome.compression_ratio[n] * outcome.elastic_compression[n], outcome.yield_ratio[n]
+        out.peak_force[n] = w * math.sqrt(w)
+        out.residual_compression[n] = out.plastic_fraction[n] = out.other_fraction[n] = 0.0
+        if w > y * leaves:
+            turned = force.deepest(force.at_strength(laws, outcome.strength[n]), w / y)
             unit = y * math.sqrt(y)  # F_Y
-            out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
-            out.residual_compression[n] = left * y
-            out.plastic_fraction[n] = 2.0 * plastic * y * unit
-            out.other_fraction[n] = 2.0 * other * y * unit
+            out.peak_force[n], out.residual_compression[n] = turned.force * unit, turned.residual * y
+            out.plastic_fraction[n] = 2.0 * (turned.loss - turned.other) * y * unit
+            out.other_fraction[n] = 2.0 * turned.other * y * unit

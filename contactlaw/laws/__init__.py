@@ -59,8 +59,8 @@ def names() -> tuple[str, ...]:
     >>> "myc" in contactlaw.laws.names()
     True
     """
-    found = (module.name for module in pkgutil.iter_modules(__path__))
-    return tuple(sorted(name for name in found if not name.startswith("_")))
+    modules = (module.name for module in pkgutil.iter_modules(__path__))
+    return tuple(sorted(name for name in modules if not name.startswith("_")))
 
 
 def parameters(name: str) -> tuple[str, ...]:
@@ -125,13 +125,13 @@ def law(name: str, **numbers: float) -> Law:
     if typed and not wanted:
         raise ArgumentError("law", name, f"takes no numbers: name it as {family!r}")
     if not wanted:
-        found: Law = module.LAW
-        return found
+        plain: Law = module.LAW
+        return plain
     form = f"{family}({','.join(wanted)})"
-    given = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
-    if len(given) != len(wanted):
+    values = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
+    if len(values) != len(wanted):
         raise ArgumentError("law", name, f"needs a value for each parameter: name it as {form}")
-    made: Law = module.law(*(_rounded(*one, form) for one in zip(wanted, given, strict=True)))
+    made: Law = module.law(*(_rounded(*pair, form) for pair in zip(wanted, values, strict=True)))
     return made if typed else dataclasses.replace(made, from_pair=every)
 
 

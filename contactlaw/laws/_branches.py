@@ -31,6 +31,10 @@ class Loading:
     start: float
     force: Formula | Polynomial
 
+    def at(self, d: Array) -> Array:
+        """Force at compressions."""
+        return self.force(np.sqrt(d)) if isinstance(self.force, Polynomial) else self.force(d)
+
 
 @dataclass(frozen=True)
 class Unloading:
@@ -48,8 +52,11 @@ class Unloading:
     loss : callable, optional
         Function of dm: loading work minus unloading work, over (dm - 1)^loss_order [F_Y d_Y]. Give
         it where computing the difference of the two works would lose digits.
+    recovery : callable, optional
+        Function of dm: share of the loading work that unloading gives back. It takes the place of
+        the exponent, which follows from it.
     other : callable, optional
-        Function of dm: part of the loss that is not plastic work [F_Y d_Y]; none by default.
+        Function of dm: share of the loading work that is lost, but not as plastic work; 0 by default.
     order, loss_order : float, optional
         Powers of dm - 1 with which residual and loss begin at yield; 2 for most laws. With 0 they
         are not divided, and the law follows them to 1e-13 of dm and of the loading work.
@@ -59,6 +66,7 @@ class Unloading:
     residual: Formula
     exponent: Formula | float = 1.5
     loss: Formula | None = None
+    recovery: Formula | None = None
     other: Formula | None = None
     order: float = 0.0
     loss_order: float = 0.0

@@ -8,8 +8,7 @@ is used without expansion.
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
@@ -20,8 +19,6 @@ from contactlaw.equation import force as _force
 from contactlaw.laws._branches import HERTZ, Formula, Loading, Unloading
 
 _TERMS = 18  # Chebyshev terms per piece
-_WIDEST = 1.7  # largest ratio of the ends of a piece, before any is halved
-_VANISHED = 2e-14  # a term counts as zero below this share of the least value on its piece
 _ROUNDING = 1e-13  # a value may be negative by this share of its size, from rounding
 _MOST_PIECES = 400  # per branch; a formula that needs more is not smooth
 _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
@@ -31,18 +28,24 @@ _TO_CHEBYSHEV[:, 0] *= 0.5
 _TO_POWERS = np.array([np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)])
 
 
-@dataclass(frozen=True, eq=False)
-class _Piece:
+class Resolution(NamedTuple):
+    """How finely the formulas of a law are expanded."""
+
+    vanished: float = 2e-14  # a term counts as zero below this share of the least value on its piece
+    widest: float = 1.7  # largest ratio of the ends of a piece, before any is halved
+
+
+class _Piece(NamedTuple):
     """Polynomials over one piece of a line, in t = scale x - offset."""
 
     start: float
     scale: float
     offset: float
     parts: list[Array]
+    powers: Sequence[float] = ()  # of dm - 1, which multiply the parts of unloading curves
 
 
-@dataclass(frozen=True)
-class _Function:
+class _Function(NamedTuple):
     """A function to expand, its name in messages, and the size that its error is relative to."""
 
     what: str
@@ -50,18 +53,10 @@ class _Function:
     size: Formula | None = None  # None: its own values
 
 
-class Resolution(NamedTuple):
-    """How finely the formulas of a law are expanded."""
-
-    vanished: float = _VANISHED  # a term counts as zero below this share of the least value on its piece
-    widest: float = _WIDEST  # largest ratio of the ends of a piece, before any is halved
-    checked: bool = True  # whether formulas are checked, as those of users have to be: half of the time
-
-
 def _expand(
-    name: str, parts: Sequence[_Function | float], low: float, high: float, resolution: Resolution
+    name: str, parts: Sequence[_Function], low: float, high: float, resolution: Resolution, powers: Sequence[float] = ()
 ) -> list[_Piece]:
-    """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
+    """Expand functions on [low, high], all on the same pieces."""
     count = max(1, math.ceil(math.log(high / low) / math.log(resolution.widest)))
     edges = low * np.power(high / low, np.linspace(0.0, 1.0, count + 1))
     edges[[0, -1]] = low, high
@@ -70,38 +65,21 @@ def _expand(
         left, right = np.array(todo).T
         middle, half = 0.5 * (left + right), 0.5 * (right - left)
         at = middle[:, None] + half[:, None] * _NODES
-        found = [_powers(name, part, at, resolution.vanished) for part in parts]
-        smooth = np.all([converged for _, converged in found], axis=0)
-        lengths = [_lengths(rows) for rows, _ in found]
+        rows, converged = zip(*(_powers(name, part, at, resolution.vanished) for part in parts), strict=True)
+        smooth = np.all(converged, axis=0)
         for n in np.flatnonzero(smooth):
-            powers = [rows[n, : size[n]] for (rows, _), size in zip(found, lengths, strict=True)]
-            done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], powers))
+            done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], [part[n] for part in rows], powers))
         todo = [ends for n in np.flatnonzero(~smooth) for ends in ((left[n], middle[n]), (middle[n], right[n]))]
         if len(todo) + len(done) > _MOST_PIECES:
             near = f"{todo[0][0]:.6g} d_Y"
             reason = f"it is not smooth near {near}; give each kink a branch that begins there"
             raise ArgumentError("law", name, reason)
-    done.sort(key=lambda piece: piece.start)
-    return done
+    return sorted(done)  # by their starts
 
 
-def _lengths(rows: Array) -> list[int]:
-    """Count the terms of each row up to the last that is not zero, at least one."""
-    beyond = np.argmax(rows[:, ::-1] != 0.0, axis=1)  # 0 where all are zero, too
-    sizes = np.where(rows.any(axis=1), rows.shape[1] - beyond, 1)
-    return [int(size) for size in sizes]
-
-
-def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> tuple[Array, Mask]:
+def _powers(name: str, part: _Function, at: Array, vanished: float) -> tuple[Array, Mask]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
-    if isinstance(part, float):
-        return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
-    values = _values(name, part.what, part.function, at)
-    size = np.abs(values) if part.size is None else part.size(at)
-    wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
-    if wrong.any():
-        n = int(np.argmax(wrong))
-        _refuse(name, part.what, values.flat[n], at.flat[n])
+    values, size = _values(name, part, at)
     level = values[:, :1]  # subtracted, so that rounding is relative to the values' variation
     terms = (values - level) @ _TO_CHEBYSHEV
     terms[:, :1] += level
@@ -110,142 +88,83 @@ def _powers(name: str, part: _Function | float, at: Array, vanished: float) -> t
     return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
 
 
-def _refuse(name: str, what: str, value: float, at: float) -> NoReturn:
-    gain = "; a loop would gain energy" if what == "loss" and value < 0.0 else ""
-    reason = f"its {what} is {value:.6g} at {at:.6g} d_Y: must be finite, not negative{gain}"
-    raise ArgumentError("law", name, reason)
-
-
-def _values(name: str, what: str, function: Formula, at: Array) -> Array:
-    """Evaluate a user's formula; refuse one that does not take arrays."""
+def _values(name: str, part: _Function, at: Array) -> tuple[Array, Array]:
+    """Evaluate a user's formula, and its size; refuse one that does not take arrays or is no law's."""
     with np.errstate(all="ignore"):
         try:
-            return np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape)
+            values = np.broadcast_to(np.asarray(part.function(at), dtype=np.float64), at.shape)
         except (TypeError, ValueError) as error:
             rule = "an array, as numpy's functions do, and return one number for each element"
-            reason = f"its {what} has to take {rule}; it raised: {error}"
+            reason = f"its {part.what} has to take {rule}; it raised: {error}"
             raise ArgumentError("law", name, reason) from error
+    size = np.abs(values) if part.size is None else part.size(at)
+    wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
+    if wrong.any():
+        value, place = values[wrong][0], at[wrong][0]
+        gain = "; a loop would gain energy" if part.what == "loss" and value < 0.0 else ""
+        reason = f"its {part.what} is {value:.6g} at {place:.6g} d_Y: must be finite, not negative{gain}"
+        raise ArgumentError("law", name, reason)
+    return values, size
 
 
 class LoadingCurve:
-    """The loading curve in pieces, with force and work at any compressions."""
+    """The loading curve in pieces, and force and work at any compressions."""
 
-    def __init__(
-        self, name: str, branches: Sequence[Loading], yields: bool, end: float, resolution: Resolution
-    ) -> None:
-        if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
-            forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
-            raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
-        self.end = end
-        self.stiffer = branches[0].force != HERTZ
-        self.kinks = tuple(float(branch.start) for branch in branches[1:])
+    def __init__(self, name: str, branches: Sequence[Loading], end: float, resolution: Resolution) -> None:
+        self.branches, self.end = branches, end
         self.pieces: list[_Piece] = []
-        self.first_of_branch: list[int] = []  # for each piece, the first piece of its branch
-        for branch, end in _ends(branches, self.end):
-            first = len(self.pieces)
-            force = branch.force
-            if isinstance(force, Polynomial):
-                coefficients = np.asarray(force.coef, dtype=np.float64)
-                self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
+        self.kinks: list[int] = []  # first piece of each branch, and the number of all pieces
+        for branch, stop in ends(branches, end):
+            self.kinks.append(len(self.pieces))
+            if isinstance(branch.force, Polynomial):
+                self.pieces.append(
+                    _Piece(math.sqrt(branch.start), 1.0, 0.0, [np.asarray(branch.force.coef, dtype=np.float64)])
+                )
             else:
-                if resolution.checked:
-                    _check_rise(name, force, branch.start, end, 200)
-                part = _Function("loading force", _over_root(force))
-                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end), resolution)
-            self.first_of_branch += [first] * (len(self.pieces) - first)
-        self._tabulate()
-        if yields:
-            self._extend_by_tangent()
-        if resolution.checked:
-            self._check(name, resolution)
-
-    def _check(self, name: str, resolution: Resolution) -> None:
-        for kink in self.kinks:
-            before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
-            if not abs(after - before) <= max(1e-9, 1e3 * resolution.vanished) * before:
-                said = f"{kink:.9g} d_Y: {before:.9g} and {after:.9g} F_Y"
-                raise ArgumentError("law", name, f"its loading branches do not meet at {said}")
-        _check_rise(name, self.force, 1e-3, self.end, 2000)
-
-    def _extend_by_tangent(self) -> None:
-        """Continue beyond the end along the tangent in d, as a polynomial in q."""
-        end = np.array([self.end, self.end * (1.0 + 1e-6)])
-        force, work = self.force(end), self.work(end)
-        piece = self.pieces[-1]
-        root = math.sqrt(self.end)
-        t = piece.scale * root - piece.offset
-        slope = 0.5 * piece.scale * Polynomial(piece.parts[0]).deriv()(t) / root
-        self.tangent = float(force[0]), float(slope), float(work[0])
-        if piece.scale == 1.0 and piece.parts[0].size <= 3 and piece.parts[0][1] == 0.0:
-            return  # the last piece is linear in d already
-        constant = float(force[0] - slope * self.end)
-        tail = np.array([constant, 0.0, float(slope)])
-        self.pieces.append(_Piece(root, 1.0, 0.0, [tail]))
-        self.first_of_branch.append(self.first_of_branch[-1])
-        self._tabulate()
-
-    def _tabulate(self) -> None:
-        pieces = self.pieces
-        self._starts = np.array([piece.start for piece in pieces])
-        self._scale, self._offset = (
-            np.array([getattr(piece, name) for piece in pieces]) for name in ("scale", "offset")
-        )
-        terms = max(piece.parts[0].size for piece in pieces)
-        self._force = np.zeros((len(pieces), terms))
-        self._work = np.zeros((len(pieces), terms + 2))
-        done = 0.0
-        for n, piece in enumerate(pieces):
-            force = piece.parts[0]
-            self._force[n, : force.size] = force
+                part = [_Function("loading force", _over_root(branch.force))]
+                self.pieces += _expand(name, part, math.sqrt(branch.start), math.sqrt(stop), resolution)
+        self.kinks.append(len(self.pieces))
+        terms = max(piece.parts[0].size for piece in self.pieces)
+        self._work = np.zeros((len(self.pieces), terms + 2))
+        starts, self._scale, self._offset = np.array([piece[:3] for piece in self.pieces]).T
+        self._starts, done = starts, 0.0
+        for n, (piece, stop) in enumerate(zip(self.pieces, [*starts[1:], math.sqrt(end)], strict=True)):
+            force = Polynomial(piece.parts[0])
             # dW = 2 q f dq with q = (t + offset)/scale
-            product = np.convolve(force, [piece.offset, 1.0]) * (2.0 / piece.scale**2)
-            work = np.concatenate(([0.0], product / np.arange(1, product.size + 1)))
-            work[0] = done - horner(work, piece.scale * piece.start - piece.offset)
-            self._work[n, : work.size] = work
-            if n + 1 < len(pieces):
-                done = float(horner(work, piece.scale * pieces[n + 1].start - piece.offset))
+            rate = force * Polynomial([piece.offset, 1.0]) * (2.0 / piece.scale**2)
+            work = rate.integ(lbnd=piece.scale * piece.start - piece.offset, k=done)
+            done = work(piece.scale * stop - piece.offset)
+            self._work[n, : work.coef.size] = work.coef
 
     def force(self, d: Array) -> Array:
-        """Force at compressions."""
-        return self._at(d, self._force)
+        """Force at compressions, by the formulas: pieces would meet with small jumps."""
+        k, force = np.searchsorted([branch.start for branch in self.branches], d, side="right") - 1, np.empty_like(d)
+        for n in np.unique(k):
+            force[k == n] = self.branches[n].at(d[k == n])
+        return force
 
     def work(self, d: Array) -> Array:
         """Integral of the force up to compressions."""
-        return self._at(d, self._work)
-
-    def _at(self, d: Array, coefficients: Array) -> Array:
         q = np.sqrt(d)
         k = np.searchsorted(self._starts, q, side="right") - 1
-        return horner(coefficients.T[:, k], self._scale[k] * q - self._offset[k])
+        t, value = self._scale[k] * q - self._offset[k], np.zeros_like(q)
+        for c in self._work.T[::-1]:
+            value = value * t + c[k]
+        return value
 
 
-def _begins_as_hertz(force: Formula | Polynomial) -> bool:
-    """Whether a branch is q^3, or q^3 and higher powers that make it stiffer."""
-    if not isinstance(force, Polynomial):
-        return False
-    powers = np.asarray(force.coef, dtype=np.float64)
-    return np.array_equal(powers[:4], HERTZ.coef) and bool((powers[4:] >= 0.0).all())
+def _over_root(force: Formula) -> Formula:
+    """Turn a function of d into one of the root compression."""
+    return lambda q: force(q * q)
 
 
-def horner(coefficients: Array, t: Array | float) -> Array:
-    value = np.zeros_like(np.asarray(t))
-    for c in coefficients[::-1]:
-        value = value * t + c
-    return value
-
-
-def _check_rise(name: str, force: Formula, low: float, high: float, count: int) -> None:
-    d = np.geomspace(low, high, count)
-    values = _values(name, "loading force", force, d)
-    for wrong in (~np.isfinite(values), values < 0.0):
-        if wrong.any():
-            n = int(np.argmax(wrong))
-            _refuse(name, "loading force", values[n], d[n])
-    falls = np.diff(values) <= 0.0
-    if falls.any():
-        at = d[int(np.argmax(falls))]
-        reason = f"the loading force of {name!r} does not rise at {at:.6g} d_Y"
+def ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
+    """Pair branches with the compressions at which they end; refuse branches out of order."""
+    starts = [branch.start for branch in branches]
+    if any(not low < high for low, high in itertools.pairwise([*starts, last])):
+        reason = f"branches have to begin one after the other, below {last:g} d_Y"
         raise ArgumentError("law", None, reason)
+    return list(zip(branches, [*starts[1:], last], strict=False))  # no branch, no end
 
 
 def check_yield(
@@ -273,176 +192,155 @@ def check_yield(
         raise ArgumentError("law", None, reason)
 
 
-def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading], error: float) -> None:
+def check_formulas(name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float) -> None:
+    """Refuse a loading curve that does not begin as Hertz's, falls or jumps, and too large residuals."""
+    first = loading[0].force if loading and loading[0].start == 0.0 else None
+    powers: Any = first.coef if isinstance(first, Polynomial) else np.zeros(4)
+    if not np.array_equal(powers[:4], HERTZ.coef) or (powers[4:] < 0.0).any():
+        forms = "a polynomial, HERTZ or HERTZ plus higher powers that make it stiffer"
+        raise ArgumentError("law", name, f"its first branch has to begin at 0 with {forms}")
+    before = 0.0
+    for branch, stop in ends(loading, end):
+        d = np.geomspace(max(branch.start, 1e-3), stop, 1000)
+        force, _ = _values(name, _Function("loading force", branch.at), d)
+        if branch.start and not abs(force[0] - before) <= 1e-9 * before:
+            jump = f"{branch.start:.9g} d_Y: {before:.9g} and {force[0]:.9g} F_Y"
+            raise ArgumentError("law", name, f"its loading branches do not meet at {jump}")
+        falls = np.diff(force) <= 0.0
+        if falls.any():
+            reason = f"the loading force of {name!r} does not rise at {d[np.argmax(falls)]:.6g} d_Y"
+            raise ArgumentError("law", None, reason)
+        before = force[-1]
+    for flow, stop in ends(unloading, end):
+        dm = np.geomspace(flow.start * (1.0 + 1e-9), stop, 200)
+        residual, _ = _values(name, _Function("residual compression", flow.residual), dm)
+        deep = residual * (dm - 1.0) ** flow.order >= dm
+        if deep.any():
+            reason = f"its residual compression is not below the largest one at {dm[np.argmax(deep)]:.6g} d_Y"
+            raise ArgumentError("law", name, reason)
+
+
+def check_unloading(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
     """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
-    before: tuple[float, float] | None = None if curve.stiffer else (0.0, 0.0)
-    for branch, end in _ends(branches, curve.end):
-        dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
-        left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
+    before: Any = (0.0, 0.0) if curve.branches[0].force == HERTZ else None
+    for branch, stop in ends(branches, curve.end):
+        dm = np.array([branch.start * (1.0 + 1e-9), stop * (1.0 - 1e-9)])
+        contacts = _Contacts(curve, branch)
+        values = contacts.residual(dm), contacts.loss(dm)
         if before is None:  # a stiffer law has friction: any contact loses energy
-            before = float(left[0]), float(lost[0])
-        for what, value, last, scale in (
-            ("residual compression", left, before[0], branch.start),
-            ("loss", lost, before[1], float(curve.work(dm)[0])),
-        ):
-            if not abs(value[0] - last) <= max(1e-6, error) * scale:
+            before = values[0][0], values[1][0]
+        scales = dm[0], curve.work(dm)[0]
+        for what, value, last, scale in zip(("residual compression", "loss"), values, before, scales, strict=True):
+            if not abs(value[0] - last) <= 1e-6 * scale:
                 jump = f"at {branch.start:.9g} d_Y, from {last:.6g} to {value[0]:.6g}"
                 raise ArgumentError("law", name, f"its {what} jumps {jump}")
-        before = float(left[1]), float(lost[1])
+        before = values[0][-1], values[1][-1]
 
 
-def _over_root(force: Formula) -> Formula:
-    """Turn a function of d into one of the root compression."""
-    return lambda q: force(q * q)
+class _Contacts:
+    """Contacts of one branch, as its formulas have them, for arrays of largest compressions."""
 
+    def __init__(self, curve: LoadingCurve, branch: Unloading) -> None:
+        self.curve, self.branch = curve, branch
 
-def _ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
-    """Pair branches with the compressions at which they end; refuse branches out of order."""
-    starts = [branch.start for branch in branches]
-    if any(not low < high for low, high in itertools.pairwise([*starts, last])):
-        reason = f"branches have to begin one after the other, below {last:g} d_Y"
-        raise ArgumentError("law", None, reason)
-    return list(zip(branches, [*starts[1:], last], strict=True)) if starts else []
+    def residual(self, dm: Array) -> Array:
+        return self.branch.residual(dm) * (dm - 1.0) ** self.branch.order
 
+    def exponent(self, dm: Array) -> Array:
+        exponent, recovery = self.branch.exponent, self.branch.recovery
+        if recovery is not None:
+            return self._over_work(dm) / recovery(dm) - 1.0
+        return exponent(dm) if callable(exponent) else np.full_like(dm, exponent)
 
-@dataclass(frozen=True, eq=False)
-class _Row:
-    """A piece of the unloading family: functions in the order of `equation.force`."""
+    def loss(self, dm: Array) -> Array:
+        if self.branch.loss is not None:
+            return self.branch.loss(dm) * (dm - 1.0) ** self.branch.loss_order
+        recovery = self.branch.recovery
+        share = recovery(dm) if recovery is not None else self._over_work(dm) / (self.exponent(dm) + 1.0)
+        return (1.0 - share) * self.curve.work(dm)
 
-    piece: _Piece
-    powers: tuple[float, ...]
-    other: bool  # whether some of the loss is not plastic work
+    def _over_work(self, dm: Array) -> Array:
+        """Force times the compression that is given back, over the loading work."""
+        return self.curve.force(dm) * (dm - self.residual(dm)) / self.curve.work(dm)
 
+    def rows(self, name: str, edges: Sequence[float], resolution: Resolution) -> list[_Piece]:
+        """Pieces of the unloading curves."""
+        branch, curve = self.branch, self.curve
 
-def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
-    """Residual compression and loss of a branch, multiplied by their powers of dm - 1."""
-    exponent, given = branch.exponent, branch.loss
+        # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
+        # for a loss, the loss itself; for an exponent, what rounding of the span leaves. Rounding does
+        # not allow less than 0.05 of dm and of the work.
+        def smaller(dm: Array) -> Array:
+            return branch.residual(dm) * np.clip(1.0 - self.residual(dm) / dm, 0.05, 1.0)
 
-    def residual(dm: Array) -> Array:
-        return branch.residual(dm) * (dm - 1.0) ** branch.order
+        def lost(dm: Array) -> Array:
+            work = curve.work(dm)
+            return np.clip(self.loss(dm), 0.05 * work, 0.2 * work)
 
-    def difference(dm: Array) -> Array:
-        n = exponent(dm) if callable(exponent) else exponent
-        return curve.work(dm) - curve.force(dm) * (dm - residual(dm)) / (n + 1.0)
+        def per_span(dm: Array) -> Array:
+            return 2.0 * dm / (dm - self.residual(dm))
 
-    if given is None:
-        return residual, difference
-    return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
-
-
-def _unloading_rows(
-    name: str, curve: LoadingCurve, branch: Unloading, end: float, resolution: Resolution
-) -> list[_Row]:
-    exponent = branch.exponent
-    residual, loss = _residual_and_loss(curve, branch)
-    some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200 if resolution.checked else 0)
-    deep = _values(name, "residual compression", residual, some) >= some
-    if deep.any():
-        at = some[int(np.argmax(deep))]
-        reason = f"its residual compression is not below the largest one at {at:.6g} d_Y"
-        raise ArgumentError("law", name, reason)
-
-    # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
-    # for a loss, the loss itself. Rounding does not allow less than 0.05 of dm and of the work.
-    def smaller(dm: Array) -> Array:
-        return branch.residual(dm) * np.clip(1.0 - residual(dm) / dm, 0.05, 1.0)
-
-    def lost(dm: Array) -> Array:
-        work = curve.work(dm)
-        return np.clip(loss(dm), 0.05 * work, 0.2 * work)
-
-    parts: list[_Function | float] = [
-        _Function("residual compression", branch.residual, smaller if branch.order else np.positive)
-    ]
-    parts.append(_Function("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent)
-    if branch.loss is None:
-        parts.append(_Function("loss", loss, lost))
-    else:
-        # divided by its power of dm - 1, a loss does not vanish and is its own size
-        parts.append(_Function("loss", branch.loss, None if branch.loss_order else lost))
-    parts.append(0.0 if branch.other is None else _Function("other loss", branch.other, lost))
-    powers = (branch.order, 0.0, branch.loss_order, 0.0)
-    # the loss has kinks where the loading curve has them
-    inner = [kink for kink in curve.kinks if branch.start < kink < end]
-    return [
-        _Row(piece, powers, branch.other is not None)
-        for ends in itertools.pairwise([branch.start, *inner, end])
-        for piece in _expand(name, parts, *ends, resolution)
-    ]
-
-
-def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
-    """Row beyond the end: residual in proportion to dm, same exponent, loss from the works."""
-    piece, end = last.piece, curve.end
-    values = [horner(part, piece.scale * end - piece.offset) for part in piece.parts]
-    share = float(values[_force.RESIDUAL]) * (end - 1.0) ** last.powers[_force.RESIDUAL] / end
-    exponent = float(values[_force.EXPONENT])
-    force, slope, work = curve.tangent
-    at_zero = force - slope * end
-    up = np.array([work - at_zero * end - 0.5 * slope * end**2, at_zero, 0.5 * slope])
-    down = np.array([0.0, at_zero, slope]) * (2.0 * (1.0 - share) / (exponent + 2.0))
-    # plastic work stays the same share of the loading work
-    lost = float(values[_force.LOSS]) * (end - 1.0) ** last.powers[_force.LOSS]
-    other = up - down - (lost - float(values[_force.OTHER])) / work * up
-    if not last.other:
-        other = np.zeros(1)
-    parts = [np.array([0.0, share]), np.array([exponent]), up - down, other]
-    return _Row(_Piece(end, 1.0, 0.0, parts), (0.0,) * len(parts), last.other)
-
-
-class Expanded(NamedTuple):
-    """A law in pieces."""
-
-    curve: LoadingCurve
-    rows: list[_Row]  # of the unloading curves
+        other = branch.other or np.zeros_like
+        parts = [
+            _Function("residual compression", branch.residual, smaller if branch.order else np.positive),
+            _Function("exponent", lambda dm: 2.0 * self.exponent(dm), branch.recovery and per_span),
+            # divided by its power of dm - 1, a loss does not vanish and is its own size
+            _Function("loss", branch.loss or self.loss, None if branch.loss_order else lost),
+            _Function("other loss", lambda dm: other(dm) * curve.work(dm), lost),
+        ]
+        powers = (branch.order, 0.0, branch.loss_order, 0.0)
+        return [
+            row
+            for low, high in itertools.pairwise(edges)
+            for row in _expand(name, parts, low, high, resolution, powers)
+        ]
 
 
 def expanded(
     name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, resolution: Resolution
-) -> Expanded:
-    """Expand the formulas of a law."""
-    curve = LoadingCurve(name, loading, bool(unloading), end, resolution)
-    rows = [row for branch in _ends(unloading, curve.end) for row in _unloading_rows(name, curve, *branch, resolution)]
-    if resolution.checked:
-        _check_joints(name, curve, unloading, 1e3 * resolution.vanished)
-    if rows:
-        rows.append(_beyond(curve, rows[-1]))
-    return Expanded(curve, rows)
+) -> tuple[LoadingCurve, list[_Piece]]:
+    """Expand the formulas of a law: the loading curve, and pieces of the unloading curves."""
+    curve, rows = LoadingCurve(name, loading, end, resolution), list[_Piece]()
+    for branch, stop in ends(unloading, end):
+        # the loss has kinks where the loading curve has them
+        kinks = [above.start for above in loading if branch.start < above.start < stop]
+        rows += _Contacts(curve, branch).rows(name, [branch.start, *kinks, stop], resolution)
+    return curve, rows
 
 
-def packed(law: Expanded) -> Array:
+def packed(curve: LoadingCurve, rows: Sequence[_Piece]) -> Array:
     """Lay out a law in pieces as one array, see `contactlaw.equation.force`."""
-    curve, rows = law.curve, law.rows
     pieces = curve.pieces
-    # A function has one length on all pieces: the processor predicts loops of constant length.
-    lengths = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_force.FUNCTIONS)]
     starts = [*(piece.start for piece in pieces), math.inf]
-    family_starts = [*(row.piece.start for row in rows), math.inf]
-    starts_at = _force.HEADER
-    curve_at = starts_at + len(starts)
-    family_starts_at = curve_at + len(pieces) * _force.PIECE
-    family_at = family_starts_at + len(family_starts)
-    at = family_at + len(rows) * _force.UNLOADING_ROW
-    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at]
+    family_starts = [*(row.start for row in rows), curve.end if rows else math.inf]
+    sizes = len(starts), len(pieces) * _force.PIECE, len(family_starts), len(rows) * _force.UNLOADING_ROW
+    *places, at = itertools.accumulate(sizes, initial=_force.HEADER)
     coefficients: list[Array] = []
 
     def put(part: Array, length: int) -> list[float]:
         nonlocal at
         room = np.zeros(length + -length % 4)  # np.pad takes ten times as long
-        room[: part.size] = part
+        room[:length] = part[:length]
         coefficients.append(room)
         at += room.size
         return [length - 1, at - room.size]
 
     curve_rows: list[float] = []
-    for piece, first in zip(pieces, curve.first_of_branch, strict=True):
-        following = next((k for k in curve.first_of_branch if k > first), len(pieces))
-        entries = put(piece.parts[0], piece.parts[0].size)
-        curve_rows += [piece.scale, piece.offset, *entries, first, following]
+    for first, following in itertools.pairwise(curve.kinks):
+        for piece in pieces[first:following]:
+            entries = put(piece.parts[0], _length(piece.parts[0]))
+            curve_rows += [piece.scale, piece.offset, *entries, first, following]
+    # A function has one length on all pieces: the processor predicts loops of constant length.
+    lengths = [max(map(_length, parts)) for parts in zip(*(row.parts for row in rows), strict=True)]
     family_rows: list[float] = []
     for row in rows:
-        family_rows += [row.piece.scale, row.piece.offset]
-        for power, part, length in zip(row.powers, row.piece.parts, lengths, strict=True):
+        family_rows += [row.scale, row.offset]
+        for power, part, length in zip(row.powers, row.parts, lengths, strict=True):
             family_rows += [power, *put(part, length)]
-    numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
+    numbers = [len(pieces), len(rows), *places, *starts, *curve_rows, *family_starts, *family_rows]
     return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])
+
+
+def _length(part: Array) -> int:
+    """Count the coefficients up to the last that is not zero, at least one."""
+    return 1 + int(np.flatnonzero(part).max(initial=0))

@@ -15,7 +15,7 @@ from contactlaw._arrays import Array
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Loading, Unloading
-from contactlaw.laws._expansion import Resolution, check_yield, expanded, packed
+from contactlaw.laws._expansion import Resolution, check_formulas, check_unloading, check_yield, expanded, packed
 
 
 class Strengths(NamedTuple):
@@ -145,11 +145,12 @@ class Law:
         name = _written(family, parameters)
         check_yield(name, yield_coefficient, loading, unloading)
         end = range[1] if range[1] < math.inf else END
-        made = expanded(name, loading, unloading, end, Resolution())
-        curve = made.curve
-        starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
-        if curve.stiffer:  # friction takes energy below yield, too: its branch begins no kink
-            starts = {start for start in starts if start >= 1.0}
+        check_formulas(name, loading, unloading, end)
+        curve, rows = expanded(name, loading, unloading, end, Resolution())
+        check_unloading(name, curve, unloading)
+        kinks = tuple(float(branch.start) for branch in loading[1:])
+        # friction takes energy below yield, too: its branch begins no kink
+        starts = {*kinks, *(float(branch.start) for branch in unloading if branch.start >= 1.0)}
         if range[1] < math.inf:
             starts.add(range[1])
         return Law(
@@ -157,9 +158,9 @@ class Law:
             parameters=parameters,
             source=source,
             yield_coefficient=yield_coefficient,
-            loading_kinks=curve.kinks,
+            loading_kinks=kinks,
             outcome_kinks=tuple(sorted(starts)),
-            data=packed(made),
+            data=packed(curve, rows),
             yield_strains=yield_strains,
             scale=scale,
             range=range,
@@ -224,8 +225,7 @@ class Law:
         """Kinks, and values along the curves, by which laws are compared."""
         values = [*self.loading_kinks, *self.outcome_kinks]
         for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
-            lost = _force.residual_and_losses(self._law, d)[1:]
-            values += [self.loading(math.sqrt(d)), *self.unloading_curve(d), *lost]
+            values += _force.deepest(self._law, d)
         return values
 
     def loading(self, q: float) -> float:
@@ -234,7 +234,7 @@ class Law:
 
     def residual(self, dm: float) -> float:
         """Compression [d_Y] left after unloading from the largest one, dm."""
-        return _force.residual_and_losses(self._law, dm)[0]
+        return _force.deepest(self._law, dm).residual
 
     def unloading_curve(self, dm: float) -> UnloadingCurve:
         """Find the unloading curve from dm."""
@@ -246,7 +246,7 @@ class Law:
 
     def dissipation(self, dm: float) -> float:
         """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
-        return _force.residual_and_losses(self._law, dm)[1]
+        return _force.deepest(self._law, dm).loss
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

@@ -85,9 +85,6 @@ _REACH_OF_SHARE, _REACH_OF_POISSON = 0.45, 0.1
 _ELASTIC_BEYOND = 0.98
 ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
 _POWERS = (5, 4)  # number of powers of t and of w
-# Gauss' rules for whole panels of the loading work, and for the last part of one up to a q
-_PANEL, _LAST = (np.polynomial.legendre.leggauss(count) for count in (20, 10))
-_WIDTH = 0.15  # of panels, in sqrt(ln q): they are narrow next to yield
 
 
 @functools.cache
@@ -107,17 +104,6 @@ def friction_loss(given: Given, powers: list[float]) -> float:
     one, other = ((1.0 - 2.0 * nu) / (1.0 - nu) for nu in (given.poissons_ratio, given.plate_poissons_ratio))
     mismatch = 0.5 * ((1.0 - given.modulus_share) * one - given.modulus_share * other)
     return max(_LEAST_FRICTION, float(np.polynomial.polynomial.polyval(mismatch, powers)))
-
-
-def _within(value: float, most: float) -> float:
-    return min(max(value, -most), most)
-
-
-def _sized(powers: list[list[float]]) -> Array:
-    """Pad coefficients of powers of t and w with zeros to `_POWERS`."""
-    found = np.zeros(_POWERS)
-    found[: len(powers), : len(powers[0])] = powers
-    return found
 
 
 def yield_scale(ratio: float, poissons_ratio: float) -> float:
@@ -159,13 +145,6 @@ class Given(NamedTuple):
     def relaxation(self) -> float:
         """Exponent a = 2 delta/pi with which the modulus grows with frequency."""
         return 2.0 / math.pi * math.atan(self.loss_factor)
-
-    def ratios(self, sphere_strain: Any, plate_strain: Any) -> tuple[Any, Any]:
-        """E*/sigma of sphere and plate at their representative strains, or at arrays of them."""
-        return (
-            self.sphere_ratio / (1.0 + self.sphere_hardening * sphere_strain**self.sphere_exponent),
-            self.plate_ratio / (1.0 + self.plate_hardening * plate_strain**self.plate_exponent),
-        )
 
     @property
     def ratio(self) -> float:
@@ -213,9 +192,9 @@ class Given(NamedTuple):
         return {
             ("both", "usual"): share_both,
             (self.weaker, "usual"): 1.0 - share_both,
-            (self.weaker, "share"): (1.0 - share_both) * _within(own - 0.5, _REACH_OF_SHARE),
+            (self.weaker, "share"): (1.0 - share_both) * np.clip(own - 0.5, -_REACH_OF_SHARE, _REACH_OF_SHARE),
             **{
-                (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _REACH_OF_POISSON)
+                (body, "poissons_ratio"): flow[body] * np.clip(nu - 0.3, -_REACH_OF_POISSON, _REACH_OF_POISSON)
                 for body, nu in ratios.items()
             },
             # a wave crosses the sphere in a share of the contact time that goes as sqrt(E*/E1')
@@ -227,16 +206,6 @@ _STRENGTHS = Given._fields[:2]
 _HARDENING = Given._fields[5:9]
 PARAMETERS = Given._fields
 DEFAULTS = Given._field_defaults  # of the numbers of hardening and losses
-
-
-class _Works(NamedTuple):
-    """What the law gives for an array of largest compressions."""
-
-    force: Array
-    loading: Array  # loading work
-    recovery: Array  # share of it that unloading gives back
-    plastic: Array  # share of it that is plastic work
-    span: Array
 
 
 class Curves:
@@ -262,22 +231,16 @@ class Curves:
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
         # shares of the work and of the compression that come back, and of the energy lost before
-        self.returned, self.recovered, self.lost_before = 1.0, 1.0, 0.0
-        if given.loss_factor:
-            a = given.relaxation
-            sums = [a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"]]
-            self.returned, self.recovered = math.exp(-sums[0]), math.exp(-sums[1])
-            self.lost_before = sums[2]
+        a = given.relaxation
+        work, span, self.lost_before = (a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"])
+        self.returned, self.recovered = math.exp(-work), math.exp(-span)
         self._terms: dict[str, Array] = {}
-        if not self.ratio:
-            return
-        weights = given.weights(blend, found["stiffest"])
+        weights = given.weights(blend, found["stiffest"]) if self.ratio else {}
         for name, cases in found["curves"].items():
             terms = np.zeros((2, *_POWERS))
             for (case, part), weight in weights.items():
-                powers = cases.get(case, {}).get(part)
-                if powers is not None:
-                    terms[int(part == "share")] += weight * _sized(powers)
+                powers = np.array(cases.get(case, {}).get(part, [[0.0]]))
+                terms[int(part == "share"), : len(powers), : len(powers[0])] += weight * powers
             usual, moved = terms  # the term with the modulus has a factor 1 - t
             self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
             self._terms[name][1:] -= moved
@@ -307,8 +270,6 @@ class Curves:
 
     def _over(self, name: str, q: Array) -> Array:
         """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
-        if not self.ratio:
-            return np.ones_like(q)
         above = np.maximum(q, 1.0)
         own = self._own(above)
         return 1.0 + (own - 1.0) ** 2 / (own + SHIFT) * self._sum(name, above)
@@ -317,69 +278,36 @@ class Curves:
         """Force while the compression grows."""
         return np.asarray(q**3 * (1.0 + self.stiffening * q) / self._over("loading", q))
 
-    def work(self, q: Array) -> Array:
-        """Integrate the force: exactly up to yield, beyond by Gauss' rule over ln q."""
-        start = np.minimum(q, 1.0) if self.ratio else q
-        elastic = np.asarray(0.4 * start**5 + self.stiffening / 3.0 * start**6)
-        if not self.ratio:
-            return elastic
-
-        def beyond(low: Array, high: Array, rule: tuple[Array, Array]) -> Array:
-            half = 0.5 * np.log(high / low)
-            at = low[..., None] * np.exp(half[..., None] * (1.0 + rule[0]))
-            return np.asarray(half * ((2.0 * at**2 * self.force(at)) @ rule[1]))
-
-        above = np.maximum(q, 1.0)
-        panel = (np.sqrt(np.log(above)) / _WIDTH).astype(int)
-        ends = np.exp((_WIDTH * np.arange(panel.max() + 1)) ** 2)
-        done = np.append(0.0, np.cumsum(beyond(ends[:-1], ends[1:], _PANEL)))
-        return np.asarray(elastic + done[panel] + beyond(ends[panel], above, _LAST))
-
     def residual(self, q: Array) -> Array:
         """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on.
 
         That of bodies with losses is not divided, and begins before.
         """
         if self.recovered < 1.0:
-            return np.asarray(q**2 - self.span(q))
+            return np.asarray(q**2 * (1.0 - self.recovered / self._over("residual", q)))
         own = self._own(q)
         over = (self._sum("residual", q)) / (own + SHIFT)
         near = q**2 * over / ((1.0 + (own - 1.0) ** 2 * over) * (q + 1.0) ** 2)
         return near * self._nearer(q) ** 2
 
-    def span(self, q: Array) -> Array:
-        """Compression that unloading gives back, dm - dr."""
-        return np.asarray(self.recovered * q**2 / self._over("residual", q))
-
     def recovery(self, q: Array) -> Array:
-        """Share of the loading work that unloading gives back."""
+        """Share of the loading work that unloading of bodies without losses gives back."""
         share = (1.0 - self.friction) / self._over("recovery", q)
         return np.asarray(share * (1.0 - self.impact(q)))
 
     def impact(self, q: Array) -> Array:
         """Share v of the work a slow contact gives back that an impact does not."""
-        if not self.ratio:
-            return np.zeros_like(q)
         above = np.maximum(q, 1.0)
         own = self._own(above)
         return np.asarray(((own - 1.0) / (own + SHIFT)) ** 2 * self._sum("impact", above))
 
-    def plastic(self, q: Array, recovery: Array) -> Array:
-        """Plastic work over the loading work, from the share that unloading gives back."""
-        if not self.ratio:
-            return np.zeros_like(q)
-        lost = 1.0 - recovery / (1.0 - self.friction)
-        return np.asarray(lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0))))
-
-    def works(self, q: Array) -> _Works:
-        """All quantities at once, each computed only once."""
+    def shares(self, q: Array) -> tuple[Array, Array]:
+        """Shares of the loading work that unloading gives back, and that is plastic work."""
         recovery = self.recovery(q)
-        plastic = self.plastic(q, recovery)
-        if self.recovered < 1.0:
-            less = 1.0 / (1.0 + self.lost_before * recovery)
-            plastic = plastic * less
-            recovery = recovery * less * self.returned * (1.0 + self.lost_before)
-        return _Works(self.force(q), self.work(q), recovery, plastic, self.span(q))
+        lost = 1.0 - recovery / (1.0 - self.friction)
+        plastic = lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0)))
+        less = 1.0 / (1.0 + self.lost_before * recovery)
+        return recovery * less * self.returned * (1.0 + self.lost_before), plastic * less
 
 
 class Strains(NamedTuple):
@@ -392,7 +320,9 @@ class Strains(NamedTuple):
     def ratios(self, given: Given, w: Any) -> tuple[Any, Any]:
         """E*/sigma of sphere and plate at a depth, or at an array of them."""
         beyond = max(w - self.start, 0.0)
-        return given.ratios(self.sphere * beyond, self.plate * beyond)
+        sphere = given.sphere_hardening * (self.sphere * beyond) ** given.sphere_exponent
+        plate = given.plate_hardening * (self.plate * beyond) ** given.plate_exponent
+        return given.sphere_ratio / (1.0 + sphere), given.plate_ratio / (1.0 + plate)
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
@@ -509,24 +439,11 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
-    known: list[tuple[Array, _Works]] = []  # at the last dm: three formulas share it
-
-    def works(dm: Array) -> _Works:
-        if not (known and known[0][0] is dm):
-            known[:] = [(dm, curves.works(np.sqrt(dm)))]
-        return known[0][1]
-
-    def exponent(dm: Array) -> Array:
-        at = works(dm)
-        return at.force * at.span / (at.recovery * at.loading) - 1.0
-
-    def loss(dm: Array) -> Array:
-        at = works(dm)
-        return (1.0 - at.recovery) * at.loading
+    def recovery(dm: Array) -> Array:
+        return curves.shares(np.sqrt(dm))[0]
 
     def other(dm: Array) -> Array:
-        at = works(dm)
-        return (1.0 - at.recovery - at.plastic) * at.loading
+        return np.asarray(1.0 - sum(curves.shares(np.sqrt(dm))))
 
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = min(_SMALLEST / curves.scale, _EARLIEST)
@@ -539,10 +456,10 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     lossy = curves.recovered < 1.0
     left, order = (residual, 0.0) if lossy else (np.zeros_like, 2.0)
     # tables begin at `start`; the loss begins below, so that no contact in a table is lossless
-    unloading = [Unloading(0.1 * start, left, exponent, loss=loss, other=other)]
+    unloading = [Unloading(0.1 * start, left, recovery=recovery, other=other)]
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
-        unloading.append(Unloading(1.0, residual, exponent, loss, other, order=order))
+        unloading.append(Unloading(1.0, residual, recovery=recovery, other=other, order=order))
     return {
         "name": "fem",
         "parameters": dict(zip(PARAMETERS, named, strict=False)),

@@ -56,6 +56,7 @@ from contactlaw.equation.numbers import (
     numbers,
     relaxed,
     relaxes,
+    scaled,
 )
 from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
@@ -239,14 +240,7 @@ def curved(spring: Spring, bending: float) -> Spring:
         stiffness=spring.stiffness * math.sqrt(bending),
         scale=spring.scale * bending,
         relaxation=spring.relaxation / faster,
-        plate=tuple_of(
-            PlateConstants,
-            plate,
-            inelasticity=plate.inelasticity * faster,
-            transit=plate.transit * faster,
-            x_at_one=plate.x_at_one * (faster * faster),
-            saturated=plate.saturated * (faster * root),
-        ),
+        plate=scaled(plate, faster, faster, faster * faster, faster * root),
     )
 
 
@@ -383,6 +377,5 @@ def at_largest(law: Array, spring: Spring, state: State) -> Largest:
     unit = spring.stiffness * scale * math.sqrt(scale)
     if state.stiffening > 0.0:
         unit *= state.stiffening
-    dm = state.largest_compression / scale
-    residual, lost, other = forces.residual_and_losses(own, dm)
-    return Largest(scale, unit, lost, other, residual, forces.loading(own, math.sqrt(dm)))
+    turned = forces.deepest(own, state.largest_compression / scale)
+    return Largest(scale, unit, turned.loss, turned.other, turned.residual, turned.force)

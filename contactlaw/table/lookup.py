@@ -42,7 +42,7 @@ from contactlaw.equation.numbers import (
     plate_stiffening,
     relaxed,
     relaxes,
-    with_saturation,
+    scaled,
 )
 from contactlaw.equation.outcome import Outcome
 
@@ -315,7 +315,7 @@ def contact(
         part = plate.inelasticity * root * (radius * radius)
         return Contact(part / (part + STRETCH * (thickness * thickness)), above, 1.0, root / slower)
     ratio = radius / thickness
-    plate = with_saturation(plate, plate.saturated * g)
+    plate = scaled(plate, 1.0, 1.0, 1.0, g)
     quarter = exp(0.25 * plate_stiffening(plate, root, ratio))
     stiffer = (quarter * quarter) * (quarter * quarter)
     lam = inelasticity_of(plate, root, ratio, stiffer)

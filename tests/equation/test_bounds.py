@@ -35,7 +35,7 @@ READING = {
     for kernel in (kernel for module in MODULES for kernel in vars(module).values())
     if hasattr(kernel, "py_func") and READ & kernel.py_func.__annotations__.keys()
 }
-INNER = "locate", "cor_at", "_unloading_of"  # take a place in the table, or a contact with a loss
+INNER = "locate", "cor_at"  # take a place in the table
 FLOATS = st.sampled_from([np.nan, np.inf, 0.5, 1.5]) | st.floats()
 CALLED = set()
 
@@ -63,7 +63,7 @@ def attempt(data):
     for row in many[12:].reshape(8, 12):
         own = force.alone(law)
         curve, loads = force.unloading(own, row[0]), bool(row[2] > 0.0)
-        leg = legs.up(own, legs.FIRST) if loads else legs.down(own, curve, row[1])
+        leg = legs.up(own, legs.FIRST) if loads else legs.down(own, row[1])
         known = {"law": law, "laws": law, "table": table, "response": EDGE, "kind": leg.kind}
         typed = {"Array": many[0, 0], "Outcome": outcome.at(*many[1, :2]), "bool": loads}
         typed |= {"Extremes": outcome.extremes(4), "UnloadingCurve": curve, "Leg": leg}

@@ -91,7 +91,10 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
     ("pair", "law"), [*((pair, "fem") for pair in PAIRS), (STEEL, "myc"), (PAIRS[0], "hertz")], ids=repr
 )
 def test_table_solver_and_stepping_have_the_same(pair, law):
-    """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides."""
+    """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides.
+
+    The overload of a table errs by 1.7e-9, because w_m is there a polynomial of degree 15.
+    """
     model = cl.ImpactModel(pair, law, outside="solve")
     v, r, h = impacts(model, 1) if law == "fem" else impacts(cl.ImpactModel(pair, "fem"), 2)
     units = SphereOnPlate(pair, model.force_law).numbers(Impact(v, r, h))
@@ -101,8 +104,7 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
     looked, solved = model.lookup(v, r, h), model.solve(v, r, h)
     for hit in (looked, solved):
         np.testing.assert_allclose(hit.inelasticity, units.inelasticity, rtol=1e-14)
-    # A table has w_m as a polynomial; of fields but the COR 1e-3 is promised.
-    np.testing.assert_allclose(looked.overload, solved.overload, rtol=1e-8)
+    np.testing.assert_allclose(looked.overload, solved.overload, rtol=3e-9)
     other = looked.flags ^ solved.flags
     assert not (other & BEFOREHAND).any()
     for n in np.flatnonzero(other):

@@ -263,7 +263,7 @@ def _of_study(study: str, law: str, least: float) -> tuple[Member, ...]:
             continue
         rows = [n for n in range(count) if pairs[n] == pair]
         speed, radius, thickness = (data[key][rows] for key in ("speed", "radius", "thickness"))
-        hit = cl.ImpactModel(pair, law).solve(speed, radius, thickness)
+        hit = cl.ImpactModel(pair, law).solve(speed, radius, thickness, rtol=1e-10)
         for k, n in enumerate(rows):
             found[n] = _member(study, pair, impacts[n], hit, k, least)
     return tuple(found[n] for n in sorted(found))

@@ -172,7 +172,7 @@ def errors(name: str, constants: Constants) -> Array:
         case = Case(**dict(zip(keys, row, strict=True)))
         pair = at_rate(fit.pair_of(dataclasses.asdict(case)), case, constants.rate)
         law = fem.law_of(fit.numbers_of(pair), found)
-        hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
+        hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness)
         measured = float(data["restitution"][n])
         if not hit.flags & cl.Validity.ACCURACY & ~cl.Validity.UNTRIED_STRENGTH:
             off[n] = (float(hit.restitution) - measured) / max(measured, 0.3)

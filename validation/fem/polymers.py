@@ -63,7 +63,7 @@ def errors(name: str, pressure: float) -> Array:
         pair = fit.pair_of(dataclasses.asdict(case))
         pair = metals.at_rate(pair, case)
         law = fem.law_of(fit.numbers_of(pair), found)
-        hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
+        hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness)
         measured = float(data["restitution"][n])
         off[n] = (float(hit.restitution) - measured) / max(measured, 0.3)
     return off

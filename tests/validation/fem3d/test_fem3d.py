@@ -228,8 +228,8 @@ def test_energy_and_momentum_are_kept(sliding):
 
 
 def test_normal_incidence_has_neither_spin_nor_tangential_force():
+    """Rounding decides which elements touch first: the impulse is 3e-6 to 1.6e-5, by their size."""
     hit = oblique_impact(PAIR, SPEED, 0.0, R, R, FRICTION, across=3)
-    # Rounding makes elements that touch first; with the size of elements it is 3e-6 to 1.6e-5.
     assert abs(hit.impulse_ratio) < 3e-5
     assert abs(hit.spin) * R < 1e-4 * SPEED
     # the axisymmetric code: 0.660 (friction 0) on elements of 0.006 R
