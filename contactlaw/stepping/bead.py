@@ -23,7 +23,6 @@ from contactlaw.stepping.contact import (
     Bead,
     Clock,
     Contact,
-    Trouble,
     WallScene,
     apply_contact,
     clear_contact,
@@ -35,6 +34,7 @@ from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import plate_rows
 from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
+from contactlaw.stepping.trouble import Trouble, explain
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
@@ -126,14 +126,11 @@ class WallContacts:
         Raises
         ------
         RuntimeError
-            If a step met a `Trouble`; the message has its name, the wall, the value and the limit.
+            If a step met a `Trouble`; the message says on which wall, and what to do.
         """
         status = self.scene.status[0]
         if status["trouble"]:
-            raise RuntimeError(
-                f"{Trouble(status['trouble']).name} on wall {status['wall']}: got "
-                f"{status['value']:.4g}, the limit is {status['limit']:.4g} (SI units)"
-            )
+            raise RuntimeError(explain(*(status[name] for name in ("trouble", "wall", "value", "limit"))))
         self.warn_of_overlap(3)
         hits: Rows = self.scene.impacts[: status["impacts"]]
         return hits

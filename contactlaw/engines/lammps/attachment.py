@@ -21,8 +21,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.bodies import COLUMN, Bodies, bit_of
 from contactlaw.engines.lammps.callback import callback
-from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, SOFTENING, WIDTH
+from contactlaw.engines.lammps.memory import SHARED
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
 from contactlaw.record.columns import IMPACT, Kind
@@ -34,6 +33,8 @@ from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.loads import NUMBERS, Loads, mean, means
 from contactlaw.stepping.plate_rows import SOLID
 from contactlaw.stepping.softened import check_softening
+from contactlaw.stepping.step import FIRST, HEAD, ROWS, RUN, SLIDING, WIDTH
+from contactlaw.stepping.trouble import explain
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import Models, by_type, check_models
 
@@ -60,6 +61,7 @@ _PARTS = (
     ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
 )
 _REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
+_ERROR = ("error", "wall", "value", "limit", "bead")  # of RUN
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
@@ -235,7 +237,7 @@ def _record_memory(records: Any) -> NDArray[np.void]:
     if records < 1:
         raise ArgumentError("records", records, "must be positive")
     try:
-        return np.empty(int(records), IMPACT)
+        return np.empty(int(records) + ROWS, IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
         reason = f"no memory for {records!r} impacts; ask for fewer"
         raise ArgumentError("records", None, reason) from error
@@ -345,7 +347,7 @@ class LammpsPlates:
         step = self._lmp.extract_global("ntimestep")
         free = ~np.isin(bead, self._clumped())  # parts of bodies may have any mass
         wrong = np.flatnonzero(free & (np.abs(mass - solid) > SOLID * solid))[:1]
-        said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
+        said = [explain(Trouble.WRONG_MASS, -1, mass[i], solid[i], bead[i], step) for i in wrong]
         for found in filter(None, self._comm.allgather(said)):
             raise ValueError(found[0])
 
@@ -370,7 +372,7 @@ class LammpsPlates:
 
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
-        names = {name: name for name in "v f radius rmass type mask omega torque elapsed".split()}
+        names = {name: name for name in "x v f radius rmass type mask omega torque elapsed".split()}
         names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}"}
         self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
         shared = np.zeros(1, SHARED)
@@ -393,17 +395,22 @@ class LammpsPlates:
         shared["capacity"] = len(scene.impacts)
         for name in ("friction", "softening", "parcel"):
             shared[name] = getattr(scene, name)
+        self._lasting = lasting = np.zeros(1, RUN)
+        shared["run"], lasting["group"] = lasting.ctypes.data, self._bit
+        for name, other in ("low", "boxlo"), ("high", "boxhi"), ("periodic", "periodicity"):
+            shared[name] = locate(handle, other.encode())
         fix, numbers = f"{HISTORY}_force", scene.loads.size * NUMBERS
         self._lmp.fix_external_set_vector_length(fix, numbers)
         for n in range(numbers):  # until there is a mean; LAMMPS leaves what was in memory
             self._lmp.fix_external_set_vector(fix, n + 1, 0.0)
         self._shown = np.zeros((3, numbers)), ctypes.create_string_buffer(fix.encode())
         shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
-        shared["walls"], shared["group"] = scene.loads.size, self._bit
+        shared["walls"] = scene.loads.size
         shared["places"], shared["columns"] = self._contacts.places, columns
         shared["look"] = self._bodies.look
-        shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
-        self._set_clock(shared)
+        for name, unit in zip(("length", "time", "mass"), _UNITS[self._lmp.extract_global("units")], strict=True):
+            lasting[name] = unit
+        self._set_clock(lasting)
         return shared
 
     def _set_clock(self, shared: NDArray[np.void]) -> None:
@@ -422,8 +429,8 @@ class LammpsPlates:
 
         ``reset_timestep`` does not change it.
         """
-        shared = self._shared[0]
-        return float(shared["base"] + shared["ticks"] * shared["tick"])
+        run = self._lasting[0]
+        return float(run["base"] + run["ticks"] * run["tick"])
 
     @property
     def left_out(self) -> int:
@@ -519,14 +526,13 @@ class LammpsPlates:
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)
-        shared = self._shared[[name for name in SHARED.names or () if name.startswith("error")]][0]
-        own = shared.item() if shared["error"] else None
-        gathered = self._comm.allgather((own, self._clear_marks()))
-        self._shared["error"] = 0
-        errors = [error for error, _ in gathered if error]
+        run = self._lasting[0]
+        own = [int(run[name]) if name in ("error", "wall", "bead") else float(run[name]) for name in _ERROR]
+        gathered = self._comm.allgather(([*own, int(self._shared["error_step"][0])], self._clear_marks()))
+        self._lasting["error"] = 0.0
+        errors = [error for error, _ in gathered if error[0]]
         if errors:
-            first = min(errors, key=lambda error: error[1:3])
-            raise RuntimeError(message(*first)) from lammps_error
+            raise RuntimeError(explain(*min(errors, key=lambda error: error[::-1]))) from lammps_error
         marked = [beads for _, beads in gathered if beads]
         if marked:
             raise RuntimeError(
@@ -544,37 +550,34 @@ class LammpsPlates:
             found.append(_beads(self._lmp, "id")[inside if known is None else inside & (known[:, 0] == 0.0)])
         return np.concatenate(self._comm.allgather(np.concatenate(found)))
 
-    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
-        return None if history is None else (history, _beads(self._lmp, "id"))
+        return np.zeros((0, FIRST)) if history is None else history, _beads(self._lmp, "id")
+
+    def _heads(self) -> tuple[NDArray[np.void], NDArray[np.int32]]:
+        """Return the HEAD rows of this rank's beads, with the spare ones, and the IDs of the beads."""
+        history, ids = self._history()
+        return np.ndarray(len(history), HEAD, history, 0, history.strides[:1]), ids
 
     def _clear_marks(self) -> list[int]:
         """Remove the error marks, so that the next run goes on; return this rank's marked beads."""
-        found = self._history()
-        if found is None:
-            return []
-        history, ids = found
-        marked = np.flatnonzero(history[: len(ids), ERROR])
-        history[marked, ERROR] = 0.0
+        heads, ids = self._heads()
+        marked = np.flatnonzero(heads["error"][: len(ids)])
+        heads["error"][marked] = 0.0
         beads: list[int] = ids[marked].tolist()
         return beads
 
     def _check_memory(self, columns: int) -> None:
         """Refuse contacts of a restart file with other plates than these; all ranks call it."""
-        wrong, before = False, list[list[float]]()
-        if found := self._history():
-            history, ids = found
-            own = history[: len(ids)]
-            other = own[:, COLUMNS] != columns
-            touching = (own[:, OWNER] == ids) & (own[:, RADIUS] != 0.0)
-            facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
-            most = len(self._contacts.scene.facets)
-            wrong = bool(other[touching].any() or (abs(facets) > most).any())
-            softer = (own[touching, SOFTENING:FIRST] != (self.softening, self.parcel)).any(axis=1)
-            before = [] if wrong else own[touching, SOFTENING:FIRST][softer].tolist()
-            own[other & ~touching] = 0.0
+        history, ids = self._history()
+        head, own = self._heads()[0][: len(ids)], history[: len(ids)]
+        other = head["columns"] != columns
+        touching = (head["owner"] == ids) & (head["radius"] != 0.0)
+        facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
+        wrong = bool(other[touching].any() or (abs(facets) > len(self._contacts.scene.facets)).any())
+        own[other & ~touching] = 0.0
         if any(self._comm.allgather(wrong)):
             raise ArgumentError(
                 "plates, friction",
@@ -583,23 +586,18 @@ class LammpsPlates:
                 "same plates in the same order, and friction or none as before; with a file of another "
                 "version of contactlaw, start from one without contacts",
             )
-        for softening, parcel in sum(self._comm.allgather(before), [])[:1]:
-            reason = f"beads are in contact with softening {softening:g}, parcel {parcel:g}; attach with these again"
-            raise ArgumentError("softening, parcel", (self.softening, self.parcel), reason)
 
     def _clear_foreign_rows(self) -> None:
         """Empty the rows that belong to other beads than their present ones, and the spare rows."""
-        if found := self._history():
-            history, ids = found
-            history[: len(ids)][history[: len(ids), OWNER] != ids] = 0.0
-            history[len(ids) :] = 0.0
+        (history, ids), (heads, _) = self._history(), self._heads()
+        history[: len(ids)][heads["owner"][: len(ids)] != ids] = 0.0
+        history[len(ids) :] = 0.0
 
     def _claim_rows(self) -> None:
         """Give the rows the present IDs of their beads, so that renumbered beads keep contacts."""
-        if found := self._history():
-            history, ids = found
-            history[: len(ids), OWNER] = ids
-            self._clear_foreign_rows()
+        heads, ids = self._heads()
+        heads["owner"][: len(ids)] = ids
+        self._clear_foreign_rows()
 
     def loads(self) -> Loads:
         """Average what each wall has borne since the last call, or since the walls were attached.

@@ -87,7 +87,7 @@ def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):
     """Each rank raises the error once, and a later error of LAMMPS does not hide it."""
-    assert two_ranks[0].count("caught: bead 1 on plate 0 at step") == 4
+    assert two_ranks[0].count("caught: bead 1 on wall 0 at step") == 4
     assert two_ranks[0].count("caught") == 4
 
 
@@ -349,7 +349,7 @@ def test_walls_act_on_the_beads_of_a_group(model):
     assert walls.collisions()["bead"].tolist() == [1]
     assert (state(lmp)["v"][1:, 2] < 0.0).all() and state(lmp)["v"][2, 2] == -5.0
     lmp.commands_string("group beads clear\ngroup beads dynamic two every 1\nset atom 2 z 2e-4")
-    with pytest.raises(RuntimeError, match="bead 2 on plate 0 .* deep in the plate"):
+    with pytest.raises(RuntimeError, match="bead 2 on wall 0 .* deep in the wall"):
         lmp.command("run 1")
 
 
