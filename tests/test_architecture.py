@@ -58,7 +58,7 @@ FILES = {
     "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
     "record": "columns hdf5 file",
     "reporting": "limits page surface meshes run summary charts figures files",
-    "engines/lammps": "beads bodies commands memory callback attachment",
+    "engines/lammps": "beads bodies memory callback attachment",
     "engines/pymunk": "friction handlers models record registry edges lookahead contacts impacts attachment",
     "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",

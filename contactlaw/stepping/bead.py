@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -58,8 +58,8 @@ class WallContacts:
 
     Parameters
     ----------
-    walls : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
-        Walls of `contactlaw.walls` that the beads may hit.
+    walls : sequence or dict of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
+        Walls of `contactlaw.walls` that the beads may hit; a dict has them by name, for records.
     models : ImpactModel or dict of int to ImpactModel
         Materials and law, one model for all beads or one for each type of beads, from 1; None for
         beads that fly through the walls. A wall may have models of its own.
@@ -90,7 +90,7 @@ class WallContacts:
 
     def __init__(
         self,
-        walls: Sequence[Wall],
+        walls: Sequence[Wall] | Mapping[str, Wall],
         models: Models,
         largest: float,
         impacts: Rows,
@@ -103,6 +103,8 @@ class WallContacts:
         check_friction(friction)
         check_softening(softening, parcel)
         check_models(models)
+        names = [*walls] if isinstance(walls, Mapping) else [getattr(wall, "name", "") for wall in walls]
+        self._names, walls = names, [*walls.values()] if isinstance(walls, Mapping) else walls
         kinds = sorted(set().union(*(by_type(one, types) for one in (models, *(wall.model for wall in walls)))))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
@@ -163,7 +165,7 @@ class WallContacts:
         found = [bodies_of(self._models[plate][kind + 1]) for plate, kind in known.tolist()]
         bodies = [one for n, one in enumerate(found) if one not in found[:n]]
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
-        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
+        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows), self._names)
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
         return flagged(Record(rows.copy(), bodies, number[which.ravel()], surface, made))
 

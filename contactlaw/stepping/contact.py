@@ -465,7 +465,7 @@ def _end(
     record.scheme_energy = scheme  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
-    record.parcel, record.run, record.run_start = scene.parcel, 0, 0.0
+    record.parcel, record.wall_start, record.run, record.run_start = scene.parcel, 0.0, 0, 0.0
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
     bent = curved_flags(contact.bending)

@@ -36,18 +36,23 @@ ROWS = 2 * MOST_CONTACTS  # of the record that one bead may need in a step
 HEAD = np.dtype(
     [("error", "f8")]  # a `Trouble`, which ends the run; 0 without one
     + [("owner", "f8")]  # number of the bead
-    + [("columns", "f8")]  # how many numbers the history has
+    + [("layout", "f8")]  # LAYOUT and how many numbers the history has
+    + [("start", "f8")]  # of the walls' motion [s], as in RUN, so that a restart knows it
     # the bead as it was when it began to touch walls, in SI units; a radius of 0: it touches none
     + [(name, "f8") for name in ("radius", "mass", "kind", "softening", "parcel")]
     + [("force", "f8", 3), ("torque", "f8", 3)]  # of the last step, in the engine's units
 )
 FIRST, WIDTH, SLIDING = (dtype.itemsize // 8 for dtype in (HEAD, CONTACT, FRICTION))
 
+LAYOUT = 2000  # of these columns; histories of version 0.3 have numbers below 1000 in its place
+
 # What lasts from step to step. Walls move by a clock of their own, because an engine's may round
 # differently in a run in pieces, or be reset: `ticks` steps of length `tick` since `base`.
 RUN = np.dtype(
     [(name, "f8") for name in ("length", "time", "mass")]  # the engine's units, in SI
     + [("base", "f8"), ("tick", "f8"), ("before", "f8"), ("ticks", "i8")]  # before: the step before [s]
+    # time at which moving walls are where they were given [s]; what the engine's clock is ahead of the walls'
+    + [("start", "f8"), ("ahead", "f8")]
     + [("group", "i8")]  # bits of the beads that touch walls
     + [("low", "f8", 3), ("period", "f8", 3)]  # of the box, in the engine's units; 0: not periodic
     + [("accounts", "i8"), ("energy", "f8")]  # whether to sum what beads give to walls; the sum, in the engine's units
@@ -155,6 +160,7 @@ def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None
         heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
         head, tag, size = heads[0], bead.number, bead.r
         speed = math.sqrt(bead.v[0] ** 2 + bead.v[1] ** 2 + bead.v[2] ** 2) + fastest
+        head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
         if head.owner != tag:
             beads.last[i] = 0.0
         if not beads.mask[i] & run.group:
@@ -214,7 +220,20 @@ def _tick(run: Any, clock: Clock, frames: Any) -> None:
         run.ticks, run.tick = 0, clock.dt
     if clock.advancing:
         run.ticks += 1
-    move(frames, run.base + run.ticks * run.tick, clock.dt)
+    now = run.base + run.ticks * run.tick
+    if abs(clock.now - now - run.ahead) > 0.5 * clock.dt:  # the engine's clock has been reset
+        run.ahead = clock.now - now
+    move(frames, now - run.start, clock.dt)
+
+
+@kernel
+def enclose(run: Any, clock: Clock, low: Any, high: Any, periodic: Any) -> None:
+    """Take over the engine's box; refuse a periodic one that deforms during a run."""
+    for k in range(3):
+        before, run.period[k] = run.period[k], (high[k] - low[k]) * periodic[k]
+        run.low[k] = low[k]
+        if clock.advancing and run.period[k] != before and run.error == 0.0:
+            run.error, run.bead, run.wall = Trouble.DEFORMED.value, -1.0, -1.0
 
 
 @kernel
@@ -282,7 +301,7 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
         if head.owner != bead.number:
             _forget(head, bead)
             head.owner, beads.last[i] = bead.number, 0.0
-            head.columns = beads.bytes // 8
+            head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
         if head.radius != 0.0:
             _check(scene, run, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
@@ -294,7 +313,7 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
             if run.accounts != 0:
                 _account(run, clock, beads, head, i)
             for n in range(recorded, status.impacts):
-                what = scene.impacts[n].kind
+                what, scene.impacts[n].wall_start = scene.impacts[n].kind, run.start + run.ahead
                 if what == Kind.IMPACT.value or what == Kind.OF_BODY.value:  # other kinds have no COR
                     beads.last[i] = scene.impacts[n].restitution
             if status.trouble != 0:

@@ -20,6 +20,9 @@ class Trouble(enum.IntEnum):
     TOO_FAST = 4
     NOT_FINITE = 5
     NO_STEPS = 6
+    RESPA = 7
+    TRICLINIC = 8
+    DEFORMED = 9
     STARTS_INSIDE = 10
     CROSSED = 11
     WRONG_MASS = 12
@@ -33,6 +36,7 @@ class Trouble(enum.IntEnum):
     CLASH = 20
 
 
+_NO_STEPS = "the force of the walls depends on the time steps between, of which these have none"
 _CHANGED = "; change the diameter, density and type of beads that touch nothing"
 # `value` is the wrong value and `limit` its limit, in SI units; `quotient` is their ratio.
 MESSAGES: dict[Trouble, str] = {
@@ -52,10 +56,10 @@ MESSAGES: dict[Trouble, str] = {
         "{limit:.4g} m in a step, and could jump through the wall; take {quotient:.2g} s at most"
     ),
     Trouble.NOT_FINITE: "its velocity is not finite; the simulation has blown up before",
-    Trouble.NO_STEPS: (
-        "beads were moved without time steps, as minimize and rerun do; the force of the walls "
-        "depends on the steps between, and they added none; take the walls out before"
-    ),
+    Trouble.NO_STEPS: f"minimize, rerun: {_NO_STEPS}; take the walls out before",
+    Trouble.RESPA: f"run_style respa: {_NO_STEPS}; use 'run_style verlet'",
+    Trouble.TRICLINIC: "box: it is triclinic, and beads would lose walls at its boundaries; use an orthogonal one",
+    Trouble.DEFORMED: "box: a periodic side changes its length during the run, and walls do not; keep it constant",
     Trouble.STARTS_INSIDE: (
         "the first touch finds it {value:.4g} m deep in the wall, more than its speed explains; "
         "place it outside, or at most {limit:.2g} m deep"

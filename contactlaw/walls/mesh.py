@@ -94,6 +94,7 @@ class Mesh:
     dropped: int = field(default=0, init=False)
     kept: Any = field(default=None, init=False)
     rim: Any = field(default=None, init=False)
+    name: str = field(default="", init=False)  # of the file
     given: Any = field(default=None, init=False)  # for a thickness, where `thickness` has one for each triangle
 
     def __post_init__(self) -> None:
@@ -211,6 +212,7 @@ class Mesh:
             said = f"scale: the mesh is {extent:g} m long; scale=1e-3 if it is drawn in mm?"
             warnings.warn(said, stacklevel=2)
         mesh = cls(size * vertices, triangles, thickness, model, motion, edges)
+        object.__setattr__(mesh, "name", Path(path).name)
         if walls := round_parts(mesh.vertices, mesh.triangles):
             said, more = "; ".join(walls[:_NAMED]), f"; and {len(walls) - _NAMED} more" * (len(walls) > _NAMED)
             warnings.warn(

@@ -40,7 +40,7 @@ def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, Integers, I
     wanted = hits["plate"] * (facets["triangle"].max() + 2) + hits["triangle"] + 1
     facet = order[np.searchsorted(keys, wanted, sorter=order)]
     point = np.stack([hits[name] for name in "xyz"], axis=1)
-    _to_rest(frames.copy(), facets["frame"][facet], hits["time"] + hits["contact_time"], point)
+    _to_rest(frames.copy(), facets["frame"][facet], hits["time"] + hits["contact_time"] - hits["wall_start"], point)
     # A rectangle's second triangle is beyond its diagonal, on the side of edge b.
     one = facets[facet]
     along = point - one["corner"]

@@ -20,7 +20,7 @@ from contactlaw.stepping.contact import STATUS, WallScene
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import PLATE_ROW
 from contactlaw.stepping.rigid import BODY, turn
-from contactlaw.stepping.step import BODY_BYTES, HEAD, ROWS, RUN, Beads, begin, fail
+from contactlaw.stepping.step import BODY_BYTES, HEAD, ROWS, RUN, Beads, begin, enclose, fail
 from contactlaw.stepping.step import step as step_all
 from contactlaw.walls.facet import FACET
 from contactlaw.walls.frame import FRAME
@@ -84,10 +84,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     history = extract(shared, shared.history)
     if history == 0:  # a command has removed the fix of the history
         return
-    low, high = array_at(shared.low, 3, np.float64), array_at(shared.high, 3, np.float64)
-    periodic = array_at(shared.periodic, 3, np.int32)
-    for k in range(3):
-        run.low[k], run.period[k] = low[k], (high[k] - low[k]) * periodic[k]
+    low, high = array_at(shared.boxlo, 3, np.float64), array_at(shared.boxhi, 3, np.float64)
+    enclose(run, clock, low, high, array_at(shared.periodicity, 3, np.int32))
     omega, bodies = array_at(rows_at(extract(shared, shared.omega), n), (n, 3), np.float64), 0
     if shared.look != 0:
         bodies = rows_at(extract(shared, shared.body), n)

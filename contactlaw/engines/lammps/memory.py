@@ -13,7 +13,7 @@ from contactlaw.walls.memory import array_at
 
 MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 
-# Integers up to "periodic" are addresses. "calls" counts the calls of the C function, "step" is the
+# Integers up to "periodicity" are addresses. "calls" counts the calls of the C function, "step" is the
 # time step of the last one.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "set_vector", "lammps")]
@@ -21,7 +21,7 @@ SHARED = np.dtype(
     + [(name, "i8") for name in ("history", "last", "body", "look", "elapsed", "dt", "atime", "atimestep")]
     + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads", "pressed")]
     + [(name, "i8") for name in ("run", "allreduce", "double", "sum", "comm", "force_fix", "shown")]
-    + [(name, "i8") for name in ("low", "high", "periodic")]
+    + [(name, "i8") for name in ("boxlo", "boxhi", "periodicity")]
     + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count", "walls")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "error_step")]
     + [(name, "f8") for name in ("friction", "softening", "parcel")]

@@ -130,7 +130,7 @@ def test_a_type_without_a_model_is_named():
     lmp = scene(beads=three())
     some = {kind: model for kind, model in models(STEEL).items() if kind != 2}
     attach(lmp, some, [flat(1e-3)])
-    with pytest.raises(RuntimeError, match=r"model: there is none for beads of its atom type 2"):
+    with pytest.raises(RuntimeError, match=r"model: there is none for beads of type 2"):
         lmp.command("run 1500")
 
 
