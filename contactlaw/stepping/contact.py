@@ -142,7 +142,7 @@ class WallScene(NamedTuple):
 class Bead(NamedTuple):
     """A bead in SI units; kernels add to its force and torque, and update its contacts."""
 
-    number: int
+    number: float  # its ID
     kind: int  # its type, from 0
     x: Point
     v: Point  # velocity half a step before

@@ -142,7 +142,7 @@ def _wrapped(run: Any, beads: Beads, i: int, k: int) -> float:
     x, period = beads.x[i, k], run.period[k]
     if period > 0.0:
         x -= period * math.floor((x - run.low[k]) / period)
-    return run.length * x
+    return float(run.length * x)
 
 
 @kernel
