@@ -40,6 +40,7 @@ def _quantity(name: str, units: str) -> Quantity:
 LENGTH = _quantity("length", "m 1, cm 0.01, mm 1e-3, um 1e-6, nm 1e-9")
 HEIGHT = LENGTH._replace(name="height")  # of drops, which may be of metres
 SPEED = _quantity("speed", "m/s 1, cm/s 0.01, mm/s 1e-3, km/h 0.2777777777777777777777777778")
+FREQUENCY = _quantity("frequency", "Hz 1, kHz 1000, MHz 1e6")
 TIME = _quantity("time", "s 1, ms 1e-3, us 1e-6, ns 1e-9")
 FORCE = _quantity("force", "N 1, kN 1000, mN 1e-3, uN 1e-6")
 MASS = _quantity("mass", "kg 1, g 1e-3, mg 1e-6, ug 1e-9")

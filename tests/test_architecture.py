@@ -51,14 +51,14 @@ FILES = {
         "few backend solver tabulated edges beads compiled constant loads oblique derivatives "
         "sensitivity speed_table law_errors uncertainty find"
     ),
-    "walls": "memory profile edges motion plate round roundness mesh facet grid frame surface rest",
-    "stepping": "edge spring energy friction rigid bounce softened plate_rows contact bead",
+    "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",
+    "stepping": "edge spring energy friction rigid bounce softened plate_rows trouble contact bead step",
     "fitting": "drops measurements unknowns predictions errors search identify notes fit",
     "emit": "types languages program function",
-    "export": "functions page_functions c_header liggghts_wall lammps_fix web_page",
+    "export": "functions page_functions c_header liggghts_wall scene_file lammps_fix web_page",
     "record": "columns hdf5 file",
     "reporting": "limits page surface meshes run summary charts figures files",
-    "engines/lammps": "beads bodies commands memory errors callback attachment",
+    "engines/lammps": "beads bodies memory callback attachment",
     "engines/pymunk": "friction handlers models record registry edges lookahead contacts impacts attachment",
     "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
     "cli/constant": "records walls lines",

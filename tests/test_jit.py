@@ -368,7 +368,7 @@ COMMANDS = [
     f"contactlaw explore {PAIR} --out OUT.html",
     f"contactlaw export header {PAIR} --table none --out OUT.h",
     f"contactlaw export header {PAIR} --out OUT.h",
-    f"contactlaw export lammps {PAIR} --out OUT",
+    "contactlaw export lammps --out OUT",
     f"contactlaw export liggghts {PAIR} --out OUT",
     "contactlaw table info",
     "contactlaw table check --points 100",

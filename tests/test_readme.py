@@ -111,6 +111,7 @@ def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys,
     Path("docs/examples").mkdir(parents=True)
     for name in ("rebounds.csv", "pom_drops.csv", "phyphox.csv"):
         shutil.copy(ROOT / "docs/examples" / name, "docs/examples")
+    shutil.copy(ROOT / "docs/examples/lammps/drum.toml", ".")
     Path("rain").mkdir()
     write_rain(Path("rain/rain.h5"), pair)
     compared = 0

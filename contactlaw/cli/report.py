@@ -1,11 +1,13 @@
 """``contactlaw report`` (pages): a page with figures about recorded impacts."""
 
 import argparse
+import dataclasses
 import math
-import warnings
+from pathlib import Path
 from typing import Any
 
 from contactlaw.cli.parts import options, wording
+from contactlaw.export.scene_file import surface_of
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import read_record
 from contactlaw.reporting.files import report
@@ -34,11 +36,16 @@ def add(commands: Any) -> None:
     )
     what = "length of one unit of the mesh: 1mm for a drawing in millimetres (default: 1 m)"
     options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH")
+    what = "scene of LAMMPS's fix, for the names of the walls and the map (default: the one beside the record)"
+    add("--scene", metavar="FILE", help=what)
     add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
 def _run(arguments: argparse.Namespace) -> None:
     record = read_record(*arguments.files)
+    beside = [*Path(arguments.files[0]).parent.glob("*.scene")] if record.surface is None else []
+    if path := arguments.scene or (beside[0] if len(beside) == 1 else None):
+        record = dataclasses.replace(record, surface=surface_of(path, record.rows))
     with wording.reading(arguments.files[0]):
         Run(record)  # refuses what no report can be made of
     meshes = [_mesh(path, arguments.scale) for path in arguments.mesh]
@@ -47,10 +54,9 @@ def _run(arguments: argparse.Namespace) -> None:
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")
     if record.surface is None and (record.rows["triangle"] >= 0).any():
-        wording.print_message("the page has no map of the energy on the walls; for a map, add --mesh")
+        wording.print_message("the page has no map of the energy on the walls; for a map, add --scene or --mesh")
 
 
 def _mesh(path: str, scale: float | None) -> Mesh:
-    with wording.reading(path), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", ".* look round")  # on a map facets do no harm
+    with wording.reading(path):
         return Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)

@@ -8,6 +8,6 @@ tuples, arrays, rows of a dtype, loops, calls. Anything else is refused with fil
 from contactlaw.emit.function import add
 from contactlaw.emit.languages import C, JavaScript
 from contactlaw.emit.program import Program
-from contactlaw.emit.types import DOUBLE, INT, NONE, Array, Known, Struct, Type
+from contactlaw.emit.types import DOUBLE, INT, LONG, NONE, Array, Known, Struct, Type
 
-__all__ = ["DOUBLE", "INT", "NONE", "Array", "C", "JavaScript", "Known", "Program", "Struct", "Type", "add"]
+__all__ = ["DOUBLE", "INT", "LONG", "NONE", "Array", "C", "JavaScript", "Known", "Program", "Struct", "Type", "add"]

@@ -15,7 +15,21 @@ import numpy as np
 from contactlaw._jit import tuple_of
 from contactlaw.emit import types
 from contactlaw.emit.program import Program
-from contactlaw.emit.types import DOUBLE, ELEMENTS, INT, UNKNOWN, Array, Known, Rows, Struct, Type, Value, traced
+from contactlaw.emit.types import (
+    DOUBLE,
+    ELEMENTS,
+    INT,
+    LONG,
+    NUMBERS,
+    UNKNOWN,
+    Array,
+    Known,
+    Rows,
+    Struct,
+    Type,
+    Value,
+    traced,
+)
 
 # Operators: how they are written, how tightly they bind, what they make of known whole numbers.
 OPERATORS: dict[type, tuple[str, int, Callable[..., Any]]] = {
@@ -69,9 +83,9 @@ class Function:
             return other
         if isinstance(one, Array) and isinstance(other, Array) and one.of == other.of and not (one.data or other.data):
             return Array(of=one.of)
-        if {one, other} != {INT, DOUBLE}:
+        if not {one, other} <= {*NUMBERS}:
             self.refuse(node, f"a variable has one type, not {one.name} and {other.name}")
-        return DOUBLE
+        return max(one, other, key=NUMBERS.index)
 
     def _bound(self, python: Any, *given: Value, **named: Value) -> dict[str, Value]:
         """Arguments of a call by the names of the parameters, with those that are left out."""
@@ -379,8 +393,8 @@ class Function:
             return self._at_address(*node.args)
         values = [self.value(one) for one in node.args]
         if called is tuple_of:
-            whole, changed = node.args[1], {one.arg: one.value for one in node.keywords}
-            fields: list[Any] = [changed.get(name, ast.Attribute(whole, name)) for name in values[0].known._fields]
+            source, changed = node.args[1], {one.arg: one.value for one in node.keywords}
+            fields: list[Any] = [changed.get(name, ast.Attribute(source, name)) for name in values[0].known._fields]
             return self._call(ast.Call(node.args[0], fields, []))
         if called is len:
             return self._length(node, values[0])
@@ -390,7 +404,8 @@ class Function:
             text = functools.reduce(lambda a, b: f"{name}({a}, {b})", [one.text for one in values])
             return Value(kind, text)
         if called in (bool, int, float, np.uint64):
-            kind = {"int": INT, "float": DOUBLE}.get(name, values[0].type)
+            whole = LONG if values[0].type == LONG else INT
+            kind = {"int": whole, "float": DOUBLE}.get(name, values[0].type)
             same = kind == values[0].type
             return values[0] if same else self._language.operation(name, *values, kind=kind)
         if called is abs or module == "math" or isinstance(called, np.ufunc):
@@ -430,11 +445,6 @@ def add(program: Program, kernel: Callable[..., Any], *given: Type, caller: Any 
         kernel = other
     python = getattr(kernel, "py_func", kernel)
     key = python.__module__, python.__name__, given
-    if python in program.elsewhere and key not in program.functions:
-        result, language = program.elsewhere[python], program.language
-        program.functions[key] = python.__name__, result
-        types_given = ", ".join(map(language.type, given))
-        program.parts.append(f"static {language.type(result)}{language.prefix}{python.__name__}({types_given});")
     if key not in program.functions:
         outermost = None not in program.functions.values()
         program.functions[key] = None

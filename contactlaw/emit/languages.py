@@ -1,6 +1,7 @@
 """How C and JavaScript write what a kernel does."""
 
 import inspect
+import json
 import math
 import re
 import textwrap
@@ -145,6 +146,11 @@ class C:
         # a line has at least four commas, whose spaces go
         text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH + 4)).replace(", ", ",")
         return f"{self.data[0].format(name)}\n{text}\n{self.data[1]}"
+
+    def table(self, members: str, name: str, rows: Iterable[Sequence[object]]) -> str:
+        """Define a table of numbers and texts."""
+        lines = ",\n".join(f"{{ {', '.join(map(json.dumps, row))} }}" for row in rows)
+        return f"static const struct {{ {members} }} {self.prefix}{name}[] = {{\n{lines}\n}};"
 
 
 class JavaScript(C):

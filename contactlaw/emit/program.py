@@ -16,8 +16,7 @@ class Program:
     Functions are made anew for each value of parameters whose names are in `fixed`. `names` are for
     kernels, NamedTuples and dtypes, and for tuples by the types of their members; others get their
     own. A name may be kept for what is not written here, under any key. `instead` of some kernels
-    others are written. Kernels that are written by hand have the types of their results in
-    `elsewhere`, and are declared.
+    others are written.
     """
 
     def __init__(
@@ -28,7 +27,6 @@ class Program:
         instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
     ) -> None:
         self.language, self.fixed, self.instead = language, fixed, instead or {}
-        self.elsewhere: dict[Callable[..., Any], Type] = {}
         self._given: dict[Any, str] = dict(names or {})
         self._names = {*self._given.values()}
         self.parts: list[str] = []

@@ -12,6 +12,8 @@ class Type:
 
 
 DOUBLE, INT, VOID = Type("double"), Type("int"), Type("void")
+LONG = Type("int64_t")  # of whole numbers that may pass 2^31, such as addresses
+NUMBERS = INT, LONG, DOUBLE  # a result has the type of its widest operand
 # Members of rows and elements of arrays, by numpy's names; in formulas whole numbers are INT.
 ELEMENTS = {"f8": DOUBLE, "i8": Type("long long"), "i4": INT, "u1": Type("unsigned char")}
 

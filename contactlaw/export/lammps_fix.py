@@ -1,90 +1,48 @@
-"""A fix of LAMMPS with the walls of `contactlaw.engines.lammps`, for input scripts alone.
+"""The fix of LAMMPS that reads scenes: sources that are the same for all walls and materials.
 
-The fix is C++ that reads the script and LAMMPS's arrays; what happens between a bead and the walls
-is `contactlaw.stepping`, written in C by `contactlaw.emit`.
+The fix is C++ that passes LAMMPS's arrays on; what happens between beads and walls is
+`contactlaw.stepping.step`, written in C by `contactlaw.emit`.
 """
 
 import io
+import json
 import os
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from contactlaw import _atomic
-from contactlaw._errors import ArgumentError
-from contactlaw._escaped import line
-from contactlaw._jit import kernel
 from contactlaw._version import VERSION
-from contactlaw.emit import DOUBLE, INT, NONE, Array, C, Program, Struct, Type, add
-from contactlaw.equation.edge import KINDS
-from contactlaw.export import c_header, functions
-from contactlaw.model import ImpactModel
-from contactlaw.physical.strengths import COARSE, by_strength
+from contactlaw.emit import DOUBLE, INT, LONG, NONE, Array, C, Program, Struct, Type, add
+from contactlaw.export import c_header, functions, scene_file
 from contactlaw.record.columns import IMPACT
-from contactlaw.softsphere import time_step
-from contactlaw.stepping import Bead, Clock, interact
-from contactlaw.stepping.bead import MOST_CONTACTS
-from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
-from contactlaw.stepping.friction import FRICTION
-from contactlaw.stepping.loads import LOAD
-from contactlaw.stepping.plate_rows import PLATE_ROW, plate_rows
+from contactlaw.stepping.contact import Clock, WallScene
 from contactlaw.stepping.softened import DEEPEST_OVERLAP
-from contactlaw.walls.edges import EDGE
-from contactlaw.walls.facet import FACET, Point, Touch, on_facet
-from contactlaw.walls.frame import FRAME
-from contactlaw.walls.grid import MARGIN
-from contactlaw.walls.motion import FARTHEST, move
-from contactlaw.walls.plate import Plate
-from contactlaw.walls.profile import Bend, bending, bent
-from contactlaw.walls.surface import OVERLAP, ROOM, box, near
+from contactlaw.stepping.spring import FEWEST_STEPS
+from contactlaw.stepping.step import ROWS, RUN, Beads, begin, enclose, step
+from contactlaw.stepping.trouble import MESSAGES, Trouble
+from contactlaw.walls.surface import ROOM
 
-_THICKNESS = 2.0**-7  # [m] of the rows that the fix has, which it scales
-REGION = 0  # kind of a facet that is a wall of one of LAMMPS's regions
-_ROWS = {
-    "plate_row": PLATE_ROW,
-    "frame": FRAME,
-    "facet": FACET,
-    "overlap": OVERLAP,
-    "impact_row": IMPACT,
-    "status": STATUS,
-    "load": LOAD,
-    "edge": EDGE,
-    "contact_row": CONTACT,
-    "friction_row": FRICTION,
+_FILES = "fix_wall_contactlaw.h", "fix_wall_contactlaw.cpp", "plugin.cpp", "build.sh", "README.txt.in"
+# Words of the fix of contactlaw 0.3: the number of those that follow, and the lines of TOML in their place.
+_OLD = {
+    "plate": (9, "\n[NAME]\nshape = 'plate'\ncorner = [$0, $1, $2]\nedge_a = [$3, $4, $5]\nedge_b = [$6, $7, $8]\n"),
+    "plane": (6, "\n[NAME]\nshape = 'disc'\ncentre = [$0, $1, $2]\nnormal = [$3, $4, $5]\nradius = ...\n"),
+    "mesh": (1, "\n[NAME]\nshape = 'mesh'\nfile = '$0'\n"),
+    "region": (1, "\n[$0]\nshape = ...  # plate, cylinder, cone, sphere, disc or ring, by the region\n"),
+    "move": (3, "motion = {kind = 'translation', velocity = [$0, $1, $2]}\n"),
+    "rotate": (7, "motion = {kind = 'rotation', centre = [$0, $1, $2], axis = [$3, $4, $5], speed = $6}\n"),
+    "vibrate": (4, "motion = {kind = 'vibration', amplitude = [$0, $1, $2], frequency = $3}\n"),
+    "material": (1, "plate = '$0'\n"),
+    "edges": (1, "edges = '$0'\n"),
+    "beads": (2, "# the bead of type $0 in beads: '$1'\n"),
+    "record": (1, ""),
+    **{word: (1, f"{word} = $0\n") for word in ("thickness", "scale", "friction", "softening", "parcel")},
 }
-_FILES = "fix_wall_contactlaw.h", "fix_wall_contactlaw.cpp", "plugin.cpp", "build.sh", "in.example.in", "README.txt.in"
 
 
-def region_touch(facet: Any, p: Point, r: float) -> Touch:
-    """Touch with a wall of a region; written in C++."""
-    raise NotImplementedError
-
-
-def region_bend(facet: Any, p: Point, r: float) -> Bend:
-    """Curvatures of a region at a point; written in C++."""
-    raise NotImplementedError
-
-
-@kernel
-def touch_or_region(facet: Any, p: Point, r: float) -> Touch:
-    """Overlap and normal at the facet's nearest point, in the coordinates of the facet."""
-    return region_touch(facet, p, r) if facet.kind == REGION else on_facet(facet, p, r)
-
-
-@kernel
-def bending_or_region(facet: Any, p: Point, size: float, r: float) -> Bend:
-    """R*/R of a sphere at a facet or a region."""
-    if facet.kind != REGION:
-        return bending(facet, p, size, r)
-    at = region_bend(facet, p, size)
-    if 1.0 + at.around * size <= 0.0:
-        return Bend(1.0 / at.around, at.around, at.along)
-    return bent(at.around, at.along, r)
-
-
-def lammps(folder: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel]) -> None:
-    """Write a fix of LAMMPS, for input scripts that run without Python.
+def lammps(folder: str | os.PathLike[str]) -> None:
+    """Write the sources of LAMMPS's ``fix wall/contactlaw``, which are the same for all scenes.
 
     ``README.txt`` in the folder says how it is built, loaded and used.
 
@@ -93,13 +51,9 @@ def lammps(folder: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactM
     folder : path-like
         Folder to write into; it is made if its parent exists. Files of the same names are
         replaced.
-    model : ImpactModel or sequence of ImpactModel
-        Pairs of beads and walls, each bead with each wall.
 
     Raises
     ------
-    TypeError, ValueError
-        If something is no ImpactModel, or a pair is missing or there twice.
     OSError
         If a file cannot be written; nothing is left behind then.
 
@@ -107,61 +61,37 @@ def lammps(folder: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactM
     --------
     >>> import contactlaw as cl
     >>> folder = getfixture("tmp_path") / "wall"
-    >>> cl.export.lammps(folder, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+    >>> cl.export.lammps(folder)
     >>> sorted(path.name for path in folder.iterdir())  # doctest: +NORMALIZE_WHITESPACE
     ['README.txt', 'build.sh', 'contactlaw_kernels.h', 'fix_wall_contactlaw.cpp',
-     'fix_wall_contactlaw.h', 'in.example', 'plugin.cpp']
+     'fix_wall_contactlaw.h', 'plugin.cpp']
     """
-    given = c_header.models_of(model)
-    by_pair = {one.pair.given: one for one in given}
-    spheres, plates = ([*dict.fromkeys(pair[n] for pair in by_pair)] for n in range(2))
-    if not len(given) == len(by_pair) == len(spheres) * len(plates) > 0:
-        raise ArgumentError("model", None, "must have each bead's material with each wall's, once")
-    names = [[line(one.name).replace("\\", "/") for one in bodies] for bodies in (spheres, plates)]
-    if any(len({*some}) < len(some) for some in names):
-        raise ArgumentError("model", names, "needs materials of different names")
-    ordered = [by_pair[sphere, plate] for sphere in spheres for plate in plates]
-    step = 0.5 * time_step(ordered[0], 1.0, 1e-3, 1e-3)  # of the example
-    values = {
-        "version": VERSION,
-        "bead": names[0][0],
-        "materials": "\n".join(f"    {one.name:<24} density {one.density:.6g} kg/m3" for one in spheres),
-        "walls": ", ".join(names[1]),
-        "density": repr(spheres[0].density),
-        "timestep": f"{step:.1e}",
-        "steps": str(int(400e-6 / step)),
-    }
     with _atomic.folder(folder) as made:
-        (made / "contactlaw_kernels.h").write_text(_kernels(ordered, *names), "utf-8")
-        for name, content in c_header.filled("lammps", _FILES, values):
+        (made / "contactlaw_kernels.h").write_text(_kernels(), "utf-8")
+        for name, content in c_header.filled("lammps", _FILES, {"version": VERSION}):
             (made / name).write_bytes(content)
 
 
-def _kernels(models: Sequence[ImpactModel], spheres: Sequence[str], plates: Sequence[str]) -> str:
-    """Kernels and the numbers of all pairs in C."""
-    laws = [by_strength(one.pair, one.force_law, COARSE) for one in models]
-    language = C()
-    units, data = list[str](), list[str]()
-    square = Plate((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness=_THICKNESS)
-    for n, (model, law) in enumerate(zip(models, laws, strict=True)):
-        rows, _, _ = plate_rows([square], {1: model}, 1)
-        rows["law"] = 0
-        words = ", ".join(map(hex, rows.view(np.uint64).ravel().tolist()))
-        units.append(f"static const unsigned long long contactlaw_unit_{n}[] = {{\n{words}\n}};")
-        data.append(language.constant(f"law_{n}", law.tolist()))
-    lists = []
-    for name, kind, one in ("UNITS", "unsigned long long", "unit"), ("LAWS", "double", "law"):
-        each = ", ".join(f"contactlaw_{one}_{n}" for n in range(len(laws)))
-        lists.append(f"static const {kind} *const CONTACTLAW_{name}[] = {{ {each} }};")
-    for name, texts in ("SPHERES", spheres), ("PLATES", plates), ("EDGES", KINDS):
-        said = ", ".join(f'"{text}"' for text in texts)
-        lists.append(f"static const char *const CONTACTLAW_{name}[] = {{ {said} }};")
-    numbers = {"SPHERE_COUNT": len(spheres), "PLATE_COUNT": len(plates), "ROOM": ROOM, "MARGIN": MARGIN}
-    # The kernels define what they need themselves.
-    numbers |= {"FARTHEST": FARTHEST, "MOST_CONTACTS": MOST_CONTACTS, "DEEPEST_OVERLAP": DEEPEST_OVERLAP}
-    constants = "\n".join(f"#define CONTACTLAW_{name} {value}" for name, value in numbers.items())
+def _kernels() -> str:
+    """Kernels in C, what they need, and the messages of their errors."""
+    constants = {
+        "ROOM": ROOM,
+        "IMPACT_ROWS": 4 * ROWS,
+        "DEEPEST_OVERLAP": DEEPEST_OVERLAP,
+        "STEPS": FEWEST_STEPS,
+        **{trouble.name: int(trouble) for trouble in (Trouble.NO_STEPS, Trouble.RESPA, Trouble.TRICLINIC)},
+        "VERSION": json.dumps(VERSION),
+        "FORMAT": json.dumps(scene_file.FORMAT),
+        "LAYOUT": json.dumps(scene_file.fingerprint()),
+    }
+    lines = [f"#define CONTACTLAW_{name} {value}" for name, value in constants.items()]
+    messages = C().table(
+        "int code; const char *text;", "messages", ((int(code), text) for code, text in MESSAGES.items())
+    )
+    old = ((word, *lines) for word, lines in _OLD.items())
+    words = C().table("const char *word; int count; const char *lines;", "old", old)
     head = "typedef const double contactlaw_data;"
-    return "\n\n".join([head, c_header.preamble(), constants, _npy(), _program(), *units, *data, *lists]) + "\n"
+    return "\n\n".join([head, c_header.preamble(), "\n".join(lines), _npy(), _program(), messages, words]) + "\n"
 
 
 def _npy() -> str:
@@ -178,35 +108,27 @@ def _npy() -> str:
 
 
 def _program() -> str:
-    """All kernels in C that the fix calls."""
-    instead = functions.INSTEAD | {on_facet: touch_or_region, bending: bending_or_region}
-    names = {dtype: name for name, dtype in _ROWS.items()}
-    program = Program(C(), functions.FIXED, names | {3 * (DOUBLE,): "vector"}, instead)
+    """Write `begin` and `step` in C, for any scene."""
+    names: dict[Any, str] = {dtype: name for name, dtype in scene_file.ROWS.items()}
+    program = Program(C(), functions.FIXED, names | {3 * (DOUBLE,): "vector"}, functions.INSTEAD)
 
     def rows(name: str, matrix: bool = False) -> Struct:
-        return program.rows(program.row(_ROWS[name]), matrix)
+        return program.rows(program.row(scene_file.ROWS[name]), matrix)
 
     def struct(source: Any, **members: Type) -> Struct:
         return program.struct(source, dict.fromkeys(source._fields, DOUBLE) | members)
 
-    point = program.struct(tuple, dict.fromkeys(("f0", "f1", "f2"), DOUBLE))
-    program.elsewhere |= {region_touch: struct(Touch, face=INT), region_bend: struct(Bend)}
-    scene = struct(
-        WallScene,
-        plate_rows=rows("plate_row", matrix=True),
-        pressed=Array(),
-        **{
-            name: rows(row)
-            for name, row in [("frames", "frame"), ("facets", "facet"), ("found", "overlap")]
-            + [("impacts", "impact_row"), ("status", "status"), ("loads", "load")]
-        },
-    )
-    vectors = dict.fromkeys(("x", "v", "omega"), point) | {"force": Array(), "torque": Array()}
-    memory = {"contacts": rows("contact_row"), "friction": rows("friction_row")}
-    bead = struct(Bead, number=INT, kind=INT, **vectors, **memory)
-    rows("edge")
-    add(program, move, rows("frame"), DOUBLE, DOUBLE)
-    add(program, box, rows("frame"))
-    add(program, near, rows("frame"), point, DOUBLE)
-    add(program, interact, scene, struct(Clock, advancing=INT), bead, NONE)
+    named = {"frames": "frame", "facets": "facet", "found": "overlap", "impacts": "impact_row", "status": "status"}
+    parts = {name: rows(row) for name, row in (named | {"loads": "load"}).items()}
+    scene = struct(WallScene, plate_rows=rows("plate_row", matrix=True), pressed=Array(), **parts)
+    vectors = dict.fromkeys(("x", "v", "omega", "force", "torque"), Array(shape=(-1, 3)))
+    numbers = dict.fromkeys(("radius", "mass", "last"), Array()) | dict.fromkeys(("kind", "mask"), Array(of=INT))
+    tags = Array(of=Type("contactlaw_tag"))  # of LAMMPS's atom IDs, which may have 32 or 64 bits
+    whole = {"n": INT, "places": INT, "history": LONG, "bytes": LONG}
+    beads = struct(Beads, tag=tags, bodies=NONE, **vectors, **numbers, **whole)
+    clock = struct(Clock, advancing=INT)
+    arguments = scene, rows("run"), clock, beads, INT
+    add(program, enclose, program.row(RUN), clock, Array(), Array(), Array(of=INT))
+    add(program, begin, *arguments)
+    add(program, step, *arguments)
     return program.text()

@@ -70,12 +70,14 @@ COLUMNS = (
     Column("material", "i8", "1", "number of the bead's material, from 0: atom type less 1"),
     Column("thickness", "f8", "m", "thickness of the plate, inf: half-space, 0: bead on bead"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
+    Column("wall_start", "f8", "s", "time at which walls that move were where they were given"),
     Column("run", "i8", "1", "number of the run: microseconds from 1970 to its start, 0: not known"),
     Column("run_start", "f8", "s", "time from which on the run has rows; that of the restart from which it goes on"),
     Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
 _NAMES = tuple(column.name for column in COLUMNS)
+_LATER = "wall_start", "run", "run_start"  # which files of older versions lack
 # The columns of a record whose model gives a COR and nothing else.
 OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 
@@ -83,9 +85,9 @@ OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 def typed(columns: Mapping[str, NDArray[Any]]) -> Rows:
     """Give the columns of a record from a file the types of `IMPACT`; refuse what has no such.
 
-    Files of older versions get the run 0, which is not known.
+    Files of older versions get the run 0, which is not known; their walls began to move at time 0.
     """
-    names = [name for name in _NAMES if name in (*columns, "run", "run_start")]
+    names = [name for name in _NAMES if name in (*columns, *_LATER)]
     rows = np.zeros(columns["time"].size, [(name, IMPACT[name]) for name in names])
     for name in names:
         values = columns.get(name, rows[name])

@@ -91,12 +91,15 @@ class Surface(NamedTuple):
         Number of the triangle for each row of a record, shape (n,); -1: on none of them.
     point
         The contact point on it, shape (n, 3) [m]; None if unknown, as on walls that move.
+    names
+        Name of each wall, empty where it has none.
     """
 
     corners: Array
     wall: Integers
     triangle: Integers
     point: Array | None
+    names: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -445,6 +448,7 @@ def _material(group: h5py.Group) -> Material:
 def _write_surface(group: h5py.Group, surface: Surface) -> None:
     write(group, "wall", surface.wall, "1", "number of the wall of each triangle")
     write(group, "triangle", surface.triangle, "1", "number of the triangle of each row, -1: none")
+    group.attrs["names"] = list(surface.names)
     for name, points in zip(_PLACES, (surface.corners.reshape(-1, 3), surface.point), strict=True):
         for axis, values in zip("xyz", () if points is None else points.T, strict=points is not None):
             write(group, f"{name}_{axis}", values, "m", f"{_PLACES[name]}, at the start of the run")
@@ -455,7 +459,8 @@ def _read_surface(group: h5py.Group, size: int) -> Surface:
     triangle = hdf5.indices(group, "triangle", wall.size, size)
     corners = _points(group, "corner", 3 * wall.size).reshape(-1, 3, 3)
     point = _points(group, "point", size) if "point_x" in group else None
-    return Surface(corners, wall, triangle, point)
+    names = [str(name) for name in group.attrs.get("names", ())]
+    return Surface(corners, wall, triangle, point, names)
 
 
 def _points(group: h5py.Group, name: str, size: int) -> Array:

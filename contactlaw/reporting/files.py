@@ -89,7 +89,7 @@ def add_to_series(path: str | os.PathLike[str], times: Sequence[float], new: Rec
     if not str(path).endswith(_SERIES):
         raise ArgumentError("path", os.fspath(path), f"must end in {_SERIES}, by which ParaView knows a list of files")
     assert new.surface is not None  # the adapter knows the walls
-    corners, wall, triangle, _ = new.surface
+    corners, wall, triangle = new.surface[:3]
     area, n = areas(corners), force.size
     # Facets are the first triangles; further ones are parts of the one facet of their wall.
     order = np.argsort(wall[:n], kind="stable")

@@ -143,7 +143,9 @@ class Run:
         spheres, walls = self._materials
         of = f" of {wall.name}" if wall and len(walls) > 1 else " thick" * math.isfinite(thickness)
         beads = f", beads of {sphere.name}" if sphere and len(spheres) > 1 else ""
-        return f"wall {plate}, {drawn(thickness, digits=4)}{of}{beads}"
+        names = self.record.surface.names if self.record.surface else ()
+        name = names[plate] if plate < len(names) and names[plate] else f"wall {plate}"
+        return f"{name}, {drawn(thickness, digits=4)}{of}{beads}"
 
     @cached_property
     def _materials(self) -> tuple[set[str], set[str]]:

@@ -6,6 +6,7 @@ gives the tangential force, `contact` puts them together, `plate_rows` holds the
 """
 
 from contactlaw.stepping.bead import WallContacts, interact
-from contactlaw.stepping.contact import Bead, Clock, Trouble
+from contactlaw.stepping.contact import Bead, Clock
+from contactlaw.stepping.trouble import Trouble
 
 __all__ = ["Bead", "Clock", "Trouble", "WallContacts", "interact"]

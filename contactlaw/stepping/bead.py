@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,6 @@ from contactlaw.stepping.contact import (
     Bead,
     Clock,
     Contact,
-    Trouble,
     WallScene,
     apply_contact,
     clear_contact,
@@ -35,10 +34,11 @@ from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import plate_rows
 from contactlaw.stepping.softened import DEEPEST_OVERLAP, check_softening
+from contactlaw.stepping.trouble import Trouble, explain
 from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
-from contactlaw.walls.rest import at_rest, crossing
+from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
 
 Rows = NDArray[np.void]
@@ -58,8 +58,8 @@ class WallContacts:
 
     Parameters
     ----------
-    walls : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
-        Walls of `contactlaw.walls` that the beads may hit.
+    walls : sequence or dict of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
+        Walls of `contactlaw.walls` that the beads may hit; a dict has them by name, for records.
     models : ImpactModel or dict of int to ImpactModel
         Materials and law, one model for all beads or one for each type of beads, from 1; None for
         beads that fly through the walls. A wall may have models of its own.
@@ -90,7 +90,7 @@ class WallContacts:
 
     def __init__(
         self,
-        walls: Sequence[Wall],
+        walls: Sequence[Wall] | Mapping[str, Wall],
         models: Models,
         largest: float,
         impacts: Rows,
@@ -103,6 +103,8 @@ class WallContacts:
         check_friction(friction)
         check_softening(softening, parcel)
         check_models(models)
+        names = [*walls] if isinstance(walls, Mapping) else [getattr(wall, "name", "") for wall in walls]
+        self.names, walls = names, [*walls.values()] if isinstance(walls, Mapping) else walls
         kinds = sorted(set().union(*(by_type(one, types) for one in (models, *(wall.model for wall in walls)))))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
@@ -110,9 +112,6 @@ class WallContacts:
         rows, numbers, self._held = plate_rows(walls, own, types)
         self._models = [{**own, **by_type(wall.model, types)} for wall in walls]
         facets, frames, self._framed = framed(walls, numbers, largest)
-        if crossed := crossing(facets):
-            said = "walls: {} and {} cross; if that is not meant, end one where it meets the other".format(*crossed)
-            warnings.warn(said, stacklevel=4)  # the caller of `attach`
         self.places = min(len(facets), MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
         scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
@@ -126,14 +125,11 @@ class WallContacts:
         Raises
         ------
         RuntimeError
-            If a step met a `Trouble`; the message has its name, the wall, the value and the limit.
+            If a step met a `Trouble`; the message says on which wall, and what to do.
         """
         status = self.scene.status[0]
         if status["trouble"]:
-            raise RuntimeError(
-                f"{Trouble(status['trouble']).name} on wall {status['wall']}: got "
-                f"{status['value']:.4g}, the limit is {status['limit']:.4g} (SI units)"
-            )
+            raise RuntimeError(explain(*(status[name] for name in ("trouble", "wall", "value", "limit"))))
         self.warn_of_overlap(3)
         hits: Rows = self.scene.impacts[: status["impacts"]]
         return hits
@@ -166,7 +162,7 @@ class WallContacts:
         found = [bodies_of(self._models[plate][kind + 1]) for plate, kind in known.tolist()]
         bodies = [one for n, one in enumerate(found) if one not in found[:n]]
         number = np.array([bodies.index(one) for one in found], dtype=np.int64)
-        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows))
+        surface = Surface(*at_rest(self.scene.facets, self.scene.frames, rows), self.names)
         made = {name: getattr(self.scene, name) for name in ("friction", "softening", "parcel")} | made
         return flagged(Record(rows.copy(), bodies, number[which.ravel()], surface, made))
 

@@ -6,7 +6,6 @@ normal from the wall to the bead, s height of the bead's centre over the facet's
 
 from __future__ import annotations
 
-import enum
 import math
 from typing import Any, NamedTuple
 
@@ -33,18 +32,17 @@ from contactlaw.stepping.rigid import answer
 from contactlaw.stepping.softened import (
     BOUNCING,
     DAMPED,
-    FASTER,
     HELD,
-    Softened,
-    keep,
+    SOFTENED,
     keep_drag,
+    must_ask,
     push,
     residual,
     settling_kick,
-    softened_of,
     tangential_push,
 )
 from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact, with_memory
+from contactlaw.stepping.trouble import Trouble
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
@@ -79,6 +77,7 @@ CONTACT = np.dtype(
         ("push", "f8", 3),  # force on the bead without friction [N]
         ("sliding_speed", "f8"),  # of the contact point along the wall at first touch [m/s]
         ("arrival", "f8"),  # FREE, ON_EDGE, SLIDING or HIT_BACK
+        *SOFTENED,
     ]
 )
 NO_CONTACT = np.zeros(1, CONTACT)
@@ -96,21 +95,6 @@ _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest p
 _SWINGS, _SLOWEST = 16.0, 1e-3
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck
-
-
-class Trouble(enum.IntEnum):
-    """Errors that end a run; from STARTS_INSIDE on, the bead's contacts are no longer valid."""
-
-    STEP_TOO_LARGE = 1
-    TOO_MANY_IMPACTS = 2
-    NO_MODEL = 3
-    STARTS_INSIDE = 10
-    CROSSED = 11
-    WRONG_MASS = 12
-    TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
-    FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
-    NO_FORCE = 15  # that is finite
-    TOO_WIDE = 16  # the bead, for the round wall that it is inside of
 
 
 # What the kernels report to their caller, who clears it.
@@ -158,7 +142,7 @@ class WallScene(NamedTuple):
 class Bead(NamedTuple):
     """A bead in SI units; kernels add to its force and torque, and update its contacts."""
 
-    number: int
+    number: float  # its ID
     kind: int  # its type, from 0
     x: Point
     v: Point  # velocity half a step before
@@ -363,11 +347,10 @@ def _kind_of(scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: flo
 
 
 @kernel
-def _softened_at_largest(soft: Softened, last: State) -> Largest:
+def _softened_at_largest(row: Any) -> Largest:
     """Say what the largest overlap of a softened contact means for its unloading, in SI units."""
-    lost = (1.0 - soft.restitution * soft.restitution) * soft.stored
-    left = residual(last.largest_compression, soft.restitution)
-    return Largest(1.0, 1.0, lost, 0.0, left, soft.peak_force)
+    lost = (1.0 - row.restitution * row.restitution) * row.stored
+    return Largest(1.0, 1.0, lost, 0.0, residual(row.largest_compression, row.restitution), row.true_force)
 
 
 @kernel
@@ -390,8 +373,8 @@ def _end(
     """
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    soft, softened = softened_of(last), scene.softening > 1.0
-    ended = _softened_at_largest(soft, last) if softened else at_largest(law, spring, last)
+    softened = scene.softening > 1.0
+    ended = _softened_at_largest(row) if softened else at_largest(law, spring, last)
     scale, unit = ended.scale, ended.unit
     lost, other = ended.lost * unit * scale, ended.other * unit * scale
     if contact.merged_into >= 0:
@@ -404,10 +387,9 @@ def _end(
             bead.friction[contact.merged_into].work += bead.friction[k].work
         if not to.approach_speed > 0.0:  # the bead has not arrived there: it is this impact that goes on
             to.approach_speed, to.sliding_speed, to.arrival = row.approach_speed, row.sliding_speed, row.arrival
-            if softened:
-                of, time, force = softened_of(state_of(to)), soft.contact_time, soft.peak_force
-                plastic, wave, flags = soft.plastic_share, soft.wave_share, soft.flags
-                keep(to, Softened(of.restitution, soft.speed, time, force, plastic, wave, flags, of.stored, HELD))
+            to.asked_speed, to.true_time, to.true_force = row.asked_speed, row.true_time, row.true_force
+            to.plastic_share, to.wave_share, to.true_flags = row.plastic_share, row.wave_share, row.true_flags
+            to.lasting = HELD
         return 0.0, 0.0, 0.0
     reported, row.reported_loss = row.reported_loss, lost
     # The bead did not arrive: it was put down in contact.
@@ -420,7 +402,7 @@ def _end(
     if sharing >= 0:  # the other contact has the energy that this one lacks
         bead.contacts[sharing].work -= missing
         missing = 0.0
-    elif softened and soft.lasting == DAMPED:
+    elif softened and row.lasting == DAMPED:
         damped, missing = missing, 0.0
     elif row.disturbance != ALONE and not _of_body(contact):
         more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
@@ -428,9 +410,9 @@ def _end(
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
         if softened:
-            if body is not None and soft.lasting == BOUNCING and _of_body(contact):
+            if body is not None and row.lasting == BOUNCING and _of_body(contact):
                 # A body turns further than in the true impact, which throws its point up by this at most.
-                arm, up = body[0].arm, soft.restitution * row.approach_speed
+                arm, up = body[0].arm, row.restitution * row.approach_speed
                 reach = math.sqrt(arm[0] ** 2 + arm[1] ** 2 + arm[2] ** 2) + bead.r
                 if abs(up + u) <= dot(bead.omega, bead.omega) * reach * row.duration:
                     due = 0.5 * contact.mass * (up * up - u * u)
@@ -469,8 +451,8 @@ def _end(
     # earlier impacts of the same contact have reported a part of the loss already
     gone, wave = lost - reported, row.wave_energy
     if softened:
-        record.contact_time, record.peak_force = soft.contact_time, soft.peak_force
-        plastic, wave = soft.plastic_share * gone, soft.wave_share * gone
+        record.contact_time, record.peak_force = row.true_time, row.true_force
+        plastic, wave = row.plastic_share * gone, row.wave_share * gone
         record.other_energy = gone - plastic - wave + damped
     else:
         share = 1.0 - other / lost if lost > 0.0 else 0.0
@@ -480,7 +462,7 @@ def _end(
     record.scheme_energy = scheme  # with this error of the steps, the energies of a run add up
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r / scene.parcel, contact.mass, plate_row.thickness
-    record.parcel, record.run, record.run_start = scene.parcel, 0, 0.0
+    record.parcel, record.wall_start, record.run, record.run_start = scene.parcel, 0.0, 0, 0.0
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
     bent = curved_flags(contact.bending)
@@ -491,7 +473,7 @@ def _end(
     long = _LASTING * _stretched(scene) * CONTACT_TIME * expected.time
     record.kind = _kind_of(scene, bead, contact, row, total, leaves, long)
     if softened:
-        record.flags = int(soft.flags) | bent
+        record.flags = int(row.true_flags) | bent
         return extra
     r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
     time, force = record.contact_time, record.peak_force
@@ -558,17 +540,15 @@ def _near_edge(
 @kernel
 def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k: int, x: float, u: float) -> State:
     """Largest overlap and force of a softened contact after a step."""
-    row = bead.contacts[k]
-    soft = softened_of(state_of(row))
-    stiffness = spring.stiffness / scene.softening
-    now = push(stiffness, spring.mass, row.largest_compression, soft.restitution, x, u, clock.dt)
+    row, stiffness = bead.contacts[k], spring.stiffness / scene.softening
+    now = push(stiffness, spring.mass, row.largest_compression, row.restitution, x, u, clock.dt)
     if now.damped:
-        row.y3 = DAMPED
+        row.lasting = DAMPED
     elif row.disturbance != ALONE:
-        row.y3 = max(row.y3, HELD)
+        row.lasting = max(row.lasting, HELD)
     for j in range(len(bead.contacts)):
         if j != k and bead.contacts[j].force > 0.0:  # at a right angle, where only friction is shared
-            row.y3 = max(row.y3, HELD)
+            row.lasting = max(row.lasting, HELD)
     return with_memory(State(0.0, now.largest, now.force, 0.0, 0.0, 0.0), NO_MEMORY)
 
 
@@ -589,11 +569,12 @@ def _ask(
     row, status, x = bead.contacts[k], scene.status[0], contact.touch.x
     if x > status.overlap * bead.r:
         status.overlap, status.speed = x / bead.r, row.approach_speed
-    soft, deeper = softened_of(state_of(row)), state.largest_compression > row.largest_compression
-    if state.force == 0.0 or not (begins or (deeper and u > FASTER * soft.speed)):
+    deepens = state.largest_compression > row.largest_compression
+    if state.force == 0.0 or not must_ask(begins, deepens, u, row.asked_speed):
         return
     if not u > 0.0:  # a bead that was put down
-        keep(row, Softened(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, soft.stored, HELD))
+        row.restitution, row.lasting = 1.0, HELD
+        row.asked_speed = row.true_time = row.true_force = row.plastic_share = row.wave_share = row.true_flags = 0.0
         return
     touch, rough = contact.touch, len(bead.friction) > 0
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
@@ -615,23 +596,13 @@ def _ask(
     flags |= edge_flags(r, thickness, true.compression, edge.distance, true.recedes)
     flags |= _layer_flags(plate_row, r, true.compression, true.contact_time)
     # In a dent that an earlier impact has left, no energy may come back that has been lost.
-    e = true.restitution if soft.stored == 0.0 else min(true.restitution, soft.restitution)
-    row.reported_loss = (1.0 - e * e) * soft.stored if begins else row.reported_loss
+    row.restitution = true.restitution if row.stored == 0.0 else min(true.restitution, row.restitution)
+    if begins:
+        row.reported_loss = (1.0 - row.restitution * row.restitution) * row.stored
     lasting = BOUNCING if begins and row.arrival != SLIDING and row.disturbance == ALONE else HELD
-    keep(
-        row,
-        Softened(
-            e,
-            u,
-            true.contact_time,
-            force,
-            true.plastic_share,
-            true.wave_share,
-            flags,
-            soft.stored,
-            max(lasting, soft.lasting) if not begins else lasting,
-        ),
-    )
+    row.lasting = lasting if begins else max(lasting, row.lasting)
+    row.asked_speed, row.true_time, row.true_force = u, true.contact_time, force
+    row.plastic_share, row.wave_share, row.true_flags = true.plastic_share, true.wave_share, float(flags)
 
 
 @kernel
@@ -643,9 +614,9 @@ def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: Stat
     x, after = state.largest_compression, u - clock.dt * state.force / spring.mass
     # With velocity Verlet, u^2 becomes the product of the speeds half a step before and after.
     stored = row.reported_loss - row.work + 0.5 * spring.mass * u * after
-    if row.y3 == DAMPED or row.disturbance != ALONE:
+    if row.lasting == DAMPED or row.disturbance != ALONE:
         stored = 0.4 * spring.stiffness / scene.softening * x * x * math.sqrt(x)
-    row.x3 = stored
+    row.stored = stored
 
 
 @kernel
@@ -725,11 +696,10 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     row.plate_displacement = state.plate_displacement
     row.largest_compression = state.largest_compression
     row.force = state.force
-    if not softened:
-        row.mobility, row.stiffening, row.strength = state.mobility, state.stiffening, state.strength
-        row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
-        row.x3, row.y3, row.x4, row.y4 = state.x3, state.y3, state.x4, state.y4
-        row.x5, row.y5, row.x6, row.y6 = state.x5, state.y5, state.x6, state.y6
+    row.mobility, row.stiffening, row.strength = state.mobility, state.stiffening, state.strength
+    row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
+    row.x3, row.y3, row.x4, row.y4 = state.x3, state.y3, state.x4, state.y4
+    row.x5, row.y5, row.x6, row.y6 = state.x5, state.y5, state.x6, state.y6
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]
@@ -799,11 +769,10 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
             spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass), state_of(row)
             h = clock.dt if clock.advancing else 0.0
             if scene.softening > 1.0:
-                soft = softened_of(state)
                 drag = tangential_push(
                     bead.friction[k],
-                    soft.lasting,
-                    soft.restitution,
+                    row.lasting,
+                    row.restitution,
                     scene.friction,
                     plate_row.tangential,
                     touch.x,

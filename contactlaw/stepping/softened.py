@@ -32,7 +32,6 @@ from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import number
 from contactlaw.physical.vectors import dot
-from contactlaw.stepping.spring import State
 from contactlaw.walls.facet import Point
 
 # Least share of the work that the spring gives back: unloading curves that are steeper would need
@@ -58,22 +57,21 @@ def check_softening(softening: Any, parcel: Any) -> None:
             raise ArgumentError(name, value, "must be finite and at least 1, which is a true contact or bead")
 
 
-class Softened(NamedTuple):
-    """What a softened contact keeps of the true impact.
-
-    There is no plate in it, and so it keeps them in the columns that a true contact has for the
-    plate: memory would otherwise grow by a third, which moves from rank to rank with each bead.
-    """
-
-    restitution: float
-    speed: float  # at which the COR was asked for [m/s]; 0: not yet
-    contact_time: float  # [s]
-    peak_force: float  # [N]
-    plastic_share: float  # of the energy that is lost
-    wave_share: float  # of the energy that is lost
-    flags: float
-    stored: float  # work put into the spring up to dm [J]
-    lasting: float  # BOUNCING, HELD or DAMPED
+# What a softened contact keeps of the true impact, in columns of its own.
+SOFTENED = [
+    (name, "f8")
+    for name in (
+        "restitution",
+        "asked_speed",  # at which the true impact was carried out [m/s]; 0: not yet
+        "true_time",  # its contact time [s]
+        "true_force",  # its peak force [N]
+        "plastic_share",  # of the energy that is lost
+        "wave_share",  # of the energy that is lost
+        "true_flags",
+        "stored",  # work put into the spring up to dm [J]
+        "lasting",  # BOUNCING, HELD or DAMPED
+    )
+]
 
 
 class Push(NamedTuple):
@@ -85,19 +83,12 @@ class Push(NamedTuple):
 
 
 @kernel
-def softened_of(state: State) -> Softened:
-    """Read what the contact keeps."""
-    return Softened(
-        state.mobility, state.stiffening, state.strength, state.x1, state.y1, state.x2, state.y2, state.x3, state.y3
-    )
+def must_ask(begins: bool, deepens: bool, u: float, asked_speed: float) -> bool:
+    """Whether the true impact is to be carried out: at first touch, and anew if another bead struck this one.
 
-
-@kernel
-def keep(row: Any, soft: Softened) -> None:
-    """Write what the contact keeps into its row."""
-    row.mobility, row.stiffening, row.strength = soft.restitution, soft.speed, soft.contact_time
-    row.x1, row.y1, row.x2, row.y2 = soft.peak_force, soft.plastic_share, soft.wave_share, soft.flags
-    row.x3, row.y3 = soft.stored, soft.lasting
+    `deepens` says that the overlap is larger than ever in this contact, at the speed u.
+    """
+    return begins or (deepens and u > FASTER * asked_speed)
 
 
 @kernel

@@ -21,14 +21,12 @@ from contactlaw.walls.edges import Rims, boundary, edges_of, side_lengths, welde
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, direction, floats, vector
 from contactlaw.walls.plate import Models, check_models, checked_sheet
 from contactlaw.walls.round import between, positive
-from contactlaw.walls.roundness import round_parts
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Vector = Sequence[float]
 
 _LONGEST = 20.0  # [m] of a mesh that was likely drawn in metres; our choice
-_NAMED = 5  # round parts of a mesh that a warning names
 _FLAT = 1e-10  # least height of a triangle over its longest side; a flatter one has no sure normal
 
 
@@ -94,6 +92,7 @@ class Mesh:
     dropped: int = field(default=0, init=False)
     kept: Any = field(default=None, init=False)
     rim: Any = field(default=None, init=False)
+    name: str = field(default="", init=False)  # of the file
     given: Any = field(default=None, init=False)  # for a thickness, where `thickness` has one for each triangle
 
     def __post_init__(self) -> None:
@@ -141,10 +140,6 @@ class Mesh:
 
         Letters may have any encoding, and exponents may be those of Fortran (1.0D+01). A file that
         was cut is refused; of an OBJ, which counts no triangles, that is not always seen.
-
-        A warning names parts that are facets of a whole cylinder, cone, sphere or cap, and the
-        walls of `contactlaw.walls` to take in their place. It does not know parts that go on
-        smoothly in another shape, as the cylinder of a capsule does.
 
         Parameters
         ----------
@@ -211,13 +206,7 @@ class Mesh:
             said = f"scale: the mesh is {extent:g} m long; scale=1e-3 if it is drawn in mm?"
             warnings.warn(said, stacklevel=2)
         mesh = cls(size * vertices, triangles, thickness, model, motion, edges)
-        if walls := round_parts(mesh.vertices, mesh.triangles):
-            said, more = "; ".join(walls[:_NAMED]), f"; and {len(walls) - _NAMED} more" * (len(walls) > _NAMED)
-            warnings.warn(
-                f"Mesh: {len(walls)} of its parts look round, but a bead that rolls on facets loses energy; "
-                f"leave them out of the drawing, and attach walls of contactlaw.walls beside it: {said}{more}",
-                stacklevel=2,
-            )
+        object.__setattr__(mesh, "name", Path(path).name)
         return mesh
 
     @classmethod

@@ -108,7 +108,7 @@ REFUSED = {  # status 1
     f"{HIT} --samples 5": "--samples: needs --history, too",
     f"explore {PAIR} --out ''": "--out: got ''; expected the name of a file",
     f"export header {PAIR} --out ''": "--out: got ''; expected the name of a file",
-    f"export lammps {PAIR} --out ''": "--out: got ''; expected the name of a folder",
+    "export lammps --out ''": "--out: got ''; expected the name of a folder",
 }
 # Command lines of 0.3: what the answer says to type.
 OLD = {

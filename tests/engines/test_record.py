@@ -33,7 +33,7 @@ NAMES = """
     time bead plate other x y z approach_speed restitution sliding_speed kind
     sliding_speed_after spin_x spin_y spin_z contact_time peak_force plastic_energy
     wave_energy other_energy scheme_energy friction_energy wall_work radius mass parcel material
-    thickness triangle run run_start flags
+    thickness triangle wall_start run run_start flags
 """.split()
 
 

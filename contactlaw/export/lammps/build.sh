@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds contactlaw.so for one program of LAMMPS, and lets a bead bounce in it:
+# Builds contactlaw.so for one program of LAMMPS, and loads it there once:
 #     sh build.sh [lmp]
 # LAMMPS_HEADERS is the folder with its fix.h, MPICXX the compiler of its MPI, if they are not found.
 set -e
@@ -24,9 +24,7 @@ for folder in "$packaged/include/lammps" "$bin/../include/lammps" "$bin/../src" 
     [ "$headers" ] || [ ! -f "$folder/fix.h" ] || headers=$folder
 done
 [ "$headers" ] || stop "no fix.h of LAMMPS $version: give its folder as LAMMPS_HEADERS=/path/to/lammps/src"
-for one in region.h fmt/format.h; do
-    [ -f "$headers/$one" ] || stop "$headers/$one is missing, and the fix needs it; take the sources of LAMMPS $version"
-done
+[ -f "$headers/fmt/format.h" ] || stop "$headers/fmt/format.h is missing; take the sources of LAMMPS $version"
 
 compiler=$MPICXX
 for one in "$bin/mpicxx" mpicxx mpic++; do
@@ -44,6 +42,9 @@ printf '%s' "$macros" | grep -qw "$mpi" || stop "$compiler is of another MPI tha
 
 "$compiler" -std=c++17 -O3 -Wno-narrowing $CXXFLAGS -fPIC -shared "-D$integers" "-DLAMMPS_VERSION=\"$version\"" \
     -I. -isystem "$headers" fix_wall_contactlaw.cpp plugin.cpp -o contactlaw.so
-said=$("$lmp" -in in.example -log none 2>&1) || stop "contactlaw.so does not run in $lmp: $said"
-printf '%s\n' "$said" | grep '^COR ' || stop "contactlaw.so runs in $lmp, but no bead bounced: $said"
-echo "built for LAMMPS $version; in an input script: plugin load $PWD/contactlaw.so"
+said=$(echo 'plugin load ./contactlaw.so' | "$lmp" -log none 2>&1) || stop "$lmp does not load contactlaw.so: $said"
+printf '%s\n' "$said" | grep -q 'Loading plugin: walls' || stop "$lmp does not load contactlaw.so: $said"
+echo "built for LAMMPS $version; in an input script: plugin load \"$PWD/contactlaw.so\""
+case $PWD in
+    *[!\ -~]*) echo "LAMMPS changes letters beyond ASCII in scripts: start it here, or move contactlaw.so elsewhere" ;;
+esac

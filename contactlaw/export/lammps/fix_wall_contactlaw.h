@@ -1,5 +1,5 @@
-/* Fix wall/contactlaw of LAMMPS: README.txt says how it is used. LAMMPS is under the GPL, version 2,
- * and so is what is compiled with its headers. */
+/* Fix wall/contactlaw of LAMMPS. LAMMPS is under the GPL, version 2, and so is what is compiled with
+ * its headers. */
 #ifdef FIX_CLASS
 FixStyle(wall/contactlaw,FixWallContactlaw);
 #else
@@ -9,7 +9,6 @@ FixStyle(wall/contactlaw,FixWallContactlaw);
 #include "fix.h"
 
 #include <memory>
-#include <string>
 
 namespace LAMMPS_NS
 {
@@ -27,7 +26,6 @@ class FixWallContactlaw : public Fix
     void post_run() override;
     double compute_scalar() override;
     double compute_vector(int) override;
-    double memory_usage() override;
 
     void grow_arrays(int) override;
     void copy_arrays(int, int, int) override;
@@ -44,13 +42,15 @@ class FixWallContactlaw : public Fix
   private:
     struct Scene; /* walls, and what the kernels of contactlaw have of them */
     std::unique_ptr<Scene> scene_;
-    double **history_; /* of each bead: a Head, its contacts, their friction */
+    double **history_; /* of each bead: a contactlaw_head, its contacts, their friction */
     int columns_;
 
+    void read(const std::string &);
+    void open(std::string);
+    double time();
     void step(bool);
-    void look();
+    void write_rows();
     void count_rows();
-    void refuse(int, tagint, int, double, double);
 };
 
 }

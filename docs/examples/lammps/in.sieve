@@ -1,8 +1,8 @@
 # Beads of two sizes on a vibrating deck of sheet metal, a mesh with openings of 5 mm; contacts are softened:
-#     contactlaw export lammps --sphere gamma-alumina --plate aluminium-6061-t6 --out wall
+#     contactlaw export lammps sieve.toml --out wall
 #     sh wall/build.sh
 #     lmp -in in.sieve           or    mpirun -np 2 lmp -in in.sieve
-#     contactlaw report hits.*.npy --mesh deck.stl --scale 1mm
+#     contactlaw report hits.*.npy --scene wall/sieve.scene
 units si
 atom_style sphere
 boundary f f f
@@ -22,8 +22,7 @@ pair_style granular
 pair_coeff * * hertz/material 4.07667e+08 0.999087 0.21 tangential mindlin NULL 0 0.3 damping coeff_restitution
 
 plugin load wall/contactlaw.so
-fix deck all wall/contactlaw mesh deck.stl scale 1e-3 thickness 2e-3 edges free vibrate 0.7071e-3 0 0.7071e-3 50 &
-    friction 0.3 softening 30 record hits.%.npy
+fix deck all wall/contactlaw wall/sieve.scene record hits.%.npy
 fix move all nve/sphere
 fix weight all gravity 9.80665 vector 0 0 -1
 

@@ -38,7 +38,7 @@ def thrown(axes, friction=0.0, softening=1.0, density=PAIR.sphere.density, piece
         timestep {DT * softening**0.4}
         {"fix body all rigid/small molecule" if not pieces else more}""")
     model = cl.ImpactModel(PAIR, law="myc")
-    walls = attach(lmp, model, [flat(H)], friction=friction, softening=softening)
+    walls = attach(lmp, model, [flat(H)], friction=friction, softening=softening, rigid="body")
     # In the set-up of a run, LAMMPS's bodies hear of no force by a fix that was made after theirs.
     lmp.command("fix body all rigid/small molecule" if pieces else "run 1200")
     for _ in range(pieces):
@@ -132,7 +132,7 @@ def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
     assert (whole["time"] < 100 * DT).all() and (whole["time"] + whole["contact_time"] > 100 * DT).all()
     lmp = quiet(f"read_restart {tmp_path}/at.100\nfix number all property/atom mol\ntimestep {DT}")
     lmp.command("comm_modify cutoff 0.01")
-    walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)], friction=0.3)
+    walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)], friction=0.3, rigid="body")
     lmp.commands_string("fix body all rigid/small molecule\nthermo_style custom step")
     lmp.command("run 1100")
     rows = np.sort(walls.record().rows, order="bead")
@@ -143,14 +143,12 @@ def test_a_run_may_go_on_from_a_restart_in_mid_contact(tmp_path):
 def test_a_refused_attachment_leaves_nothing_behind():
     lmp, walls, _ = thrown(orientations()[:1])
     walls.detach()
-    lmp.commands_string("""
-        unfix body
-        create_atoms 1 single 0 0 0.02
-        set atom 3 diameter 1e-3 density 100
-        group clump id 1 2
-        fix body clump rigid/small molecule""")
+    lmp.command("unfix body")
+    with pytest.raises(ValueError, match="start"):
+        attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)], rigid="body", start=np.inf)
+    lmp.command("set atom 1 density 100")
     with pytest.raises(ValueError, match="density"):
-        attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)])
+        attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(H)], rigid="body")
     assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
 
 
@@ -179,14 +177,16 @@ def test_bodies_may_come_and_go():
     assert not [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
 
 
-def test_a_script_may_replace_the_bodies(tmp_path):
-    """LAMMPS refuses to run while the compute of the bodies lacks its fix; the new one has the same name."""
+def test_commands_may_replace_the_bodies():
     lmp, walls, _ = thrown(orientations()[:1])
-    script = "unfix body\nfix free all nve/sphere\nrun 1\nunfix free\nfix body all rigid/small molecule"
-    (tmp_path / "in").write_text(script)
-    lmp.file(str(tmp_path / "in"))
-    lmp.command(f"include {tmp_path / 'in'}")
-    lmp.commands_string(script)
+    for command in (
+        "unfix body",
+        "fix free all nve/sphere",
+        "run 1",
+        "unfix free",
+        "fix body all rigid/small molecule",
+    ):
+        lmp.command(command)
     lmp.command("velocity all set 0 0 -1")
     lmp.command("run 4000")
     assert walls.record().rows["kind"].tolist() == 2 * [Kind.OF_BODY]
@@ -214,6 +214,7 @@ lmp.commands_string('''
     comm_modify cutoff 0.01
     fix number all property/atom mol
     set group all diameter 1.8e-3 density 879 mol 1
+    set atom 3 mol 2
     velocity all set 0 0 -1
     group clump id 1 2
     group free id 3
@@ -226,15 +227,16 @@ across = Plate((0, -0.05, -0.02), (0, 0.1, 0), (0, 0, 0.015), thickness=1e-3)
 below = Plate((-0.05, -0.05, -0.01), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
 with warnings.catch_warnings(record=True) as told:
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    walls = attach(lmp, model, [square, across, below])
+    walls = attach(lmp, model, [square, across, below], rigid="body")
 lmp.command("run 800")
-lmp.commands_string("unfix body\\nfix more clump nve/sphere\\nrun 10")
+lmp.command("unfix body")
+lmp.commands_string("fix more clump nve/sphere\\nrun 10")
 found, told = walls.gather(), MPI.COMM_WORLD.gather(len(told))
 if found is not None:
     print(found["bead"].tolist(), found["kind"].tolist(), told)
 """
 
 
-def test_a_rank_without_bodies_and_a_free_bead_with_their_molecule(tmp_path):
+def test_a_rank_without_bodies_and_a_free_bead(tmp_path):
     (tmp_path / "two.py").write_text(TWO_RANKS)
     assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}] [1, 0]"

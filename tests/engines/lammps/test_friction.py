@@ -11,7 +11,7 @@ from lammps_box import R, above, attach, flat, make, scene, state
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Tabulated, Translation
-from contactlaw.engines.lammps.memory import FIRST, SLIDING, WIDTH
+from contactlaw.stepping.step import FIRST, SLIDING, WIDTH
 
 MODELS = {
     "myc": cl.ImpactModel(box.PAIR, law="myc"),

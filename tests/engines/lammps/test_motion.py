@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import R, above, dropped, flat, scene, state
+from lammps_box import ABOVE, ALIKE, R, above, attach, dropped, flat, make, quiet, restarted, scene, state
 from scipy.spatial.transform import Rotation as Turn
 
-from contactlaw.engines.lammps import Mesh, Rotation, Tabulated, Translation, Vibration
+from contactlaw.engines.lammps import Cylinder, Mesh, Plate, Rotation, Tabulated, Translation, Vibration
 from contactlaw.walls.frame import FRAME
 from contactlaw.walls.motion import move_one
 
@@ -109,8 +109,117 @@ def test_a_bead_at_the_meeting_of_two_motions_has_one_contact(model):
         assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
 
 
-def test_a_wall_too_fast_for_the_step(model):
-    plate = flat(1e-3, motion=Translation((0, 0, 20.0)))
-    lmp, _ = scene(model, [plate], (0, 0, 0.02), (0, 0, 0), dt=1e-4)
-    with pytest.raises(RuntimeError, match="further than its radius"):
-        lmp.command("run 200")
+def settled(model, motion, gap=5e-5, **options):
+    """A bead that lies still for 0.12 s before a plate is attached under it."""
+    lmp = make(above(gap), (0, 0, 0), dt=1e-3)
+    lmp.commands_string("run 120\ntimestep 1e-7")
+    return lmp, attach(lmp, model, [flat(1e-3, motion=motion)], **options)
+
+
+@pytest.mark.parametrize("motion", [Translation((0, 0, 0.05)), Vibration((0, 0, 0.5e-4), 250.0), None])
+def test_a_wall_starts_where_it_was_given_when_it_is_attached(model, motion, tmp_path):
+    """Of walls that began at time 0 the bead would be 6 mm deep in the first, and below the second."""
+    if motion is None:  # with a table
+        motion = Tabulated([0.0, 1e-3, 2e-3], [[0, 0, 0], [0, 0, 5e-5], [0, 0, 1e-4]])
+    lmp, walls = settled(model, motion, gap=4.5e-5)
+    assert walls.start == pytest.approx(0.12, rel=1e-12)
+    lmp.command("run 15000")
+    (row,) = walls.collisions()
+    touch = {Translation: 0.9e-3, Vibration: math.asin(0.9) / (500 * math.pi), Tabulated: 0.9e-3}[type(motion)]
+    assert row["time"] - 0.12 == pytest.approx(touch, rel=1e-4)
+    assert row["wall_start"] == pytest.approx(0.12, rel=1e-12)
+    # Where it was then on the wall is known in the picture of the walls at the start.
+    assert walls.record().surface.point[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+
+
+def test_a_wall_that_turns_starts_unturned_unless_another_time_is_given(model):
+    for start, angle in ((None, 0.0), (0.02, 0.1 * 7.0)):
+        lmp, walls = settled(model, Rotation((0, 0, 1), 7.0), start=start)
+        lmp.command("run 0")
+        turn = walls._contacts.scene.frames["turn"][0]
+        assert turn[:2] == pytest.approx([math.cos(angle), -math.sin(angle)], abs=1e-12)
+    with pytest.raises(ValueError, match="start: got nan; must be finite"):
+        attach(make(ABOVE), model, [flat(1e-3)], start=math.nan)
+
+
+def test_a_restart_goes_on_with_the_motion(model, tmp_path):
+    """Also of a bead that no wall has come near so far."""
+    motion = Vibration((0, 0, 0.5e-4), 250.0)
+    lmp, walls = settled(model, motion, gap=4.5e-5)
+    lmp.commands_string(
+        f"run 3000\nwrite_restart {tmp_path}/early\nrun 4250\nwrite_restart {tmp_path}/touching\nrun 7750"
+    )
+    (whole,), end = walls.collisions(), state(lmp)
+    for name, steps in ("early", 12000), ("touching", 7750):
+        lmp = restarted(tmp_path / name)
+        walls = attach(lmp, model, [flat(1e-3, motion=motion)])
+        assert walls.start == pytest.approx(0.12, rel=1e-12)
+        lmp.command(f"run {steps}")
+        (row,) = walls.collisions()
+        assert [row[one] for one in ALIKE] == pytest.approx([whole[one] for one in ALIKE], rel=1e-7, abs=1e-15)
+        assert state(lmp)["v"] == pytest.approx(end["v"], rel=1e-9)
+
+
+def test_a_restart_of_an_older_version_is_refused(model, tmp_path):
+    lmp, _ = scene(model)
+    lmp.command("run 50")
+    lmp.numpy.extract_atom("d2_contactlaw")[0, 2] = 40.0  # the number of columns, as 0.3 has it
+    lmp.command(f"write_restart {tmp_path}/old")
+    with pytest.raises(ValueError, match="the restart file is of contactlaw 0.3"):
+        attach(restarted(tmp_path / "old"), model, [flat(1e-3)])
+
+
+PERIODIC = """
+    units si
+    atom_style sphere
+    boundary p f f
+    neighbor 0.002 bin
+    neigh_modify delay 0 every 1 check yes
+    comm_modify cutoff 0.004
+    region box block 0 0.02 -0.01 0.01 -0.002 0.02
+    create_box 1 box
+    create_atoms 1 single 0.01995 0 0.00091
+    set group all diameter 1.8e-3 density 879
+    velocity all set 15 0 -1
+    fix move all nve/sphere
+    timestep 1e-7
+"""
+FLAT = Plate((0, -0.01, 0), (0.02, 0, 0), (0, 0.02, 0), 1e-3)
+CORNERS = [(0, -0.01, 0), (0.02, -0.01, 0), (0.02, 0.01, 0), (0, 0.01, 0)]
+
+
+@pytest.mark.parametrize(
+    "wall", [FLAT, Mesh(CORNERS, [(0, 1, 2), (0, 2, 3)], 1e-3), Cylinder((0, 0, -0.05), (0.02, 0, -0.05), 0.05, 1e-3)]
+)
+def test_a_wall_that_ends_at_a_periodic_boundary_holds_a_bead_that_strays_past_it(model, wall):
+    """LAMMPS takes the bead back into the box up to half a neighbour skin later."""
+    lmp = quiet(PERIODIC)
+    walls = attach(lmp, model, [wall])
+    lmp.command("run 800")
+    assert walls.collisions()["restitution"] == pytest.approx(model.restitution(1.0, R, 1e-3), abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("commands", "words"),
+    [
+        ("change_box all triclinic", "box: it is triclinic"),
+        ("fix deform all deform 1 x erate 10\nrun 50", "box: a periodic side changes its length"),
+        ("run_style respa 2 2", "run_style respa: the force of the walls depends on the time steps"),
+        ("minimize 0 0 10 10", "minimize, rerun: the force of the walls depends on the time steps"),
+    ],
+)
+def test_what_walls_cannot_follow_is_refused(model, commands, words):
+    lmp = quiet(PERIODIC)
+    attach(lmp, model, [FLAT])
+    with pytest.raises(RuntimeError, match=words):
+        lmp.commands_string(commands)
+    if "triclinic" in commands:
+        with pytest.raises(RuntimeError, match=words):
+            attach(quiet(f"{PERIODIC}\n{commands}"), model, [FLAT])
+
+
+def test_the_speed_of_a_wall_counts_where_beads_are_looked_at(model):
+    """A wall at 5 m/s, and a bead that lies still."""
+    lmp, _ = scene(model, [flat(1e-3, height=-0.01, motion=Translation((0, 0, 5.0)))], ABOVE, (0, 0, 0), dt=2e-4)
+    with pytest.raises(RuntimeError, match="at 5 m/s relative to a wall it flies further than its radius"):
+        lmp.command("run 0")

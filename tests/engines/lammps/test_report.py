@@ -30,12 +30,14 @@ def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path, empty
     corners, triangles = square(2, 0.025)
     moving = {"motion": Vibration((4e-3, 0, 0), 600.0)}
     mesh = Mesh(corners - [0.025, 0, 0], triangles, thickness=[0.5e-3] * 4 + [2e-3] * 4)
-    walls = [flat(1e-3, x=0.01, width=0.04, **moving), mesh, Disc((-0.03, 0.045, 0), (0, 0, 1), 0.01, 1e-3, **moving)]
+    disc = Disc((-0.03, 0.045, 0), (0, 0, 1), 0.01, 1e-3, **moving)
+    walls = {"belt": flat(1e-3, x=0.01, width=0.04, **moving), "sheet": mesh, "end": disc}
     lmp, found = scene(model, walls, place, (1.0, 0.5, -5.0), friction=0.1)
     for steps in (2000, 2000, 1500):
         lmp.command(f"run {steps}")
         found.save_series(tmp_path / "walls.vtk.series")
     rows, on = found.gather(), found.record().surface
+    assert on.names == ["belt", "sheet", "end"]
     assert rows.size == 8 and set(rows["plate"]) == {0, 1, 2}
     files = json.loads((tmp_path / "walls.vtk.series").read_text())["files"]
     assert [file["time"] for file in files] == pytest.approx([2e-4, 4e-4, 5.5e-4])
@@ -74,6 +76,7 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     walls.report(tmp_path / "own")
     assert main(["report", str(tmp_path / "own/record.h5"), "--out", str(tmp_path / "same")]) == 0
     assert capsys.readouterr().err == ""
+    assert cl.read_record(tmp_path / "own/record.h5").surface.names == ["part.stl"]
     np.save(tmp_path / "rows.npy", walls.gather())  # which knows no walls
     command = ["report", str(tmp_path / "rows.npy"), "--out", str(tmp_path / "again")]
     stl = str(tmp_path / "part.stl")

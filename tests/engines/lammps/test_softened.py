@@ -8,11 +8,11 @@ import pytest
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Mesh, Plate, pair_coeff
-from contactlaw.engines.lammps.memory import FIRST, WIDTH
 from contactlaw.engines.record import Kind
 from contactlaw.softsphere import most_softening, time_step
 from contactlaw.stepping.contact import CONTACT
 from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.step import FIRST, WIDTH
 
 R, SOFT, MU, ABOVE = box.R, 1000.0, 0.3, box.ABOVE
 MODEL = cl.ImpactModel(box.PAIR)
@@ -257,8 +257,9 @@ def test_a_restart_with_other_contacts_is_refused(tmp_path):
     lmp.command(f"write_restart {tmp_path / 'soft.restart'}")
     for given in ({"softening": 30.0}, {}, {"softening": 20.0, "parcel": 2.0}):
         again = box.restarted(tmp_path / "soft.restart")
-        with pytest.raises(ValueError, match="in contact with softening 20, parcel 1; attach with these again"):
-            box.attach(again, MODEL, [box.flat(1e-3)], **given)
+        box.attach(again, MODEL, [box.flat(1e-3)], **given)
+        with pytest.raises(RuntimeError, match="a wall with softening 20, parcel 1; take these again"):
+            again.command("run 0")
 
 
 @pytest.mark.parametrize("softening", [1.0, 100.0])

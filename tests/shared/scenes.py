@@ -1,0 +1,175 @@
+"""Scenes that every engine runs alike: beads of two sizes over walls, by `attach` and by a loop of one's own.
+
+An engine is a function of a `Scene` that gives an `Outcome`. To add one, write such a function.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from loops import loop
+
+import contactlaw as cl
+from contactlaw.record.columns import IMPACT
+from contactlaw.stepping import Clock, WallContacts
+from contactlaw.stepping.step import FIRST, ROWS, RUN, SLIDING, WIDTH, Beads, begin, step
+from contactlaw.walls import Cone, Cylinder, Disc, Mesh, Plate, Rotation, Sphere, Tabulated, Translation, Vibration
+
+PAIR = cl.Pair("gamma-alumina", "glass")
+DT, GRAVITY = 1e-7, -9.81
+
+
+class Scene(NamedTuple):
+    """Walls, beads that fall on them, and contacts."""
+
+    walls: Any
+    place: Any
+    velocity: Any
+    radius: Any
+    friction: float = 0.3
+    softening: float = 1.0
+    steps: int = 2500
+
+
+class Outcome(NamedTuple):
+    """Record by bead and time, places, velocities and spins at the end."""
+
+    rows: Any
+    x: Any
+    v: Any
+    omega: Any
+
+
+def _beads(half, height, speed, n=24):
+    rng = np.random.default_rng(11)
+    place = np.stack(np.meshgrid(*(np.linspace(-half, half, 5),) * 2, indexing="ij"), -1).reshape(-1, 2)[:n]
+    velocity = rng.uniform(-1.0, 1.0, (n, 3)) + [0.0, 0.0, -speed]
+    return np.column_stack((place, np.full(n, height))), velocity, rng.choice([0.6e-3, 0.9e-3], n)
+
+
+def _floor(thickness=1e-3, **more):
+    return Plate((-0.02, -0.02, 0.0), (0.04, 0, 0), (0, 0.04, 0), thickness, **more)
+
+
+def _hole():
+    line = np.linspace(-0.02, 0.02, 9)
+    corners = np.array([(x, y, 0.0) for x in line for y in line])
+    cells = [i * 9 + j for i in range(8) for j in range(8) if not {i, j} <= {3, 4}]
+    return Mesh(corners, [t for a in cells for t in ((a, a + 9, a + 10), (a, a + 10, a + 1))], 0.8e-3, edges="free")
+
+
+_FALL = _beads(8e-3, 1.1e-3, 4.0)
+_TABLE = Tabulated([0.0, 1e-4, 3e-4], [[0, 0, 0], [0, 0, 5e-5], [0, 0, -5e-5]])
+SCENES = {
+    "plates": Scene([_floor(edges="free"), Plate((9e-3, -0.02, 0), (0, 0.04, 0), (0, 0, 0.02), 2e-3)], *_FALL),
+    "hole": Scene([_hole()], *_FALL),
+    "drum": Scene(
+        [
+            Cylinder((0, -0.02, 9e-3), (0, 0.02, 9e-3), 9e-3, 1e-3, motion=Rotation((0, 1, 0), 50.0, (0, 0, 9e-3))),
+            Disc((0, 7e-3, 9e-3), (0, 1, 0), 9e-3, 1e-3),
+        ],
+        *_beads(3e-3, 2.5e-3, 8.0),
+    ),
+    "bowl": Scene(
+        [Sphere((0, 0, 9e-3), 9e-3, 1e-3), Cone((0, 0, 9e-3), (0, 0, 0), 12e-3, 6e-3, 1e-3)],
+        *_beads(2e-3, 2.5e-3, 10.0),
+    ),
+    "moving": Scene(
+        [
+            _floor(motion=_TABLE),
+            Plate((6e-3, -0.02, 1e-4), (0.01, 0, 0), (0, 0.04, 0), 1e-3, motion=Vibration((0, 0, 5e-5), 2000.0)),
+            Plate((-0.019, -0.02, 1e-4), (0.013, 0, 0), (0, 0.04, 0), 1e-3, motion=Translation((0.5, 0, 0.05))),
+        ],
+        *_FALL,
+    ),
+    "shells": Scene(
+        [
+            Plate((-0.02, -0.02, 0), (0.02, 0, 0), (0, 0.04, 0), cl.Shell(0.5e-3, 0.05, "sphere")),
+            Plate((0, -0.02, 0), (0.02, 0, 0), (0, 0.04, 0), cl.Foundation(0.5e-3, 1e11)),
+        ],
+        *_FALL,
+    ),
+    "softened": Scene([_floor()], *_FALL, softening=5.0),
+}
+
+
+def model():
+    return cl.ImpactModel(PAIR, law="myc")
+
+
+def by_attach(scene, **lammps):
+    """By LAMMPS."""
+    import lammps_box as box
+
+    lmp = box.make(scene.place, scene.velocity, scene.radius, gravity=-GRAVITY, dt=DT, **lammps)
+    walls = box.attach(lmp, model(), scene.walls, friction=scene.friction, softening=scene.softening)
+    lmp.command(f"run {scene.steps}")
+    now, rows = box.state(lmp), np.sort(walls.collisions(), order=["bead", "time"])
+    lmp.close()
+    return Outcome(rows, now["x"], now["v"], now["omega"])
+
+
+@loop
+def _fly(
+    scene, runs, x, v, omega, radius, mass, force, torque, tag, kind, mask, last, history, width, places, dt, steps
+):
+    n = len(radius)
+    beads = Beads(n, tag, kind, mask, x, v, omega, radius, mass, force, torque, last, history, 8 * width, places, 0)
+    for number in range(steps + 1):
+        if number > 0:
+            for i in range(n):
+                v[i] += 0.5 * dt / mass[i] * force[i]
+                omega[i] += 0.5 * dt / (0.4 * mass[i] * radius[i] ** 2) * torque[i]
+                x[i] += dt * v[i]
+        force[:] = torque[:] = 0.0
+        clock = Clock(number * dt, dt, dt, number > 0)
+        begin(scene, runs, clock, beads, number % 100 == 0)
+        if step(scene, runs, clock, beads, 0) < n:
+            return
+        for i in range(n):
+            force[i, 2] += mass[i] * GRAVITY
+            if number > 0:
+                v[i] += 0.5 * dt / mass[i] * force[i]
+                omega[i] += 0.5 * dt / (0.4 * mass[i] * radius[i] ** 2) * torque[i]
+
+
+def by_loop(scene):
+    """By velocity Verlet and the kernel of a step, without an engine."""
+    n, mine = len(scene.radius), model()
+    contacts = WallContacts(
+        scene.walls,
+        mine,
+        scene.radius.max(),
+        np.zeros(1000 + ROWS, IMPACT),
+        friction=scene.friction,
+        softening=scene.softening,
+    )
+    runs = np.zeros(1, RUN)
+    runs["length"] = runs["time"] = runs["mass"] = runs["group"] = 1
+    width = FIRST + contacts.places * (WIDTH + SLIDING * (scene.friction > 0.0))
+    history, last = np.zeros((n, width)), np.zeros(n)
+    mass = 4.0 / 3.0 * math.pi * mine.pair.sphere.density * scene.radius**3
+    x, v, (omega, force, torque) = scene.place.copy(), scene.velocity.copy(), np.zeros((3, n, 3))
+    ints = np.arange(1, n + 1, dtype=np.int32), np.ones(n, np.int32), np.ones(n, np.int32)
+    at = history.ctypes.data
+    _fly(
+        contacts.scene,
+        runs,
+        x,
+        v,
+        omega,
+        scene.radius,
+        mass,
+        force,
+        torque,
+        *ints,
+        last,
+        at,
+        width,
+        contacts.places,
+        DT,
+        scene.steps,
+    )
+    assert runs["error"][0] == 0.0, runs
+    rows = np.sort(contacts.scene.impacts[: contacts.scene.status["impacts"][0]], order=["bead", "time"])
+    return Outcome(rows, x, v, omega)
