@@ -91,8 +91,10 @@ def typed(columns: Mapping[str, NDArray[Any]]) -> Rows:
     rows = np.zeros(columns["time"].size, [(name, IMPACT[name]) for name in names])
     for name in names:
         values = columns.get(name, rows[name])
-        if values.dtype.kind not in "iuf":
-            raise ValueError(f"column {name} holds values of type {values.dtype}, expected numbers")
+        if values.dtype.kind not in "iuf" or values.ndim > 1:
+            raise ValueError(
+                f"column {name} holds values of type {values.dtype}, shape {values.shape}, expected numbers"
+            )
         with np.errstate(invalid="ignore", over="ignore"):  # what is lost by it is refused
             rows[name] = values
         wrong = (rows[name] != values) & (IMPACT[name].kind == "i")

@@ -152,8 +152,7 @@ class Record:
     @property
     def impacts(self) -> Rows:
         """Rows that are impacts."""
-        found: Rows = self.rows[self.impact]
-        return found
+        return self.part(self.impact).rows
 
     @property
     def left_out(self) -> str:
@@ -399,7 +398,7 @@ def saved(content: bytes) -> Rows:
     if not content.startswith(b"\x93NUMPY"):
         raise ValueError("no file of np.save")
     try:
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
+        rows: Rows = np.load(io.BytesIO(content), allow_pickle=False)
     except Exception as error:  # a damaged head is evaluated as Python
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
     if rows.dtype.names is None or rows.ndim != 1:
@@ -407,8 +406,7 @@ def saved(content: bytes) -> Rows:
             f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
             "columns, as the record of an engine has"
         )
-    found: Rows = rows
-    return found
+    return rows
 
 
 def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
