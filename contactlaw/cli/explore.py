@@ -1,6 +1,7 @@
 """``contactlaw explore`` (pages): a page with sliders for a browser."""
 
-import argparse
+import itertools
+from argparse import Namespace
 from typing import Any
 
 from contactlaw import export
@@ -17,8 +18,11 @@ def add(commands: Any) -> None:
     command.epilog = "If you give --sphere or --plate several times, the page has a menu of all pairs."
 
 
-def _run(arguments: argparse.Namespace) -> None:
-    models = chosen.models(arguments)
+def _run(arguments: Namespace) -> None:
+    models = []
+    for sphere, plate in itertools.product(arguments.sphere, arguments.plate):
+        arguments.sphere, arguments.plate = sphere, plate
+        models.append(chosen.model(arguments))
     with wording.writing("out", arguments.out):
         export.page(arguments.out, models)
     print(arguments.out)

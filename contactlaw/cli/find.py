@@ -1,9 +1,9 @@
 """``contactlaw find`` (ask): the thicknesses of the plate, or the impact speeds, that give a COR."""
 
-import argparse
 import functools
 import itertools
 import sys
+from argparse import Namespace
 from typing import Any
 
 import numpy as np
@@ -38,13 +38,12 @@ def add(commands: Any) -> None:
             options.add_speed(command, quantities.values)
             options.add_layers(command)
         options.add_name_of_law(command)
-        command.set_defaults(outside="raise")  # what is outside the table is not searched
         options.add_errors(command, _KNOWN[unknown])
         options.add_forms(command)
         command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
-def _run(unknown: str, arguments: argparse.Namespace) -> None:
+def _run(unknown: str, arguments: Namespace) -> None:
     chosen.check_quantities(arguments)
     if getattr(arguments, "bounce", None):
         if len(arguments.speed) > 1:

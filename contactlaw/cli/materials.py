@@ -1,9 +1,9 @@
 """``contactlaw materials`` (ask): the catalogue of materials, with the source of each number."""
 
-import argparse
 import json
 import math
 import sys
+from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
 
@@ -12,7 +12,7 @@ from contactlaw.cli.parts.table import Column, Table, wrapped
 from contactlaw.physical.materials import Material, find, materials
 
 # Title and unit of each column, and the number of these units in one SI unit.
-_TITLES: tuple[tuple[str, str, float], ...] = (
+_TITLES = (
     ("name", "", 1.0),
     ("E", "GPa", 1e-9),
     ("nu", "-", 1.0),
@@ -24,7 +24,7 @@ _TITLES: tuple[tuple[str, str, float], ...] = (
     ("C", "-", 1.0),
     ("tan delta", "-", 1.0),
 )
-_COLUMNS = [Column(title, title=title, shown=unit, scale=scale) for title, unit, scale in _TITLES]
+_COLUMNS = [Column(title, "", title, unit, scale) for title, unit, scale in _TITLES]
 _LISTED = 8  # columns of the catalogue; one material has all others
 _MEANING = (
     "E Young's modulus, nu Poisson's ratio, rho density, yield: yield strength, H hardness; hardening: flow stress "
@@ -40,7 +40,7 @@ def add(commands: Any) -> None:
     command.add_argument("--json", action="store_true", help="print all properties as JSON, in SI units")
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     own, name = arguments.materials, arguments.name
     listed = sorted({body.name for body in own.values()}) or materials()
     bodies = [find(one, own) for one in ([name] if name else listed)]

@@ -1,8 +1,8 @@
 """``contactlaw report`` (pages): a page with figures about recorded impacts."""
 
-import argparse
 import dataclasses
 import math
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
@@ -35,28 +35,26 @@ def add(commands: Any) -> None:
         "several walls are meshes, give the option once for each: first the mesh of the wall with the lowest number",
     )
     what = "length of one unit of the mesh: 1mm for a drawing in millimetres (default: 1 m)"
-    options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH")
+    options.add_quantity(command, "--scale", LENGTH, what, metavar="LENGTH", default=1.0)
     what = "scene of LAMMPS's fix, for the names of the walls and the map (default: the one beside the record)"
     add("--scene", metavar="FILE", help=what)
     add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     record = read_record(*arguments.files)
     beside = [*Path(arguments.files[0]).parent.glob("*.scene")] if record.surface is None else []
     if path := arguments.scene or (beside[0] if len(beside) == 1 else None):
         record = dataclasses.replace(record, surface=surface_of(path, record.rows))
     with wording.reading(arguments.files[0]):
         Run(record)  # refuses what no report can be made of
-    meshes = [_mesh(path, arguments.scale) for path in arguments.mesh]
+    meshes = []
+    for path in arguments.mesh:
+        with wording.reading(path):
+            meshes.append(Mesh.read(path, math.inf, scale=arguments.scale))
     with wording.writing("out", arguments.out, folder=True):
         print(report(record, arguments.out, meshes))
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")
     if record.surface is None and (record.rows["triangle"] >= 0).any():
         wording.print_message("the page has no map of the energy on the walls; for a map, add --scene or --mesh")
-
-
-def _mesh(path: str, scale: float | None) -> Mesh:
-    with wording.reading(path):
-        return Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)

@@ -1,7 +1,7 @@
 """``contactlaw table`` (engines): describe, check or build a lookup table."""
 
-import argparse
 import secrets
+from argparse import Namespace
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ def add(commands: Any) -> None:
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
 
 
-def _info(arguments: argparse.Namespace) -> None:
+def _info(arguments: Namespace) -> None:
     stored = _stored(arguments)
     settings = ", ".join(f"{name} {value:g}" for name, value in asdict(stored.settings).items())
     axes, rungs = stored.grid.axes, stored.grid.rungs[:, 0]
@@ -45,7 +45,7 @@ def _info(arguments: argparse.Namespace) -> None:
     _print_certificate(stored)
 
 
-def _check(arguments: argparse.Namespace) -> None:
+def _check(arguments: Namespace) -> None:
     stored = _stored(arguments)
     certificate = table.certify(stored, arguments.points, secrets.randbits(32), progress=cache.progress_bar)
     _print_certificate(replace(stored, certificate=certificate))
@@ -53,7 +53,7 @@ def _check(arguments: argparse.Namespace) -> None:
         raise ValueError(f"the table exceeds its bounds: {exceeded}")
 
 
-def _build(arguments: argparse.Namespace) -> None:
+def _build(arguments: Namespace) -> None:
     enable_caching()
     out = Path(arguments.out or f"{arguments.law}.h5")
     with wording.writing("out", out):
@@ -64,7 +64,7 @@ def _build(arguments: argparse.Namespace) -> None:
     print(out)
 
 
-def _stored(arguments: argparse.Namespace) -> table.Table:
+def _stored(arguments: Namespace) -> table.Table:
     enable_caching()
     if arguments.file:
         return file.read(arguments.file)
@@ -72,7 +72,7 @@ def _stored(arguments: argparse.Namespace) -> table.Table:
     return file.packaged(law) or cache.cached_shapes(cache.cached(law))
 
 
-def _law(arguments: argparse.Namespace) -> laws.Law:
+def _law(arguments: Namespace) -> laws.Law:
     """Law of a table, by its name and, for laws with parameters of a pair, by the materials."""
     if not laws.parameters(arguments.law):
         return laws.law(arguments.law)

@@ -76,10 +76,10 @@ COLUMNS = (
     Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
-_NAMES = tuple(column.name for column in COLUMNS)
+NAMES = tuple(column.name for column in COLUMNS)
 _LATER = "wall_start", "run", "run_start"  # which files of older versions lack
 # The columns of a record whose model gives a COR and nothing else.
-OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
+OBSERVED = NAMES[: NAMES.index("sliding_speed_after")]
 
 
 def typed(columns: Mapping[str, NDArray[Any]]) -> Rows:
@@ -87,12 +87,14 @@ def typed(columns: Mapping[str, NDArray[Any]]) -> Rows:
 
     Files of older versions get the run 0, which is not known; their walls began to move at time 0.
     """
-    names = [name for name in _NAMES if name in (*columns, *_LATER)]
+    names = [name for name in NAMES if name in (*columns, *_LATER)]
     rows = np.zeros(columns["time"].size, [(name, IMPACT[name]) for name in names])
     for name in names:
         values = columns.get(name, rows[name])
-        if values.dtype.kind not in "iuf":
-            raise ValueError(f"column {name} holds values of type {values.dtype}, expected numbers")
+        if values.dtype.kind not in "iuf" or values.ndim > 1:
+            raise ValueError(
+                f"column {name} holds values of type {values.dtype}, shape {values.shape}, expected numbers"
+            )
         with np.errstate(invalid="ignore", over="ignore"):  # what is lost by it is refused
             rows[name] = values
         wrong = (rows[name] != values) & (IMPACT[name].kind == "i")

@@ -37,11 +37,12 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Validity
 from contactlaw.record import hdf5
-from contactlaw.record.columns import COLUMNS, IMPACT, typed
+from contactlaw.record.columns import COLUMNS, NAMES, typed
 
 FORMAT, SCHEMA = "contactlaw record", 1
 HDF5 = ".h5", ".hdf5"
 _BODIES = "sphere", "plate"
+_OF_MATERIAL = "Pa (moduli, strength, hardness), kg/m3"
 _UNITS = "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own"
 # Points of the walls at the start of a run, in columns that end in _x, _y and _z.
 _PLACES = {"corner": "corners, three by triangle", "point": "where on the wall each row is"}
@@ -151,8 +152,7 @@ class Record:
     @property
     def impacts(self) -> Rows:
         """Rows that are impacts."""
-        found: Rows = self.rows[self.impact]
-        return found
+        return self.part(self.impact).rows
 
     @property
     def left_out(self) -> str:
@@ -167,7 +167,7 @@ class Record:
     @property
     def lacks(self) -> str:
         """What the record does not say; empty for a complete one."""
-        missing = [name for name in IMPACT.names or () if name not in self._columns]
+        missing = [name for name in NAMES if name not in self._columns]
         parts = [f"the column{'s' * (len(missing) > 1)} {', '.join(missing)}"] if missing else []
         parts += [] if self.bodies else ["materials and law"]
         return "; ".join(parts + ([] if self.surface else ["the surface of the walls"]))
@@ -231,7 +231,9 @@ class Record:
             for n, one in enumerate(self.bodies):
                 file.create_group(f"bodies/{n}").attrs["law"] = one.law
                 for name, material in zip(_BODIES, one.materials, strict=True):
-                    _write_material(file, f"bodies/{n}/{name}", material)
+                    words = {"uncertainty": json.dumps(dict(material.uncertainty)), "units": _OF_MATERIAL}
+                    values = {key: value for key, value in asdict(material).items() if value is not None}
+                    file.create_group(f"bodies/{n}/{name}").attrs.update(values | words)
             if self.surface is not None:
                 _write_surface(file.create_group("surface"), self.surface)
             if more is not None:
@@ -351,9 +353,12 @@ def read_from(file: h5py.File) -> Record:
         raise ValueError(f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again")
     group = hdf5.group(file, "impacts")
     size = hdf5.numbers(group, "time").size
-    rows = typed({name: hdf5.numbers(group, name, size) for name in IMPACT.names or () if name in group})
+    rows = typed({name: hdf5.numbers(group, name, size) for name in NAMES if name in group})
     pairs = hdf5.group(file, "bodies") if "bodies" in file else {}
-    bodies = [_read_bodies(hdf5.group(file, f"bodies/{n}")) for n in range(len(pairs))]
+    bodies = list[Bodies]()
+    for n in range(len(pairs)):
+        one = hdf5.group(file, f"bodies/{n}")
+        bodies.append(Bodies(Pair(*(_material(hdf5.group(one, body)) for body in _BODIES)), str(one.attrs["law"])))
     which = hdf5.indices(group, "bodies", len(bodies), size)
     surface = _read_surface(hdf5.group(file, "surface"), size) if "surface" in file else None
     return Record(rows, bodies, which, surface, dict(file.attrs))
@@ -372,9 +377,10 @@ def _read(path: Path) -> Record:
         content = content_of(path)
         if path.suffix.lower() == ".npy":
             rows = saved(content)
-            if "time" not in (rows.dtype.names or ()):
+            names = rows.dtype.names or ()
+            if "time" not in names:
                 raise ValueError("its rows have no column time")
-            return Record(typed({name: rows[name] for name in rows.dtype.names or ()}))
+            return Record(typed({name: rows[name] for name in names}))
         with hdf5.opened(content) as file:
             return read_from(file)
     except ValueError as error:
@@ -392,7 +398,7 @@ def saved(content: bytes) -> Rows:
     if not content.startswith(b"\x93NUMPY"):
         raise ValueError("no file of np.save")
     try:
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
+        rows: Rows = np.load(io.BytesIO(content), allow_pickle=False)
     except Exception as error:  # a damaged head is evaluated as Python
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
     if rows.dtype.names is None or rows.ndim != 1:
@@ -400,8 +406,7 @@ def saved(content: bytes) -> Rows:
             f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
             "columns, as the record of an engine has"
         )
-    found: Rows = rows
-    return found
+    return rows
 
 
 def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
@@ -425,16 +430,6 @@ def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
     number = np.array([*(bodies.index(each) for each in two.bodies), -1])
     rows = np.concatenate([one.rows, two.rows])
     return Record(rows, bodies, np.r_[one.which, number[two.which]], surface, one.made)
-
-
-def _write_material(file: h5py.File, name: str, material: Material) -> None:
-    texts = {"uncertainty": json.dumps(dict(material.uncertainty)), "units": "Pa (moduli, strength, hardness), kg/m3"}
-    values = asdict(material) | texts
-    file.create_group(name).attrs.update({key: value for key, value in values.items() if value is not None})
-
-
-def _read_bodies(group: h5py.Group) -> Bodies:
-    return Bodies(Pair(*(_material(hdf5.group(group, body)) for body in _BODIES)), str(group.attrs["law"]))
 
 
 def _material(group: h5py.Group) -> Material:

@@ -283,7 +283,7 @@ def test_without_a_band_nothing_is_said_of_one(capsys):
     ("error", "said"),
     [
         ("--speed-error -1%", "--speed-error: got '-1%'; must lie between 0 and 1"),
-        ("--plate-error yeld=1%", "--plate-error: uncertainty: got 'yeld'; unknown"),
+        ("--plate-error yeld=1%", "--plate-error: uncertainty: unknown 'yeld'"),
         ("--plate-error density", "as yield_strength=15%"),
     ],
 )

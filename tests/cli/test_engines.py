@@ -95,7 +95,7 @@ def test_a_table_over_speed(model, capsys):
         ([*TABLE, "--speed", "1,0"], "--speed: got '0'; must lie"),
         ([*TABLE, "--speed", "1,1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
         (["materials", "glas"], "unknown material 'glas'"),
-        (["export", "lammps", *PAIR[:4], "--out", "no/where"], "--out: there is no folder no"),
+        (["export", "lammps", "--out", "no/where"], "--out: there is no folder no"),
         (["export", "header", "--sphere", "steal", "--plate", "glass"], "--sphere: unknown material 'steal'"),
         (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
         (["table", "info", "missing.h5"], "missing.h5"),

@@ -184,7 +184,7 @@ def test_tables_that_are_refused(lines, words, table, capsys):
         ([*FIT, "--thickness", "1mm"], "--thickness: is unknown and given"),
         (
             [*FIT, "--prior", "plate_yield_strength=5GPa"],
-            "--prior: got 5000000000.0; the error of plate_yield_strength must",
+            "--prior: got 5000000000.0; the standard error of plate_yield_strength must",
         ),
         ([*FIT[:-1], "yield_strength", "--thickness", "1.2mm"], "--unknown: the data do not determine"),
         (["--sphere", "stel", *FIT[2:]], "--sphere: unknown material 'stel'"),

@@ -396,7 +396,7 @@ def test_flipped_bits_of_a_column(place, rain, tmp_path):
         (np.zeros((2, 2), IMPACT), "expected rows with named columns"),
         (np.zeros(2, [("approach_speed", "f8")]), "its rows have no column time"),
         (np.zeros(2, [("time", "f8"), ("approach_speed", "U4")]), "approach_speed holds values of type <U4"),
-        (np.zeros(2, [("time", "f8"), ("approach_speed", "f8", 3)]), r"holds values of type \('<f8', \(3,\)\)"),
+        (np.zeros(2, [("time", "f8"), ("approach_speed", "f8", 3)]), r"holds values of type float64, shape \(2, 3\)"),
         (np.array([(1.0, 0.5)], [("time", "f8"), ("plate", "f8")]), "plate of row 0 is 0.5, expected a whole"),
         (np.array([(1.0, np.nan)], [("time", "f8"), ("plate", "f8")]), "plate of row 0 is nan, expected a whole"),
     ],

@@ -90,7 +90,7 @@ REFUSED = {  # status 1
     f"{SIZES} --speed 5 --bowl 5cm --causes": "--causes: does not go with --bowl: leave out one of them",
     f"{HIT} --causes": "--causes: does not go with --no-band: leave out one of them",
     f"{SIZES} --speed 5 --speed-error -1%": "--speed-error: got '-1%'; must lie between 0 and 1",
-    f"{SIZES} --speed 5 --plate-error yeld=5%": "got 'yeld'; unknown",
+    f"{SIZES} --speed 5 --plate-error yeld=5%": "--plate-error: uncertainty: unknown 'yeld'",
     f"{SIZES} --speed 5 --plate-error hardness=20%": "--plate-error: got 'hardness'; 'glass' has no such number",
     f"{HIT} --plot cor.xyz": "--plot: got 'cor.xyz'; must end in .png, .svg or .pdf",
     f"{HIT} --plot ''": "--plot: got ''; expected the name of a file",

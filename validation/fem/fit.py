@@ -12,6 +12,7 @@ import dataclasses
 import functools
 import json
 import math
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -441,6 +442,12 @@ def numbers() -> dict[str, Any]:
     return {**in_impacts(elastic(found, measured), measured), "stiffest": fem.fitted()["stiffest"]}
 
 
+def text_of(numbers: dict[str, Any]) -> str:
+    """Write numbers as JSON, with each row of a table on one line."""
+    row = re.compile(r"\[([^][{}]*)\]")
+    return row.sub(lambda found: f"[{' '.join(found[1].split())}]", json.dumps(numbers, indent=1)) + "\n"
+
+
 def run(_: int) -> None:
     """Write the numbers that the package ships."""
-    FILE.write_text(json.dumps(numbers(), indent=1) + "\n")
+    FILE.write_text(text_of(numbers()), "utf-8")

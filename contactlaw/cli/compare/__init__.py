@@ -1,8 +1,8 @@
 """``contactlaw compare`` (measure): measured CORs beside the model, to which they were not fitted."""
 
-import argparse
 import json
 import sys
+from argparse import Namespace
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
@@ -20,6 +20,10 @@ from contactlaw.physical.pair import Pair
 from contactlaw.quantities import TIME
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
+_FORMS = {
+    "csv": "print the rebounds as rows in SI units, every digit",
+    "json": "print chi-squared, all laws and the rebounds",
+}
 _DISTINCT = 2.0  # standard errors by which a law is farther from the data than another one
 
 
@@ -36,12 +40,10 @@ def add(commands: Any) -> None:
     )
     what = "standard error of the instants of bounces [s] (default: that of FILE)"
     options.add_quantity(command, "--time-error", TIME, what, metavar="T")
-    output = measured.add_options(command)
-    output.add_argument("--csv", action="store_true", help="print the rebounds as rows in SI units, every digit")
-    output.add_argument("--json", action="store_true", help="print chi-squared, all laws and the rebounds")
+    measured.add_options(command, _FORMS)
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     chosen.check_quantities(arguments)
     source = chosen.of_file(arguments, arguments.data)
     pair = source.pair
@@ -54,7 +56,7 @@ def _run(arguments: argparse.Namespace) -> None:
             figure.figure(found, model, source.errors, about).save(arguments.plot)
             return
     table = _rows(found, bodies)
-    if arguments.csv:
+    if arguments.form == "csv":
         table.write(sys.stdout, "csv")
         return
     by_law = dict[str, Comparison]()
@@ -62,7 +64,7 @@ def _run(arguments: argparse.Namespace) -> None:
         with suppress(ValueError, RuntimeError):  # it cannot be used for this pair
             by_law[name] = compare(pair, found.data, name, **source.errors)
     by_law = dict(sorted(by_law.items(), key=lambda item: item[1].if_exact))
-    if arguments.json:
+    if arguments.form == "json":
         numbers = {"title": source.title, "reference": source.reference, **_numbers(found), "unknown": found.unknown}
         numbers["laws"] = {name: _numbers(comparison) for name, comparison in by_law.items()}
         print(json.dumps(numbers | {"rebounds": table.records()}, indent=2))

@@ -1,9 +1,8 @@
 """``contactlaw constant`` (engines): one COR for each wall and its errors, or a table of COR over speed."""
 
-import argparse
 import functools
 import sys
-from collections.abc import Callable
+from argparse import Namespace
 from typing import Any
 
 import numpy as np
@@ -46,15 +45,13 @@ def add(commands: Any) -> None:
     options.add_sizes(command, quantities.values, required=False)
     options.add_wall(command)
     options.add_law(command, default=None)
-    output = command.add_mutually_exclusive_group()
-    for form, what in _FORMS.items():
-        output.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
+    options.add_forms(command, _FORMS)
     what = "bound the error of the COR between the rows of --table (default: %(default)g)"
     command.add_argument("--error", metavar="E", type=float, default=_ERROR, help=what)
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     chosen.check_quantities(arguments)
     if arguments.error != _ERROR and arguments.form != "table":
         raise ArgumentError("error", arguments.error, "only --table takes it")
@@ -64,11 +61,10 @@ def _run(arguments: argparse.Namespace) -> None:
         law = arguments.law or recorded.law or laws.DEFAULT
         model = ImpactModel(chosen.pair(arguments, recorded.pair), law=law, outside=arguments.outside)
         impacts = records.completed(recorded.impacts, radius=arguments.radius, thickness=arguments.thickness)
-        plate = functools.partial(chosen.wall, arguments, model.pair.given[1])
         if arguments.form == "table":
-            _print_speed_table(arguments, model, impacts, plate)
+            _print_speed_table(arguments, model, impacts)
             continue
-        found = walls.walls(model, impacts, plate)
+        found = walls.walls(model, impacts, functools.partial(chosen.wall, arguments, model.pair.given[1]))
         table = walls.table(found, chosen.asked(arguments, model))
         if arguments.form == "csv":
             table.write_csv(sys.stdout, head=n == 0)
@@ -79,9 +75,7 @@ def _run(arguments: argparse.Namespace) -> None:
         print(*[""] * (n > 0), *text, sep="\n")
 
 
-def _print_speed_table(
-    arguments: argparse.Namespace, model: ImpactModel, impacts: records.Impacts, plate: Callable[[float], Any]
-) -> None:
+def _print_speed_table(arguments: Namespace, model: ImpactModel, impacts: records.Impacts) -> None:
     sizes = {name: np.unique(impacts[name]).tolist() for name in ("radius", "thickness")}
     for name, values in sizes.items():
         if len(values) > 1:
@@ -89,25 +83,20 @@ def _print_speed_table(
     (radius,), (thickness,), speed = *sizes.values(), impacts["speed"]
     ends = float(speed.min()), float(speed.max())
     with wording.naming_impact(ends, radius, thickness):
-        rows = model.speed_table(radius, plate(thickness), arguments.error, *ends)
+        plate = chosen.wall(arguments, model.pair.given[1], thickness)
+        rows = model.speed_table(radius, plate, arguments.error, *ends)
     for flag, count in rows.flags.items():
         wording.print_warning(f"{flag.name}, {count} of {len(rows.speed)} rows: {explain(flag)[0]}")
     print(f"# {in_words(chosen.asked(arguments, model, radius=radius, thickness=thickness))}, error {rows.error:.2g}")
     Table((Column("speed", "m/s"), Column("restitution")), rows._asdict()).write_csv(sys.stdout)
 
 
-def _recorded(arguments: argparse.Namespace) -> list[records.Recorded]:
+def _recorded(arguments: Namespace) -> list[records.Recorded]:
     """Impacts on plates of each pair of the record that the options choose, or at the stated speeds."""
     if not arguments.files:
         return [records.Recorded({"speed": np.array(arguments.speed)})]
     found = records.read(*arguments.files)
-    if len(found) > 1:
-        names = ", ".join(f"{one.pair.sphere.name} on {one.pair.plate.name}" for one in found if one.pair)
-        for role in ("sphere", "plate"):
-            if name := getattr(arguments, role):
-                found = [one for one in found if one.pair and getattr(one.pair, role).name == name]
-            if not found:
-                raise ArgumentError(role, name, f"the record has {names}")
-        if len(found) > 1 and arguments.form not in ("text", "csv"):
-            raise ValueError(f"--{arguments.form} is for one pair, the record has {names}: choose by --sphere, --plate")
-    return found
+    some, names = chosen.of_record(arguments, dict(enumerate(one.pair for one in found)))
+    if len(some) > 1 and arguments.form not in ("text", "csv"):
+        raise ValueError(f"--{arguments.form} is for one pair, the record has {names}: choose by --sphere, --plate")
+    return [found[n] for n in some]

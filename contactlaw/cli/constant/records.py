@@ -1,6 +1,5 @@
 """Impacts that have happened: the record of a run, or any table with a column of speeds."""
 
-import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -10,10 +9,10 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.parts import columns, wording
+from contactlaw.cli.parts import chosen, columns, wording
 from contactlaw.physical.arguments import check
 from contactlaw.physical.pair import Pair
-from contactlaw.record.file import HDF5, Record, read_record
+from contactlaw.record.file import Record, read_record
 
 Impacts = dict[str, Array]  # speed, and what is known of radius, thickness, mass, weights; in SI units
 
@@ -30,7 +29,7 @@ _OF_ENGINE = {"speed": "approach_speed"} | {name: name for name in ("radius", "t
 _OF_TEXT = columns.IMPACT | {"weight": ("weights", 1.0), "weights": ("weights", 1.0)}
 
 
-def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
+def read(*paths: str) -> list[Recorded]:
     """Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
 
     The files are records of one run (``.h5``), or rows of an engine as ``np.save`` writes them
@@ -38,10 +37,7 @@ def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
     ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness and weight are optional.
     """
     first = Path(paths[0])
-    is_text = first.suffix.lower() not in (*HDF5, ".npy")
-    if is_text and len(paths) > 1:
-        raise ValueError(f"{paths[1]}: only the files of one record are put together: give one table, with all rows")
-    record = None if is_text else read_record(*paths)
+    record = read_record(*paths) if chosen.is_record(paths) else None
     with wording.reading(first):
         found = [*_by_pair(record)] if record else [Recorded(_text(content_of(first, pipe=True)))]
         left_out = record.left_out if record else ""

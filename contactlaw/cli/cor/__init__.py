@@ -1,8 +1,8 @@
 """``contactlaw cor`` (ask): coefficient of restitution and more, of one impact or many."""
 
-import argparse
 import itertools
 import sys
+from argparse import Namespace
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -34,7 +34,8 @@ def add(commands: Any) -> None:
     options.add_pair(group)
     options.add_sizes(group, quantities.values)
     options.add_speed(group, quantities.values, "approach speed: normal to the plate, or with --angle that of the bead")
-    options.add_mass(group)
+    what = "mass of the bead if it is hollow, coated or a clump [kg] (default: that of a solid sphere)"
+    options.add_quantity(group, "--mass", quantities.MASS, what, metavar="M")
     what = "angle between path and normal of the plate [deg], below 90; with --friction (default: straight)"
     options.add_quantity(group, "--angle", quantities.ANGLE, what, quantities.values, metavar="A")
     what = "coefficient of friction between bead and plate; with --angle"
@@ -66,7 +67,7 @@ def add(commands: Any) -> None:
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     _check(arguments)
     chosen.check_quantities(arguments)
     model = chosen.model(arguments)
@@ -84,7 +85,7 @@ def _run(arguments: argparse.Namespace) -> None:
         _print(arguments, model)
 
 
-def _check(arguments: argparse.Namespace) -> None:
+def _check(arguments: Namespace) -> None:
     """Refuse options that do not go together, and leave out the band where some do not have one."""
     used = {name for name, value in vars(arguments).items() if value not in (None, False, 0.0, [])}
     for name, other in _NEEDED.items():
@@ -96,7 +97,7 @@ def _check(arguments: argparse.Namespace) -> None:
     arguments.no_band = not used.isdisjoint(_BANDLESS)
 
 
-def _print(arguments: argparse.Namespace, model: ImpactModel) -> None:
+def _print(arguments: Namespace, model: ImpactModel) -> None:
     table, known = tables.table(arguments, model)
     form = "csv" if arguments.history and arguments.form == "text" else arguments.form
     if form == "text" and len(table) == 1 and arguments.angle is None:
@@ -129,7 +130,7 @@ def _fields(table: Table, known: Uncertainty | None, yield_speed: str) -> Iterat
         yield from wrapped(f"{'':20s}  {words}", " " * 22)
 
 
-def _yield_speed(arguments: argparse.Namespace, model: ImpactModel, sizes: Mapping[str, Array]) -> str:
+def _yield_speed(arguments: Namespace, model: ImpactModel, sizes: Mapping[str, Array]) -> str:
     """Write the speed of the first yield, which has no answer for some walls and outside the table."""
     try:
         speed = tables.answer(lambda speed, **rest: model.yield_speed(**rest), arguments, model, sizes)

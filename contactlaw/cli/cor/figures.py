@@ -1,7 +1,7 @@
 """Figures of ``contactlaw cor --plot``."""
 
-import argparse
 import math
+from argparse import Namespace
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,7 +18,7 @@ _SAMPLES = 200  # points of a curve
 _SLOWEST = 0.1  # times the speed stated, where an axis without a list begins
 
 
-def figure(arguments: argparse.Namespace, model: ImpactModel) -> Figure:
+def figure(arguments: Namespace, model: ImpactModel) -> Figure:
     """Draw the force over time, or a curve over one of the lists for each value of another one.
 
     The axis is the list of more than 8 values, otherwise the first one that has two finite values.
@@ -42,7 +42,7 @@ def figure(arguments: argparse.Namespace, model: ImpactModel) -> Figure:
     curves, remarks = [], []
     for value in lists[varied[0]] if varied else [0.0]:
         one_curve = {axis: x.tolist()} | {name: [value] for name in varied}
-        table, known = tables.table(argparse.Namespace(**vars(arguments) | lists | one_curve), model)
+        table, known = tables.table(Namespace(**vars(arguments) | lists | one_curve), model)
         ends = {end: table.values.get(f"{y}_{end}") for end in ("low", "high")}
         label = "".join(named(name, value) for name in varied)
         curves.append(Curve(x, table.values[y], label, **ends, flags=table.flags))

@@ -1,7 +1,7 @@
 """Tables of ``contactlaw cor``: normal and oblique impacts, and the force over time of one."""
 
-import argparse
 import math
+from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -40,14 +40,14 @@ _HISTORY: tuple[Column, ...] = (
 )
 
 
-def axes(arguments: argparse.Namespace) -> dict[str, Sequence[float]]:
+def axes(arguments: Namespace) -> dict[str, Sequence[float]]:
     """Lay out the lists of the grid; the last one changes fastest."""
     sizes = "radius", "thickness", "speed"
     names = sizes if arguments.angle is None else ("friction", *sizes, "angle")
     return {name: getattr(arguments, name) for name in names}
 
 
-def table(arguments: argparse.Namespace, model: ImpactModel) -> tuple[Table, Uncertainty | None]:
+def table(arguments: Namespace, model: ImpactModel) -> tuple[Table, Uncertainty | None]:
     """Answer every combination of the lists, with bands unless an option rules them out."""
     lists = axes(arguments)
     count = math.prod(map(len, lists.values()))
@@ -76,7 +76,7 @@ def table(arguments: argparse.Namespace, model: ImpactModel) -> tuple[Table, Unc
 
 
 def answer(
-    ask: Callable[..., Any], arguments: argparse.Namespace, model: ImpactModel, sizes: Mapping[str, Array], **more: Any
+    ask: Callable[..., Any], arguments: Namespace, model: ImpactModel, sizes: Mapping[str, Array], **more: Any
 ) -> Any:
     """Ask the model about impacts, which an error names; `more` is what else the question takes."""
     impact: dict[str, Any] = {name: sizes[name] for name in ("speed", "radius", "thickness")}
@@ -85,14 +85,14 @@ def answer(
         return ask(**impact, mass=arguments.mass, **more)
 
 
-def uncertainty(arguments: argparse.Namespace, model: ImpactModel, sizes: Mapping[str, Array]) -> Uncertainty:
+def uncertainty(arguments: Namespace, model: ImpactModel, sizes: Mapping[str, Array]) -> Uncertainty:
     """Find the bands of impacts."""
     errors = {name: getattr(arguments, name) for name in ERRORS}
     found: Uncertainty = answer(model.uncertainty, arguments, model, sizes, **errors)
     return found
 
 
-def _oblique(arguments: argparse.Namespace, model: ImpactModel, sizes: dict[str, Array]) -> dict[str, Any]:
+def _oblique(arguments: Namespace, model: ImpactModel, sizes: dict[str, Array]) -> dict[str, Any]:
     """Integrate oblique impacts: a few of them need no table of the model."""
     within("angle", sizes["angle"], 0.0, 89.999, "degrees from the normal")
     inclined, radius, friction = np.radians(sizes["angle"]), sizes["radius"], sizes["friction"]

@@ -1,7 +1,7 @@
 """``contactlaw export`` (engines): source files for codes without Python: C header, LAMMPS, LIGGGHTS."""
 
-import argparse
 import functools
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,6 @@ def add(commands: Any) -> None:
         if kind != "header":
             where = "folder to write into; it is made if missing"
             command.add_argument("--out", required=True, metavar="DIR", help=where)
-        command.set_defaults(outside="raise")
         made[kind] = command
     header = made["header"]
     header.add_argument("--out", default="contactlaw.h", metavar="FILE", help="file to write (default: %(default)s)")
@@ -42,7 +41,7 @@ def add(commands: Any) -> None:
     made["lammps"].add_argument("--set", action="append", default=[], metavar="WALL.WORD=VALUE", help=what)
 
 
-def _run(kind: str, arguments: argparse.Namespace) -> None:
+def _run(kind: str, arguments: Namespace) -> None:
     of_header = {name: word for name, word in vars(arguments).items() if name in ("table", "prefix")}
     with wording.writing("out", arguments.out, folder=kind != "header"):
         if kind != "lammps":

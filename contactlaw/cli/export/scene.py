@@ -125,11 +125,6 @@ def _made(what: str, words: Mapping[str, Any], path: Path, model: Any = None) ->
 
 def _value(name: str, value: Any, path: Path) -> Any:
     """Value of an argument; texts of numbers have a unit."""
-    if isinstance(value, dict):
-        try:
-            return _made(name, value, path)
-        except ValueError as error:
-            raise ValueError(f"{name}: {error}") from error
     if name == "thickness" and isinstance(value, list) and isinstance(value[0], list):
         return plates.Layers([(body, _value(name, thick, path)) for body, thick in value])
     if isinstance(value, list):
@@ -138,9 +133,7 @@ def _value(name: str, value: Any, path: Path) -> Any:
         return path.parent / value
     if name in ("edges", "contact", "shape"):
         return None if value == "none" else value
-    if not isinstance(value, str):
-        return value
-    try:
-        return quantities.value(value, _QUANTITIES.get(name, quantities.LENGTH))
-    except ValueError as error:
-        raise ArgumentError(name, None, str(error)) from error
+    with wording.reading(name):
+        if isinstance(value, dict):
+            return _made(name, value, path)
+        return quantities.value(value, _QUANTITIES.get(name, quantities.LENGTH)) if isinstance(value, str) else value

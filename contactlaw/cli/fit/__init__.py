@@ -3,7 +3,7 @@
 import argparse
 import json
 import math
-from pathlib import Path
+from argparse import Namespace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.arguments import unknown
 from contactlaw.quantities import LENGTH
-from contactlaw.record.file import HDF5, read_record
+from contactlaw.record.file import read_record
 
 
 def add(commands: Any) -> None:
@@ -51,7 +51,7 @@ def add(commands: Any) -> None:
         help="standard error of a stated value of one of these quantities, such as density=20kg/m3; may be "
         "repeated (default: stated values are exact)",
     )
-    measured.add_options(command).add_argument("--json", action="store_true", help="print the whole fit in SI units")
+    measured.add_options(command, {"json": "print the whole fit in SI units"})
 
 
 def _named(text: str) -> str:
@@ -68,11 +68,10 @@ def _prior(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"got {text!r}, expected NAME=ERROR, such as density=20kg/m3")
     name = _named(name)
     kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH, "": quantities.FRICTION}
-    error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
-    return name, error
+    return name, reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: Namespace) -> None:
     chosen.check_quantities(arguments)
     source = _source(arguments)
     pair, priors = source.pair, _errors(source) | dict(arguments.prior)
@@ -81,7 +80,7 @@ def _run(arguments: argparse.Namespace) -> None:
         found = fit(pair, source.rebounds, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
             figure.figure(found, in_words(bodies)).save(arguments.plot)
-        if arguments.json:
+        if arguments.form == "json":
             thickness = None if arguments.thickness == math.inf else arguments.thickness
             numbers = bodies | {"radius_m": arguments.radius, "thickness_m": thickness} | printed.record(found)
             print(json.dumps(numbers, indent=2, default=np.ndarray.tolist))
@@ -90,14 +89,9 @@ def _run(arguments: argparse.Namespace) -> None:
             print("Measured minus fitted values, in % of the fitted ones:", *printed.rows(found).text(), sep="\n")
 
 
-def _source(arguments: argparse.Namespace) -> rebounds.Source:
+def _source(arguments: Namespace) -> rebounds.Source:
     """Read what was measured, and the pair that goes with it."""
-    first, *others = arguments.files
-    if Path(first).suffix.lower() in (*HDF5, ".npy"):
-        return _recorded(arguments)
-    if others:
-        raise ValueError(f"{others[0]}: only the files of one record are put together: give one table, with all rows")
-    return chosen.of_file(arguments, first)
+    return _recorded(arguments) if chosen.is_record(arguments.files) else chosen.of_file(arguments, arguments.files[0])
 
 
 def _errors(source: rebounds.Source) -> dict[str, float]:
@@ -112,7 +106,7 @@ def _errors(source: rebounds.Source) -> dict[str, float]:
     return errors
 
 
-def _recorded(arguments: argparse.Namespace) -> rebounds.Source:
+def _recorded(arguments: Namespace) -> rebounds.Source:
     """Impacts on walls of the record of a run; one of several pairs has to be named."""
     record, first = read_record(*arguments.files), arguments.files[0]
     for name in ("radius", "thickness"):
@@ -120,14 +114,11 @@ def _recorded(arguments: argparse.Namespace) -> rebounds.Source:
             raise ArgumentError(name, None, "the record has its own: leave this one out")
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
     pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
+    some, names = chosen.of_record(arguments, pairs)
+    if len(some) > 1:
+        raise ValueError(f"{first}: has impacts of several pairs, {names}: choose one by --sphere and --plate")
     if len(pairs) > 1:
-        names = ", ".join(f"{pair.sphere.name} on {pair.plate.name}" for pair in pairs.values())
-        for role in ("sphere", "plate"):
-            if name := getattr(arguments, role):
-                pairs = {n: pair for n, pair in pairs.items() if getattr(pair, role).name == name}
-        if len(pairs) != 1:
-            raise ValueError(f"{first}: has impacts of several pairs, {names}: choose one by --sphere and --plate")
-        record.rows["plate"][record.which != min(pairs)] = -1  # left in their places, since rows are named
+        record.rows["plate"][record.which != some[0]] = -1  # left in their places, since rows are named
     with wording.reading(first):
         data = Measurements.of(record, {*arguments.unknown} - {*dict(arguments.prior)})
-    return rebounds.Source("", "", chosen.pair(arguments, next(iter(pairs.values()), None)), data, {})
+    return rebounds.Source("", "", chosen.pair(arguments, pairs[some[0]] if some else None), data, {})

@@ -14,8 +14,16 @@ from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
 
 _IN_JSON = (
-    *("values", "errors", "statistical_errors", "correlation", "alternatives"),
-    *("residuals", "rows", "scatter", "notes", "law"),
+    "values",
+    "errors",
+    "statistical_errors",
+    "correlation",
+    "alternatives",
+    "residuals",
+    "rows",
+    "scatter",
+    "notes",
+    "law",
 )
 
 

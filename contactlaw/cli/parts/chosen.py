@@ -1,11 +1,11 @@
 """Models, materials and figures from the options that subcommands share."""
 
-import argparse
 import dataclasses
-import itertools
 import math
-from collections.abc import Iterator, Mapping
+from argparse import Namespace
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,11 +21,12 @@ from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Foundation, Layers, Shell
+from contactlaw.record.file import HDF5
 
 _UNITS = {"speed": "m/s", "radius": "m", "thickness": "m", "mass": "kg"}
 
 
-def model(arguments: argparse.Namespace) -> ImpactModel:
+def model(arguments: Namespace) -> ImpactModel:
     """Model of the given materials, with errors of their own if there are such options, and law."""
     bodies = []
     for role, body in zip(("sphere", "plate"), pair(arguments).given, strict=True):
@@ -38,30 +39,44 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
             if name not in changed.uncertainty:
                 raise ArgumentError(f"{role}_error", name, f"{body.name!r} has no such number")
         bodies.append(changed)
-    return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
+    return ImpactModel(Pair(*bodies), law=arguments.law, outside=getattr(arguments, "outside", "raise"))
 
 
-def models(arguments: argparse.Namespace) -> list[ImpactModel]:
-    """Models of each sphere with each plate, of options that may be given again."""
-    made = []
-    for bodies in itertools.product(arguments.sphere, arguments.plate):
-        arguments.sphere, arguments.plate = bodies
-        made.append(ImpactModel(pair(arguments), law=arguments.law))
-    return made
-
-
-def pair(arguments: argparse.Namespace, known: Any = None) -> Pair:
+def pair(arguments: Namespace, known: Any = None) -> Pair:
     """Materials that the options name, otherwise the `known` sphere and plate of a file."""
     return Pair(**{role: body(arguments, role, getattr(known, role, None)) for role in ("sphere", "plate")})
 
 
-def of_file(arguments: argparse.Namespace, path: str) -> rebounds.Source:
+def is_record(paths: Sequence[str]) -> bool:
+    """Whether files are those of a record, of which there may be several; a table is one file."""
+    found = Path(paths[0]).suffix.lower() in (*HDF5, ".npy")
+    if len(paths) > 1 and not found:
+        raise ValueError(f"{paths[1]}: only the files of one record are put together: give one table, with all rows")
+    return found
+
+
+def of_record(arguments: Namespace, pairs: Mapping[int, Pair | None]) -> tuple[list[int], str]:
+    """Numbers of the pairs of a record that the options choose, and the names of all its pairs.
+
+    The materials of a single pair are not compared: options replace them.
+    """
+    names = ", ".join(f"{one.sphere.name} on {one.plate.name}" for one in pairs.values() if one)
+    some = [*pairs]
+    for role in ("sphere", "plate"):
+        if (name := getattr(arguments, role)) and len(pairs) > 1:
+            some = [n for n in some if (one := pairs[n]) and getattr(one, role).name == name]
+            if not some:
+                raise ArgumentError(role, name, f"the record has {names}")
+    return some, names
+
+
+def of_file(arguments: Namespace, path: str) -> rebounds.Source:
     """Read a table of rebounds; options come before what the head of the file says."""
     options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
     return rebounds.read(path, arguments.materials, lambda known: pair(arguments, SimpleNamespace(**known)), **options)
 
 
-def body(arguments: argparse.Namespace, role: str, known: Material | None = None) -> Material:
+def body(arguments: Namespace, role: str, known: Material | None = None) -> Material:
     """Material that an option names, otherwise the one `known` from a file."""
     chosen = getattr(arguments, role)
     if chosen is None:
@@ -71,7 +86,7 @@ def body(arguments: argparse.Namespace, role: str, known: Material | None = None
     return own.material_of(role, chosen, arguments.materials)
 
 
-def wall(arguments: argparse.Namespace, plate: Material, thickness: Any) -> Any:
+def wall(arguments: Namespace, plate: Material, thickness: Any) -> Any:
     """Plates of these thicknesses [m], with what the options of `options.add_wall` add to them."""
     below = [layer(text, arguments.materials) for text in arguments.on]
     if below:
@@ -101,7 +116,7 @@ def layer(text: str, materials: Mapping[str, Material]) -> tuple[Material, float
     return material, size
 
 
-def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
+def plate_in_words(arguments: Namespace, plate: str) -> str:
     """Name of the plate's material, with what the options of `options.add_wall` add to it."""
     words = plate + "".join(f" on {text}" for text in getattr(arguments, "on", ()))
     for name, unit in (("cylinder", "m"), ("bowl", "m"), ("foundation", "N/m3")):
@@ -110,7 +125,7 @@ def plate_in_words(arguments: argparse.Namespace, plate: str) -> str:
     return words
 
 
-def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
+def asked(arguments: Namespace, model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     """Repeat what the user asked: names of materials, wall and law, and sizes in SI units."""
     law, (sphere, plate) = model.force_law, model.pair.given
     name = law.family if law.from_pair else law.name
@@ -118,7 +133,7 @@ def asked(arguments: argparse.Namespace, model: ImpactModel, **sizes: float | No
     return {"sphere": sphere.name, "plate": plate_in_words(arguments, plate.name), "law": name, **numbers}
 
 
-def check_quantities(arguments: argparse.Namespace) -> None:
+def check_quantities(arguments: Namespace) -> None:
     """Refuse values beyond their limits one by one, so that the message can name the value.
 
     Before, heights of drops become speeds on arrival.
@@ -137,7 +152,7 @@ def check_quantities(arguments: argparse.Namespace) -> None:
             raise ArgumentError(name, size, "must be larger than the bead's radius; negative if beads hit from outside")
 
 
-def bead_radius(arguments: argparse.Namespace) -> float:
+def bead_radius(arguments: Namespace) -> float:
     """Radius of the beads that fall through air, of which there may be but one."""
     radii = np.unique(np.ravel(arguments.radius)).tolist() if arguments.radius is not None else []
     if len(radii) != 1:
@@ -145,7 +160,7 @@ def bead_radius(arguments: argparse.Namespace) -> float:
     return float(radii[0])
 
 
-def density(arguments: argparse.Namespace) -> float:
+def density(arguments: Namespace) -> float:
     """Density of the beads [kg/m3]; of those with a mass of their own, over their volume."""
     if (mass := getattr(arguments, "mass", None)) is not None:
         return float(mass) / (4.0 / 3.0 * math.pi * bead_radius(arguments) ** 3)
@@ -153,7 +168,7 @@ def density(arguments: argparse.Namespace) -> float:
 
 
 @contextmanager
-def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
+def plot_file(arguments: Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     if arguments.plot is None:
         yield

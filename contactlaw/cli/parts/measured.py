@@ -18,8 +18,8 @@ _LEAST = 1e-12  # any unit: an angle of 0 has no logarithm
 _ALIKE = 0.1  # ln of speeds and sizes that share a curve
 
 
-def add_options(command: argparse.ArgumentParser) -> Any:
-    """Add the options of commands that read measurements; return the group of what they print."""
+def add_options(command: argparse.ArgumentParser, forms: Mapping[str, str]) -> None:
+    """Add the options of commands that read measurements; `forms` are those of what they print."""
     of_file = " (default: that of FILE)"
     options.add_pair(command, of_file)
     options.add_radius(command, "all beads", quantities.value, known=of_file)
@@ -27,9 +27,8 @@ def add_options(command: argparse.ArgumentParser) -> Any:
     options.add_quantity(command, "--thickness", quantities.LENGTH, what, metavar="H")
     options.add_name_of_law(command)
     command.epilog = options.UNITS
-    output = command.add_mutually_exclusive_group()
-    output.add_argument("--plot", metavar="FILE", help="draw data and model with its band into FILE (PNG, SVG, PDF)")
-    return output
+    what = "draw data and model with its band into FILE (PNG, SVG, PDF)"
+    options.add_forms(command, forms).add_argument("--plot", metavar="FILE", help=what)
 
 
 def figure_of(

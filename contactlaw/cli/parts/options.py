@@ -4,7 +4,8 @@
 """
 
 import argparse
-from collections.abc import Callable, Iterable
+from argparse import Namespace
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from contactlaw import laws, quantities
@@ -12,10 +13,10 @@ from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.wording import OWN, Written
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
-from contactlaw.quantities import ANGLE, HEIGHT, LENGTH, MASS, SHARE, SPEED, STIFFNESS, Quantity
+from contactlaw.quantities import ANGLE, HEIGHT, LENGTH, SHARE, SPEED, STIFFNESS, Quantity
 
 Reader = Callable[[str, Quantity], Any]
-Run = Callable[[argparse.Namespace], None]
+Run = Callable[[Namespace], None]
 
 UNITS = "Quantities are numbers in SI units, or carry one of their own: 0.9mm, 500um, 50nm, 36km/h."
 LISTS = (
@@ -24,23 +25,17 @@ LISTS = (
 )
 
 
-def command(commands: Any, name: str, about: str, run: Run) -> argparse.ArgumentParser:
+def command(commands: Any, name: str, about: str, run: Run | None = None) -> argparse.ArgumentParser:
     """Add a subcommand, which calls `run`."""
-    made = _described(commands, name, about)
+    sentence = f"{about[0].upper()}{about[1:]}."
+    made: argparse.ArgumentParser = commands.add_parser(name, help=about, description=sentence)
     made.set_defaults(run=run)
     return made
 
 
 def group(commands: Any, name: str, about: str, metavar: str, what: str) -> Any:
     """Add a subcommand with actions of its own; return the subparsers to add these to."""
-    made = _described(commands, name, about)
-    return made.add_subparsers(required=True, metavar=metavar, help=what)
-
-
-def _described(commands: Any, name: str, about: str) -> argparse.ArgumentParser:
-    sentence = f"{about[0].upper()}{about[1:]}."
-    made: argparse.ArgumentParser = commands.add_parser(name, help=about, description=sentence)
-    return made
+    return command(commands, name, about).add_subparsers(required=True, metavar=metavar, help=what)
 
 
 def add_quantity(
@@ -48,12 +43,6 @@ def add_quantity(
 ) -> None:
     """Add the option of a quantity; `read` reads one value or several."""
     command.add_argument(option, type=reader_of(read, quantity), help=what, **more)
-
-
-def add_mass(command: Any) -> None:
-    """Add the option of the mass of beads that are no solid spheres."""
-    what = "mass of the bead if it is hollow, coated or a clump [kg] (default: that of a solid sphere)"
-    add_quantity(command, "--mass", MASS, what, metavar="M")
 
 
 def add_speed(command: Any, read: Reader, what: str = "normal approach speed") -> None:
@@ -147,11 +136,13 @@ def _half(size: float) -> float:
     return Written(0.5 * size, f"{size.text}/2") if isinstance(size, Written) else 0.5 * size
 
 
-def add_forms(command: Any) -> Any:
-    """Add the options of CSV and JSON, as `form`; return their group, for other forms of output."""
+_FORMS = {form: f"print all fields as {form.upper()}, in SI units with every digit" for form in ("csv", "json")}
+
+
+def add_forms(command: Any, forms: Mapping[str, str] = _FORMS) -> Any:
+    """Add the option of each form of output, by default CSV and JSON; return their group, for others."""
     group = command.add_mutually_exclusive_group()
-    for form in ("csv", "json"):
-        what = f"print all fields as {form.upper()}, in SI units with every digit"
+    for form, what in forms.items():
         group.add_argument(f"--{form}", action="store_const", const=form, dest="form", default="text", help=what)
     return group
 

@@ -31,11 +31,6 @@ class Column(NamedTuple):
     digits: str = ""  # format of the numbers on a terminal; ".4g", of a range ".3g"
     is_input: bool = False  # on a terminal the title has an input that is the same in all rows
 
-    @property
-    def head(self) -> str:
-        """Name and unit in the first line of CSV."""
-        return f"{self.name}_{self.unit}" if self.unit else self.name
-
 
 @dataclass(frozen=True, eq=False)
 class Table:
@@ -99,7 +94,8 @@ class Table:
         writer = csv.writer(out, lineterminator="\n")
         if head:
             last = [] if self.flags is None else ["flags"]
-            writer.writerow([*(column.head for column in self.columns), *self.asked, *last])
+            heads = (f"{column.name}_{column.unit}".removesuffix("_") for column in self.columns)
+            writer.writerow([*heads, *self.asked, *last])
         for row in self._rows():
             writer.writerow(cell("|".join(value) if isinstance(value, list) else value) for value in row.values())
 
