@@ -62,7 +62,7 @@ class Contacts:
         self._now: dict[tuple[int, int], Vector] = {}
         self._met: list[Contact] = []
 
-    def begin(self, dt: float, gravity: tuple[float, float], reach: float) -> None:
+    def begin(self, dt: float, gravity: Vector, reach: float) -> None:
         """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
         gx, gy = gravity
         self._fall = gx * dt, gy * dt

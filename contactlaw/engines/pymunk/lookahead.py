@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactlaw.engines.pymunk.registry import BeadShape, Mount, is_static, registered
+from contactlaw.engines.pymunk.registry import BeadShape, is_static, registered
 
 if TYPE_CHECKING:
     import pymunk
@@ -51,16 +51,16 @@ class TunnellingError(RuntimeError):
         )
 
 
-def check(space: pymunk.Space, mounts: Mapping[Any, Mount], least: float, dt: float, time: float) -> None:
+def check(space: pymunk.Space, mounts: Any, least: float, dt: float, time: float) -> None:
     """Raise if the step from `time` on would lose an impact, or starts from a NaN; `least`: smallest radius [m]."""
     from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
     fastest = max((mount.watch(body, dt) for body, mount in mounts.items()), default=0.0)
     buffer = Buffer()
     get_space_bodies(space, BodyFields.POSITION | BodyFields.VELOCITY, buffer)
-    motion = np.frombuffer(buffer.float_buf())
-    # No speed exceeds sqrt(2) times the largest component. With a NaN this is false.
-    if not len(motion) or math.sqrt(2) * dt * max(motion.max(), -motion.min()) < least - fastest * dt:
+    motion = np.frombuffer(buffer.float_buf()).reshape(-1, 4)
+    fast = np.hypot(motion[:, 2], motion[:, 3]).max(initial=0.0)
+    if np.isfinite(motion).all() and fast < least / dt - fastest:
         return
     errors: list[TunnellingError] = []
     for shape, owner in registered(space.shapes):
