@@ -191,6 +191,10 @@ def test_a_copied_bead_must_be_registered():
     assert impacts.add_bead(twin) == 1
     space.step(DT)
     assert other.velocity.y == pytest.approx(0.5, abs=EXACT)
+    space.add(third := pymunk.Body(1, 1), copy := pymunk.Circle(third, R))
+    copy.collision_type = impacts.bead_type  # as that of a copy that nobody registers
+    impacts.detach()
+    assert not twin.collision_type
 
 
 def test_without_pymunk(monkeypatch):
