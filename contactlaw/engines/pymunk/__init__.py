@@ -15,9 +15,10 @@ Impacts
 Beads and plates
     A bead is a circle, a plate a segment or a polygon, whose sides are faces of one plate. Where
     plates share an end or a corner, a bead hits the nearest of them, or of equally near ones the
-    first registered: a floor of many pieces is one surface. The attachment keeps no shape alive: it
-    forgets shapes that neither the space nor the user holds any more. `remove_bead` and
-    `remove_plate` forget others. An index in the record is never given again.
+    first registered: a floor of many pieces is one surface, where the pieces have the same filter.
+    The attachment keeps no shape alive. `remove_bead` and `remove_plate` make registered shapes
+    ordinary ones: call `remove_plate` also for a plate that leaves others for good, `remove_bead`
+    before ``unsafe_set_radius``. An index in the record is never given again.
 Friction and edges
     docs/pymunk.md describes ``friction=`` and ``edge=``. Friction near an edge is that far away,
     scaled with the normal impulse: within 0.06 of friction times speed at R/H = 0.9, 0.19 at
@@ -27,14 +28,14 @@ Materials
     the material of a bead or a plate. `beads` and `plates` list the materials by index.
 Handlers of the user
     Handlers for `bead_type` and `plate_type`, for any type (``None``) and for other types are
-    called as before. A ``pre_solve`` may change the engine's friction, or switch a contact off so
-    that it is no impact. The restitution is the model's: a handler that sets it is an error. On a
+    called as before; phases are keywords. A ``pre_solve`` is called after the model's answer. It
+    may change the engine's friction, or switch a contact off so that it is no impact. The
+    restitution is the model's: a handler that sets it is an error. On a
     plate with ``friction=`` the friction is the model's, too: leave ``arbiter.friction`` alone
     there. Contacts of two plates are the user's.
 Strangers
     A bead that hits a shape nobody registered stops dead unless both have an elasticity or a
-    handler sets a restitution. The first time, a warning names the shape. Only shapes of the
-    collision type 0 are watched.
+    handler sets a restitution.
 Time
     The time in the record is the sum of all steps since `attach`, including that of the impact.
 Errors

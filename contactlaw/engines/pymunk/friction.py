@@ -31,25 +31,20 @@ def check_moment(body: Any, radius: float) -> None:
 def sliding(arbiter: pymunk.Arbiter) -> float:
     """Speed of one surface along the other [m/s], counter-clockwise round its body.
 
-    It is the same with the two in the other order, and does not have `belt` in it.
+    It is the same with the two in the other order, and does not have the ``surface_velocity`` in it.
     """
     one, two = arbiter.bodies
     points = arbiter.contact_point_set
-    (nx, ny), point = points.normal, points.points[0]
-    vx, vy = one.velocity_at_world_point(point.point_a)
-    ux, uy = two.velocity_at_world_point(point.point_b)
-    return float(nx * (vy - uy) - ny * (vx - ux))
+    (touch,) = points.points
+    velocity = one.velocity_at_world_point(touch.point_a) - two.velocity_at_world_point(touch.point_b)
+    return points.normal.cross(velocity)
 
 
-def belt(arbiter: pymunk.Arbiter, normal: tuple[float, float]) -> float:
-    """Sliding speed that the ``surface_velocity`` of the shapes takes away [m/s]."""
-    (nx, ny), (x, y) = normal, arbiter.surface_velocity
-    return float(nx * y - ny * x)
-
-
-def pushed(body: Any, at: tuple[float, float], impulse: tuple[float, float]) -> tuple[float, float]:
-    """Change of the velocity [m/s] of a point [m] of a body that an impulse [N s] there makes."""
-    (hub_x, hub_y), (jx, jy) = body.local_to_world(body.center_of_gravity), impulse
-    x, y = at[0] - hub_x, at[1] - hub_y
-    spin = (x * jy - y * jx) / body.moment
-    return jx / body.mass - y * spin, jy / body.mass + x * spin
+def change_of_sliding(arbiter: pymunk.Arbiter, normal: pymunk.Vec2d) -> float:
+    """Change of that speed [m/s] that the impulse of the contact makes."""
+    (touch,) = arbiter.contact_point_set.points
+    change, along, impulse = 0.0, normal.perpendicular(), arbiter.total_impulse
+    for body, point in zip(arbiter.bodies, (touch.point_a, touch.point_b), strict=True):
+        arm = point - body.local_to_world(body.center_of_gravity)
+        change += impulse.dot(along) / body.mass + arm.cross(impulse) * arm.cross(along) / body.moment
+    return change

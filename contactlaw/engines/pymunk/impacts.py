@@ -5,38 +5,34 @@ from __future__ import annotations
 import importlib.metadata
 import math
 import os
-import warnings
-from collections.abc import Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
-from weakref import WeakKeyDictionary, WeakValueDictionary, ref
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw.engines.needs import RestitutionModel, knows
+from contactlaw.engines.needs import knows
 from contactlaw.engines.pymunk.contacts import Contacts
-from contactlaw.engines.pymunk.edges import edges_of, join
+from contactlaw.engines.pymunk.edges import join
 from contactlaw.engines.pymunk.handlers import Handlers
-from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models, materials_of
-from contactlaw.engines.pymunk.record import Register
+from contactlaw.engines.pymunk.lookahead import check
+from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.registry import (
     MARK,
     BeadKind,
     BeadShape,
     Mount,
     PlateShape,
-    body_of,
-    check_alone,
+    check_bead,
     check_mass,
     ends,
-    forget,
-    radius_of,
+    registered,
 )
 from contactlaw.physical.arguments import scalars, warn_of_metres
+from contactlaw.physical.impacts import check_kind
 from contactlaw.physical.plates import Foundation, Shell, check_wall, sheet_of
 from contactlaw.physical.scaling import swing_of
 from contactlaw.record.file import Record
@@ -62,7 +58,7 @@ class PymunkImpacts:
     bead_type, plate_type : int
         Collision types of the registered shapes, for handlers of your own:
         ``space.on_collision(impacts.bead_type, my_type, begin=...)``, in any phase. A ``pre_solve``
-        for both of them is called before the model sets the restitution.
+        for both of them is called after the model has set the restitution.
     """
 
     def __init__(self, space: pymunk.Space, models: Models) -> None:
@@ -70,22 +66,20 @@ class PymunkImpacts:
         self.plate_type = next(_collision_types)
         self._space = space
         self._models = models
-        self._contacts = Contacts()
-        self._register = Register(models)
+        self._contacts = Contacts(models)
         self._asked = 0.0  # time at which loads were asked [s]
-        self._attached, self._warned = True, False  # the latter of a shape that is not registered
-        # Shapes keep their beads and plates alive, and bodies their mounts.
-        self._beads: WeakValueDictionary[int, BeadShape] = WeakValueDictionary()  # by id of the body
-        self._plates: WeakValueDictionary[int, PlateShape] = WeakValueDictionary()  # by index
-        self._kinds: WeakValueDictionary[tuple[float, int], BeadKind] = WeakValueDictionary()
+        self._attached = True
+        # Bodies keep their mounts, and beads their kinds, alive.
         self._mounts: WeakKeyDictionary[pymunk.Body, Mount] = WeakKeyDictionary()
+        self._kinds: WeakValueDictionary[tuple[float, int], BeadKind] = WeakValueDictionary()
+        self._least = math.inf  # radius of the smallest bead [m]
         self._joined = True  # whether the plates know which ends they share
-        self._lookahead = LookAhead(space, self._beads, self._plates, self._mounts)
         self._slop = space.collision_slop
-        self._replaced = vars(space).get("step")
         self._engine_step = space.step
-        vars(space)["step"] = self._step
         self._handlers = Handlers(space, self._contacts, self.bead_type, self.plate_type)
+        self._own = {"step": self._step, "on_collision": self._handlers.on_collision}
+        self._replaced = {name: vars(space).get(name) for name in self._own}
+        vars(space).update(self._own)
 
     @property
     def time(self) -> float:
@@ -153,21 +147,18 @@ class PymunkImpacts:
         """
         import pymunk
 
-        body = self._admit(circle, (pymunk.Circle,))
-        radius, number = radius_of(circle), self._models.bead(material)
-        if body.body_type != pymunk.Body.DYNAMIC:
-            raise ArgumentError("circle.body", body, "a bead needs a dynamic body")
-        check_alone(circle, body)
+        body = self._admit(circle, pymunk.Circle)
+        radius, number = float(scalars(radius=circle.radius)[0][0]), self._models.find("spheres", material)
+        check_bead(circle, body, radius)
         warn_of_metres("radius", radius, stacklevel=2)
-        check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        check_mass(body.mass, radius, self._models.spheres[number])
         kind = self._kinds.setdefault((radius, number), BeadKind(radius, number))
-        bead = BeadShape(self._register.bead(number, radius), ref(circle), kind, self._models)
-        setattr(circle, MARK, bead)
-        self._beads[body.id] = bead
+        index = self._contacts.record.add_bead(radius, number)
+        setattr(circle, MARK, BeadShape(index, kind))
         circle.collision_type = self.bead_type
-        self._lookahead.reach = min(self._lookahead.reach, radius)
+        self._least = min(self._least, radius)
         self._space.collision_slop = min(self._space.collision_slop, 0.1 * radius)
-        return bead.index
+        return index
 
     def add_plate(
         self,
@@ -175,9 +166,8 @@ class PymunkImpacts:
         thickness: float | Foundation | Shell,
         *,
         material: Material | str | None = None,
-        model: RestitutionModel | Sequence[RestitutionModel] | None = None,
         friction: float | None = None,
-        edge: Edge | None | tuple[Edge | None, Edge | None] = None,
+        edge: Edge | None = None,
     ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
@@ -192,15 +182,13 @@ class PymunkImpacts:
             Thickness in the model [m]; ``inf`` is the half-space.
         material : Material or str, optional
             Material of plates in one of the attached models; by default that of the first model.
-        model : RestitutionModel or list of them, optional
-            Model for this plate in place of the attached ones, or one for each material of beads.
         friction : float, optional
             Coulomb's coefficient between beads and this plate [-]: tangential rebound and spin are
             the model's. By default pymunk's own friction acts, as on other shapes: of rigid bodies,
             with the product of the two shapes' ``friction``, which is 0 unless set.
-        edge : {"free", "supported", "clamped"}, or two of them, optional
-            What holds the plate at its edges, the ends of a segment or of a polygon's sides; two
-            are for a segment's start and end. By default the plate has no edges.
+        edge : {"free", "supported", "clamped"}, optional
+            What holds the plate at its edges, the ends of a segment or of a polygon's sides. By
+            default the plate has no edges.
 
         Returns
         -------
@@ -216,7 +204,7 @@ class PymunkImpacts:
         """
         import pymunk
 
-        body = self._admit(shape, (pymunk.Segment, pymunk.Poly))
+        body = self._admit(shape, pymunk.Segment, pymunk.Poly)
         wall, thickness = thickness, float(scalars(thickness=sheet_of(thickness))[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         friction = friction if friction is None else float(scalars(friction=friction)[0][0])
@@ -224,29 +212,32 @@ class PymunkImpacts:
         if len(set(corners)) < 2:
             reason = f"has no length, all of it is at {tuple(corners[0])}"
             raise ArgumentError("shape", None, reason)
-        if model is not None and material is not None:
-            reason = "a plate with a model of its own has that one's material"
-            raise ArgumentError("material", None, reason)
-        chosen = self._models.plate(material) if model is None else self._models.own_models(model)
-        for one in chosen.values():
+        number = self._models.find("plates", material)
+        models = [one for (_, plate), one in self._models.by_pair.items() if plate == number]
+        if edge is not None:
+            check_kind(edge)
+        bare = sheet_of(wall) is wall
+        needed = (
+            ("thickness", not bare, "pair"),
+            ("friction", friction is not None, "oblique"),
+            ("edge", edge, "edge_kernel"),
+        )
+        for one in models:
             check_wall(wall, one, edge)
-            if sheet_of(wall) is not wall:
-                if not knows(one, "pair", "oblique"):
-                    raise TypeError(f"thickness: {one!r} knows no plate that swings back; give an ImpactModel")
-                wall = wall if swing_of(materials_of(one)[1], wall)[1] else sheet_of(wall)
-            if friction is not None and not knows(one, "oblique"):
-                raise TypeError(
-                    f"friction: {one!r} knows none, it has no oblique(); leave friction=None, which is pymunk's own, "
-                    "or give an ImpactModel"
-                )
-        edges = edges_of(edge, chosen, len(corners), thickness)
-        mount = self._mounts.setdefault(body, Mount(ref(body)))
+            for name, value, what in needed:
+                if value and not knows(one, what):
+                    raise TypeError(
+                        f"{name}: {one!r} has no {what}, which this takes; leave {name}=None or a length, "
+                        "or give an ImpactModel"
+                    )
+            if not bare and not swing_of(one.pair.plate, wall)[1]:
+                wall, bare = sheet_of(wall), True
+        mount = self._mounts.setdefault(body, Mount())
         mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
-        swings = thickness if sheet_of(wall) is wall else wall
-        index = self._register.plate(chosen, wall)
-        plate = PlateShape(index, ref(shape, self._part), mount, swings, chosen, friction, edges)
-        setattr(shape, MARK, plate)
-        self._plates[index], self._joined = plate, False
+        index = self._contacts.record.add_plate(number, wall)
+        edge = edge if thickness < math.inf else None  # no wave returns in a half-space
+        setattr(shape, MARK, PlateShape(index, shape, mount, thickness if bare else wall, number, friction, edge))
+        self._joined = False
         self._contacts.borne.extend([0.0] * NUMBERS)
         shape.collision_type = self.plate_type
         return index
@@ -262,9 +253,7 @@ class PymunkImpacts:
         circle : pymunk.Circle
             Circle that `add_bead` was given, else a ValueError; it stays in the space if there.
         """
-        if circle.collision_type != self.bead_type:
-            raise ArgumentError("circle", None, f"{circle!r} is no bead of this attachment")
-        forget(circle)
+        self._forget(circle, self.bead_type)
 
     def remove_plate(self, shape: pymunk.Segment | pymunk.Poly) -> None:
         """Forget a plate, as `remove_bead` forgets a bead.
@@ -274,10 +263,8 @@ class PymunkImpacts:
         shape : pymunk.Segment or pymunk.Poly
             Shape that `add_plate` was given, else a ValueError; it stays in the space if there.
         """
-        if shape.collision_type != self.plate_type:
-            raise ArgumentError("shape", None, f"{shape!r} is no plate of this attachment")
-        forget(shape)
-        self._part(shape)
+        self._forget(shape, self.plate_type)
+        self._joined = False
 
     def beads(self) -> NDArray[np.void]:
         """All beads that were ever registered, by their index in the record.
@@ -289,7 +276,7 @@ class PymunkImpacts:
             record `rows`, the materials of the beads are ``beads()["material"][rows["bead"]]``, and
             those of the plates ``plates()["material"][rows["plate"]]``.
         """
-        return self._register.beads()
+        return self._contacts.record.beads()
 
     def plates(self) -> NDArray[np.void]:
         """All plates that were ever registered, by their index in the record.
@@ -299,7 +286,7 @@ class PymunkImpacts:
         structured array
             Columns thickness [m] and material, a name, or "" if the model has no pair.
         """
-        return self._register.plates()
+        return self._contacts.record.plates()
 
     def collisions(self) -> NDArray[np.void]:
         """Every impact so far, one row each, in SI units.
@@ -318,7 +305,7 @@ class PymunkImpacts:
             took of a bead that has left the space within the step, and how it slides on, is NaN
             where the engine's friction acted.
         """
-        return self._contacts.record.read(self._register)
+        return self._contacts.record.read()
 
     def loads(self) -> Loads:
         """Average what each plate ever registered bore since the last call, or since `attach`.
@@ -338,7 +325,7 @@ class PymunkImpacts:
         """Every impact so far, with the materials and law of each."""
         rows = self.collisions()
         made = {"engine": "pymunk", "version_engine": importlib.metadata.version("pymunk")}
-        return Record(rows, *self._register.bodies(rows), None, made)
+        return Record(rows, *self._contacts.record.bodies(rows), None, made)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record to a file, see `contactlaw.Record.save`."""
@@ -360,16 +347,16 @@ class PymunkImpacts:
         state = vars(self._space)
         if not self._attached:
             return
-        for name, own in (("step", self._step), ("on_collision", self._handlers.on_collision)):
+        for name, own in self._own.items():
             if state.get(name) != own:
                 raise RuntimeError(f"space.{name} has been replaced since attach(); undo that first")
+        for name, replaced in self._replaced.items():
+            del state[name]
+            if replaced:
+                state[name] = replaced
         self._handlers.detach()
-        del state["step"]
-        if self._replaced:
-            state["step"] = self._replaced
-        registered: list[BeadShape | PlateShape] = [*self._beads.values(), *self._plates.values()]
-        for shape in filter(None, [one.shape() for one in registered]):
-            forget(shape)
+        for shape, _ in registered(self._space.shapes):
+            self._forget(shape, shape.collision_type)
         self._space.collision_slop = self._slop
         self._attached = False
 
@@ -378,29 +365,41 @@ class PymunkImpacts:
             "a space with an impact model cannot be copied or pickled: detach() first, and attach to the copy"
         )
 
-    def _admit(self, shape: Any, kinds: tuple[type, ...]) -> Any:
+    def _admit(self, shape: Any, *kinds: Any) -> Any:
+        """Body of a shape that may be registered."""
         if not self._attached:
             raise RuntimeError("this attachment is detached: call attach(space, model) again")
-        return body_of(shape, kinds, self._space, (self.bead_type, self.plate_type))
+        if not isinstance(shape, kinds):
+            expected = " or ".join(f"pymunk.{kind.__name__}" for kind in kinds)
+            raise TypeError(f"expected a {expected}, got {shape!r}")
+        if shape.collision_type in (self.bead_type, self.plate_type) and hasattr(shape, MARK):
+            raise ValueError(f"{shape!r} is registered already")
+        if shape.body is None or shape.sensor:
+            raise ValueError(f"{shape!r} has no body, or is a sensor: it would never rebound")
+        if shape.collision_type not in (0, self.bead_type, self.plate_type):  # a copied shape has the adapter's type
+            remedy = "leave it 0 and make handlers for impacts.bead_type and impacts.plate_type"
+            reason = f"the attachment needs its own for {shape!r}; {remedy}"
+            raise ArgumentError("collision_type", shape.collision_type, reason)
+        return shape.body
 
-    def _part(self, shape: Any) -> None:
-        """Let the others find their shared ends again, because a plate has gone."""
-        self._joined = False
+    def _forget(self, shape: Any, kind: int) -> None:
+        if shape.collision_type != kind:
+            raise ValueError(f"{shape!r} is no such bead or plate of this attachment")
+        delattr(shape, MARK)
+        shape.collision_type = 0
 
     def _step(self, dt: float) -> None:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
             raise ArgumentError("dt", dt, "must be positive and finite [s]")
+        check(self._space, self._mounts, self._least, dt, self._contacts.time)
         if not self._joined:
-            join(self._plates.values())
+            plates = registered(shape for body in self._mounts for shape in body.shapes)
+            join(plate for _, plate in plates if isinstance(plate, PlateShape))
             self._joined = True
-        self._lookahead.check(dt, self._contacts.time)
-        self._contacts.begin(dt, self._space.gravity, self._lookahead.reach)
+        self._contacts.begin(dt, self._space.gravity, self._least)
         self._engine_step(dt)
         self._contacts.end()
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
-        if self._contacts.stranger and not self._warned:
-            self._warned = True
-            warnings.warn(self._contacts.stranger, stacklevel=2)

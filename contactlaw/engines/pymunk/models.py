@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache, cached_property, lru_cache
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
@@ -16,24 +16,6 @@ from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.plates import sheet_of
 from contactlaw.physical.rate import flow_with_rate
-
-
-class ModelsByBead(dict[int, RestitutionModel]):
-    """Models for one plate, by the number of the bead's material in `Models.spheres`."""
-
-    def __init__(self, spheres: list[Any], plate: Any) -> None:
-        super().__init__()
-        self._spheres = spheres
-        self.plate = _name(plate)
-
-    def __missing__(self, number: int) -> NoReturn:
-        """Raise for a pair of materials that no model is for."""
-        raise ArgumentError(
-            "model",
-            None,
-            f"none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
-            "attach(space, [model, ...]) takes one for each pair of materials that meets",
-        )
 
 
 class Answers:
@@ -101,93 +83,69 @@ class Models:
     """The models of one space, one per pair of materials; the first has the default materials."""
 
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
-        self.all = _listed(given)
+        models: list[Any] = list(given) if isinstance(given, list | tuple) else [given]
+        if not models:
+            raise ArgumentError("model", None, "expected at least one ImpactModel, got an empty list")
         # Bounded: a thousand different beads make half a million pairs.
         self.sphere_curve = lru_cache(maxsize=65536)(self._sphere_curve)
-        self.spheres: list[Any] = []
-        self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
-        for model in self.all:
+        self.spheres: list[Any] = []  # materials by number
+        self.plates: list[Any] = []
+        self.by_pair: dict[tuple[int, int], Any] = {}
+        for model in models:
+            if not callable(getattr(model, "curve", None)):
+                raise TypeError(f"model: expected an ImpactModel or an object with curve(), got {model!r}")
             sphere, plate = pair = materials_of(model)
-            if len(self.all) > 1 and None in pair:
+            if len(models) > 1 and None in pair:
                 raise ArgumentError(
                     "model",
                     None,
                     f"several are told apart by their pairs, but {model!r} has none; give it one "
                     "(an attribute `pair`, a contactlaw.Pair), or attach it alone",
                 )
-            if sphere not in self.spheres:
-                self.spheres.append(sphere)
-            models = next((models for known, models in self._plates if known == plate), None)
-            if models is None:
-                models = ModelsByBead(self.spheres, plate)
-                self._plates.append((plate, models))
-            number = self.spheres.index(sphere)
-            if number in models:
-                reason = f"two are for {_name(sphere)} on {_name(plate)}; give one for each pair"
+            key = _number(sphere, self.spheres), _number(plate, self.plates)
+            if key in self.by_pair:
+                reason = f"two are for {name_of(sphere)} on {name_of(plate)}; give one for each pair"
                 raise ArgumentError("model", None, reason)
-            models[number] = model
+            self.by_pair[key] = model
 
-    def bead(self, material: Material | str | None) -> int:
-        """Return the number of a bead's material, by default that of the first model."""
-        return self._number("spheres", material, self.spheres)
-
-    def plate(self, material: Material | str | None) -> ModelsByBead:
-        """Models for a plate of a material, by default that of the first model."""
-        return self._plates[self._number("plates", material, [plate for plate, _ in self._plates])][1]
-
-    def _number(self, kind: str, material: Material | str | None, known: list[Any]) -> int:
+    def find(self, kind: str, material: Material | str | None) -> int:
+        """Return the number of a material of `spheres` or `plates`, by default that of the first model."""
+        known = getattr(self, kind)
         for number, one in enumerate(known):
             if material is None or _is(material, one):
                 return number
-        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
+        names = ", ".join(repr(name_of(one)) for one in known)
         raise ArgumentError(
             "material",
             None,
-            f"no model is attached for {kind} of {_name(material)!r}, only for {names}: "
+            f"no model is attached for {kind} of {name_of(material)!r}, only for {names}: "
             "attach(space, [model, ...]) takes one for each pair of materials",
         )
 
-    def own_models(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ModelsByBead:
-        """Models of a plate that was given its own."""
-        models = _listed(given)
-        found = ModelsByBead(self.spheres, materials_of(models[0])[1])
-        for model in models:
-            sphere, _ = materials_of(model)
-            known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
-            if not known:
-                names = ", ".join(_name(s) for s in self.spheres)
-                reason = f"made for spheres of {_name(sphere)}, the beads are of {names}"
-                raise ArgumentError("model", None, reason)
-            found.update(dict.fromkeys(known, model))
-        return found
+    def of_pair(self, sphere: int, plate: int) -> Any:
+        """Model for beads on plates of these materials."""
+        if (sphere, plate) not in self.by_pair:
+            raise ArgumentError(
+                "model",
+                None,
+                f"none is attached for Pair({name_of(self.spheres[sphere])!r}, {name_of(self.plates[plate])!r}): "
+                "attach(space, [model, ...]) takes one for each pair of materials that meets",
+            )
+        return self.by_pair[sphere, plate]
 
-    def of_bead(self, number: int) -> RestitutionModel:
-        """First model for beads of a material, which answers where they meet other beads."""
-        sphere = self.spheres[number]
-        return next(model for model in self.all if materials_of(model)[0] == sphere)
-
-    def extra_arguments(self, number: int, other: int) -> tuple[Any, ...]:
-        """Further argument of that model's methods: the other bead's material if it differs."""
-        return () if number == other else (self.spheres[other],)
+    def of_beads(self, sphere: int, other: int) -> tuple[Any, tuple[Any, ...]]:
+        """First model for beads of a material, and what its methods need of those of another one that they meet."""
+        model = next(model for (its, _), model in self.by_pair.items() if its == sphere)
+        return model, () if sphere == other else (self.spheres[other],)
 
     def _sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
         """Restitution by speed of two beads, each of a radius [m] and a material."""
         (radius, number), (other_radius, other) = one, two
-        model: Any = self.of_bead(number)
+        model, more = self.of_beads(number, other)
         if not knows(model, "sphere_sphere_curve"):
             raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-        more = self.extra_arguments(number, other)
         curve: CorBySpeed = model.sphere_sphere_curve(radius, other_radius, *more)
         return curve
-
-    def density(self, number: int) -> float | None:
-        """Density of a bead's material [kg/m3], None if the model does not have it."""
-        density: float | None = getattr(self.spheres[number], "density", None)
-        return density
-
-    def names(self) -> list[str]:
-        """Names of the bead materials, "" for a model without a pair."""
-        return [_name(sphere) for sphere in self.spheres]
 
 
 def materials_of(model: RestitutionModel) -> tuple[Any, Any]:
@@ -196,29 +154,21 @@ def materials_of(model: RestitutionModel) -> tuple[Any, Any]:
     return getattr(pair, "sphere", None), getattr(pair, "plate", None)
 
 
-def _listed(given: Any) -> list[RestitutionModel]:
-    models = list(given) if isinstance(given, list | tuple) else [given]
-    if not models:
-        raise ArgumentError("model", None, "expected at least one ImpactModel, got an empty list")
-    for model in models:
-        if not callable(getattr(model, "curve", None)):
-            raise TypeError(f"model: expected an ImpactModel or an object with curve(), got {model!r}")
-    return models
+def _number(material: Any, known: list[Any]) -> int:
+    if material not in known:
+        known.append(material)
+    return known.index(material)
 
 
 def _is(material: Material | str, known: Any) -> bool:
     if not isinstance(material, str):
         return bool(material == known)
-    return material == _name(known) or _catalogued(material) == known
-
-
-def _catalogued(name: str) -> Material | None:
-    """Material of a name or alias in the catalogue; None for a name that is not there."""
     try:
-        return catalogued(name)
-    except ValueError:
-        return None
+        return material == name_of(known) or catalogued(material) == known
+    except ValueError:  # not in the catalogue
+        return False
 
 
-def _name(material: Any) -> str:
+def name_of(material: Any) -> str:
+    """Name of a material, "" for that of a model without a pair."""
     return "" if material is None else str(getattr(material, "name", material))

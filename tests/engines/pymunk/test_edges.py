@@ -1,6 +1,5 @@
 """Edges of plates: where they are, and what the model answers near them."""
 
-import gc
 import math
 
 import pymunk
@@ -41,7 +40,6 @@ LONG, BOX = [(0, 0), (0.1, 0)], [(0, 0), (0.1, 0), (0.1, -0.01), (0, -0.01)]
 PIECES = [[(0, 0), (1e-3, 0)], [(0.1, 0), (1e-3, 0)]]
 NO_EDGE = {
     "far": (FAR, [LONG], "free"),
-    "half of it": (0.1 - NEAR, [LONG], ("free", None)),
     "closed": (5e-3, [[one, RING[n - 1]] for n, one in enumerate(RING)], "clamped"),
     "round": (5e-3, [RING], "clamped"),
 }
@@ -51,7 +49,7 @@ NO_EDGE = {
     "x, shapes, edge, kind",
     [
         (NEAR, [LONG], "free", "free"),
-        (0.1 - NEAR, [LONG], ("clamped", "free"), "free"),
+        (0.1 - NEAR, [LONG], "free", "free"),
         (NEAR, PIECES, "clamped", "clamped"),
         (0.1 - NEAR, [BOX], "supported", "supported"),
         (NEAR, [LONG, [(0, 0), (0, -0.1)]], "free", "supported"),  # a fold
@@ -109,8 +107,7 @@ def test_plates_that_come_later_continue_a_plate(model):
     assert second == pytest.approx(model.curve(R, H)(2.0), rel=1e-14)  # one impact and a batch differ by rounding
 
 
-@pytest.mark.parametrize("removed", [False, True])
-def test_plates_that_go_leave_an_edge(model, removed):
+def test_plates_that_go_leave_an_edge(model):
     space = make_space(0.0)
     impacts = attach(space, model)
     circle = make_bead(space, (NEAR, 1.01 * R), (0, -2))
@@ -119,13 +116,7 @@ def test_plates_that_go_leave_an_edge(model, removed):
     other = make_plate(space, (0, 0), (-0.1, 0))
     impacts.add_plate(other, H, edge="free")
     room.steps(space, 5)
-    if removed:
-        impacts.remove_plate(other)
-    space.remove(other)
-    other.body = None
-    del other
-    space.step(room.DT)  # until then pymunk keeps it
-    gc.collect()  # its C part refers to it
+    impacts.remove_plate(other)
     circle.body.position, circle.body.velocity = (NEAR, 1.01 * R), (0, -2)
     room.steps(space, 5)
     first, second = impacts.collisions()["restitution"]
@@ -142,16 +133,14 @@ def test_friction_follows_the_normal_impulse(model, sliding):
 
 
 @pytest.mark.parametrize(
-    "edge, box, error, message",
+    "edge, error, message",
     [
-        ("loose", False, ValueError, "edge: got .*must be one of free, supported, clamped"),
-        (("free",) * 3, False, ValueError, "edge: got .*expected one kind, or for a segment"),
-        (("free", "clamped"), True, ValueError, "edge: got .*expected one kind, or for a seg"),
-        ("free", False, TypeError, "edge: .* leave edge=None.*ImpactModel"),
+        ("loose", ValueError, "edge: got .*must be one of free, supported, clamped"),
+        (("free", "clamped"), ValueError, "edge: got .*must be one of"),
+        ("free", TypeError, "edge: .*has no edge_kernel.* leave edge=None.*ImpactModel"),
     ],
 )
-def test_edges_that_cannot_be_are_refused(model, edge, box, error, message):
+def test_edges_that_cannot_be_are_refused(model, edge, error, message):
     space = make_space()
-    shape = pymunk.Poly(space.static_body, BOX) if box else make_plate(space)
     with pytest.raises(error, match=message):
-        attach(space, Stub() if error is TypeError else model).add_plate(shape, H, edge=edge)
+        attach(space, Stub() if error is TypeError else model).add_plate(make_plate(space), H, edge=edge)

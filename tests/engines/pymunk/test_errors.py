@@ -2,7 +2,6 @@
 
 import math
 import re
-import threading
 from types import SimpleNamespace
 
 import pymunk
@@ -73,22 +72,6 @@ def test_beads_meet_without_a_law_for_them():
     space, _, _ = room.meet(SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5))
     with pytest.raises(TypeError, match="sphere_sphere_curve"):
         space.step(DT)
-
-
-def test_exception_in_a_worker_thread():
-    space, _, _ = drop(Stub(math.nan))
-    caught = []
-
-    def work():
-        try:
-            space.step(DT)
-        except ValueError as error:
-            caught.append(error)
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    thread.join()
-    assert len(caught) == 1
 
 
 @pytest.mark.parametrize("phase", ["begin", "pre_solve", "post_solve", "separate"])

@@ -1,6 +1,7 @@
 """Impacts in pymunk: first with stub models, at the end with the real one."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pymunk
@@ -59,11 +60,13 @@ def test_row_of_a_plate_impact():
 
 def test_every_bead_and_plate_has_its_own_curve_made_once():
     space = make_space(0.0)
-    main, special = Stub(0.5), Stub(0.25)
-    impacts = attach(space, main)
+    main, bead = Stub(0.5), SimpleNamespace(name="bead")
+    main.pair, special = SimpleNamespace(sphere=bead, plate="thin"), Stub(0.25)
+    special.pair = SimpleNamespace(sphere=bead, plate="thick")
+    impacts = attach(space, [main, special])
     for k in range(2):
         impacts.add_plate(make_plate(space, (k, 0), (k + 0.9, 0)), 1e-3 * (k + 1))
-    impacts.add_plate(make_plate(space, (2, 0), (2.9, 0)), math.inf, model=special)
+    impacts.add_plate(make_plate(space, (2, 0), (2.9, 0)), math.inf, material="thick")
     beads = [make_bead(space, (k + 0.5, 1.01 * R), (0, -2)) for k in (2, 1, 0)]
     big = make_bead(space, (0.7, 2.02 * R), (0, -2), radius=2 * R)
     assert [impacts.add_bead(circle) for circle in (*beads, big)] == [0, 1, 2, 3]

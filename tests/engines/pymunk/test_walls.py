@@ -63,7 +63,7 @@ def test_no_foundation_is_the_sheet():
         (MODEL, cl.Foundation(H, -1.0), None, "stiffness: got -1"),
         (MODEL, WALLS["pipe"], "free", "only bare sheets have edges"),
         (MODEL, cl.Layers([("pmma", 1e-3)]), None, "beads touch 'pmma'"),
-        (Stub(), WALLS["pipe"], None, "thickness: .* knows no plate that swings back"),
+        (Stub(), WALLS["pipe"], None, "thickness: .* has no pair.*ImpactModel"),
     ],
 )
 def test_what_is_refused(model, wall, edge, said):
