@@ -46,11 +46,11 @@ def test_a_table_has_the_columns_that_vary(capsys):
 
 
 def test_a_straight_bead_rebounds_as_without_friction(capsys):
-    """Walls and masses, too, are those of a normal impact."""
+    """Walls and masses, too, are those of a normal impact, within the tolerance of `solve`."""
     for wall in ([], ["--on", "steel-s235:3mm"], ["--cylinder", "50mm"], ["--mass", "0.2g"]):
         rows = []
         for more in (["--angle", "0", "--friction", "0.2"], ["--solve", "--no-band"]):
             assert main([*BEAD, *wall, *more, "--json"]) == 0
             rows.append(json.loads(capsys.readouterr().out))
-        assert rows[0]["restitution"] == pytest.approx(rows[1]["restitution"], abs=1e-9)
+        assert rows[0]["restitution"] == pytest.approx(rows[1]["restitution"], abs=1e-8)
         assert rows[0]["plate"] == rows[1]["plate"]
