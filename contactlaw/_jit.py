@@ -4,11 +4,12 @@ import functools
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar, overload
+from inspect import Parameter, Signature
+from typing import Any, NamedTuple, TypeVar, overload
 
 import numba
 import numpy as np
-from numba.extending import intrinsic, register_jitable
+from numba.extending import intrinsic, lower_builtin, register_jitable, type_callable
 
 from contactlaw._arrays import Array
 from contactlaw._kept import code_folder, config, warn_once
@@ -19,8 +20,10 @@ try:
     private: Any = _numba
 except (ImportError, AttributeError):  # another version of numba: public names serve
     private = None
+_types: Any = numba.types
 carray: Any = numba.carray  # type: ignore[attr-defined]
 _F = TypeVar("_F", bound=Callable[..., Any])
+_Tuple = TypeVar("_Tuple", bound=NamedTuple)
 _cached: list[Any] = []
 
 
@@ -196,7 +199,7 @@ def in_memory(values: Array) -> Callable[[], Array]:
             where = context.add_dynamic_addr(builder, address, info="contactlaw: a table in memory")
             return builder.bitcast(where, context.get_value_type(signature.return_type))
 
-        return numba.types.CPointer(numba.types.float64)(), generate  # type: ignore[no-untyped-call]
+        return _types.CPointer(_types.float64)(), generate
 
     size = values.size
 
@@ -206,3 +209,33 @@ def in_memory(values: Array) -> Callable[[], Array]:
         return found
 
     return array
+
+
+def tuple_of(kind: type[_Tuple], source: Any, **fields: Any) -> _Tuple:
+    """Make a NamedTuple of the fields of a row, or of another NamedTuple, except those given.
+
+    Kernels may call it, too, which neither ``_replace`` nor a loop over fields can be compiled in.
+    """
+    return kind(*(fields[name] if name in fields else getattr(source, name) for name in kind._fields))
+
+
+@type_callable(tuple_of)
+def _type_of_tuple(context: Any) -> Any:
+    def typed(kind: Any, source: Any, **fields: Any) -> Any:
+        parameters = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("kind", "source", *fields)]
+        typed.pysig = Signature(parameters)  # type: ignore[attr-defined]
+        names = kind.instance_class._fields
+        members = [fields[name] if name in fields else context.resolve_getattr(source, name) for name in names]
+        return _types.BaseTuple.from_types(members, kind.instance_class)(kind, source, *fields.values())
+
+    return typed
+
+
+@lower_builtin(tuple_of, _types.VarArg(_types.Any))  # type: ignore[no-untyped-call]
+def _code_of_tuple(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    source, members = signature.args[1], dict(zip(signature.pysig.parameters, arguments, strict=True))
+    names = signature.return_type.instance_class._fields
+    for name in names:
+        if name not in members:
+            members[name] = context.get_getattr(source, name)(context, builder, source, arguments[1], name)
+    return context.make_tuple(builder, signature.return_type, [members[name] for name in names])

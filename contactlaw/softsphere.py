@@ -9,25 +9,26 @@ enough. `contactlaw.stepping` has the schemes, in `spring` and `friction`.
 from __future__ import annotations
 
 import math
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw._jit import enable_caching, kernel
+from contactlaw._jit import enable_caching, kernel, tuple_of
 from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.answers.solver import RTOL, solved_within
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
+from contactlaw.equation.numbers import PlateConstants
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clear_friction, tangential_force
 from contactlaw.stepping.softened import (
     DAMPED,
@@ -50,6 +51,7 @@ from contactlaw.stepping.spring import (
     resized,
     unit_spring,
 )
+from contactlaw.walls.facet import Point
 
 __all__ = [
     "PARTED",
@@ -80,44 +82,28 @@ _WEIGHT = 0.005
 GRAVITY = 9.81  # [m/s2]
 
 
-@kernel(inline=True)
-def _spring_at(springs: Spring, n: int) -> Spring:
-    return at_usual_frequency(
-        Spring(
-            springs.mass[n],
-            springs.solid[n],
-            springs.stiffness[n],
-            springs.mobility[n],
-            springs.scale[n],
-            springs.relaxation[n],
-            springs.ratio[n],
-            springs.plate,
-        )
-    )
+class _Batch(NamedTuple):
+    """Contacts of one model, as kernels take them."""
+
+    law: Array
+    tangential: float  # stiffness along the surface over that across it
+    plate: PlateConstants
+    near: EdgeEcho | None
+    softening: float
+    diameters: Array  # [m]
+    springs: Any  # a row with the fields of Spring for each contact
+    states: Any  # a row with the fields of State, or of SoftState
+    values: Array  # the numbers of these rows
+    friction: Any  # rows of FRICTION
+    force: Array  # [N]
+    largest: Array  # largest compression before the last step [m]
+    approach: Array  # normal speed at which a softened contact began [m/s]; 0 until its second step
+    restitution: Array  # of the true impact with this speed
 
 
 @kernel(inline=True)
-def _state_at(states: State, n: int) -> State:
-    return State(
-        states.plate_displacement[n],
-        states.largest_compression[n],
-        states.force[n],
-        states.mobility[n],
-        states.stiffening[n],
-        states.strength[n],
-        states.x1[n],
-        states.y1[n],
-        states.x2[n],
-        states.y2[n],
-        states.x3[n],
-        states.y3[n],
-        states.x4[n],
-        states.y4[n],
-        states.x5[n],
-        states.y5[n],
-        states.x6[n],
-        states.y6[n],
-    )
+def _spring_at(batch: _Batch, n: int) -> Spring:
+    return at_usual_frequency(tuple_of(Spring, batch.springs[n], plate=batch.plate))
 
 
 @kernel(inline=True)
@@ -127,149 +113,99 @@ def _near_at(near: EdgeEcho | None, n: int) -> EdgeEcho | None:
     return EdgeEcho(near.response[n], near.rate[n])
 
 
-@kernel(cache=True)
-def _slide_all(
-    law: Array,
-    kappa: float,
-    springs: Spring,
-    states: State,
-    rows: Any,
-    deepest: Array,
-    friction: float,
-    overlap: Array,
-    normal: Array,
-    velocity: Array,
-    step: float,
-    force: Array,
-) -> None:
-    """Friction of arrays of contacts; `deepest` is their largest compression in the last step."""
-    for n in range(overlap.size):
-        state, out = _state_at(states, n), (0.0, 0.0, 0.0)
-        if state.force > 0.0:
-            at = normal[n, 0], normal[n, 1], normal[n, 2]
-            slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
-            up = dot(slip, at)
-            slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
-            spring = _spring_at(springs, n)
-            out = tangential_force(
-                rows[n], friction, kappa, law, spring, state, deepest[n], overlap[n], -up, at, slip, step, 0.0
-            )
-        else:
-            clear_friction(rows[n])
-        force[n, 0], force[n, 1], force[n, 2] = out
-        deepest[n] = state.largest_compression
+@kernel(inline=True)
+def _sliding_at(normal: Array, velocity: Array, n: int) -> tuple[Point, Point, float]:
+    """Read the normal of a contact, and the velocity of its surface along the plate and away from it."""
+    at = normal[n, 0], normal[n, 1], normal[n, 2]
+    slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
+    up = dot(slip, at)
+    return at, (slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]), up
 
 
 @kernel(cache=True)
-def _advance_all(
-    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float, near: EdgeEcho | None
-) -> int:
+def _advance_all(batch: _Batch, overlap: Array, step: float) -> int:
     """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
 
     The deepest possible overlap is measured from where the plate is: its displacement is added.
     """
     for n in range(overlap.size):
-        if not -math.inf < overlap[n] <= deepest[n] + states.plate_displacement[n]:
+        if not -math.inf < overlap[n] <= batch.diameters[n] + batch.states[n].plate_displacement:
             return n
     for n in range(overlap.size):
-        spring, state, edge = _spring_at(springs, n), _state_at(states, n), _near_at(near, n)
-        state = advance(law, spring, state, overlap[n], step, edge)
-        states.plate_displacement[n] = state.plate_displacement
-        states.largest_compression[n] = state.largest_compression
-        states.force[n] = state.force
-        states.mobility[n] = state.mobility
-        states.stiffening[n], states.strength[n] = state.stiffening, state.strength
-        states.x1[n], states.y1[n], states.x2[n] = state.x1, state.y1, state.x2
-        states.y2[n], states.x3[n], states.y3[n] = state.y2, state.x3, state.y3
-        states.x4[n], states.y4[n], states.x5[n] = state.x4, state.y4, state.x5
-        states.y5[n], states.x6[n], states.y6[n] = state.y5, state.x6, state.y6
+        last, near = tuple_of(State, batch.states[n]), _near_at(batch.near, n)
+        state = advance(batch.law, _spring_at(batch, n), last, overlap[n], step, near)
+        for k in range(len(state)):
+            batch.values[n, k] = state[k]
+        batch.force[n] = state.force
     return -1
 
 
 @kernel(cache=True)
-def _soften_all(
-    law: Array,
-    springs: Spring,
-    softening: float,
-    soft: SoftState,
-    came: Array,
-    restitution: Array,
-    deepest: Array,
-    overlap: Array,
-    step: float,
-    near: EdgeEcho | None,
-    rows: Any,
-) -> int:
+def _slide_all(
+    batch: _Batch, friction: float, overlap: Array, normal: Array, velocity: Array, step: float, force: Array
+) -> None:
+    """Friction of arrays of contacts."""
+    for n in range(overlap.size):
+        state, row, out = tuple_of(State, batch.states[n]), batch.friction[n], (0.0, 0.0, 0.0)
+        if state.force > 0.0:
+            at, slip, up = _sliding_at(normal, velocity, n)
+            x, law, kappa, before = overlap[n], batch.law, batch.tangential, batch.largest[n]
+            spring = _spring_at(batch, n)
+            out = tangential_force(row, friction, kappa, law, spring, state, before, x, -up, at, slip, step, 0.0)
+        else:
+            clear_friction(row)
+        force[n, 0], force[n, 1], force[n, 2] = out
+        batch.largest[n] = state.largest_compression
+
+
+@kernel(cache=True)
+def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
     """`advance_softened` for arrays, as `_advance_all`; each impact has its COR from its second step on."""
     for n in range(overlap.size):
-        if not -math.inf < overlap[n] <= deepest[n]:
+        if not -math.inf < overlap[n] <= batch.diameters[n]:
             return n
     for n in range(overlap.size):
-        spring, force = _spring_at(springs, n), soft.force[n]
-        u = (overlap[n] - soft.overlap[n]) / step + force * step / spring.mass  # before the first force
-        if force == 0.0:
-            came[n] = 0.0
-        elif came[n] == 0.0 and u > 0.0:
-            came[n] = u
-            e = bounce(law, spring, (0.0, 0.0, -u), _UP, _near_at(near, n), 0.0, 1.0, rows).restitution
-            restitution[n] = e if soft.lost[n] == 0.0 else min(e, restitution[n])
-        stiffness, last = spring.stiffness / softening, _soft_at(soft, n)
-        now = advance_softened(stiffness, spring.mass, restitution[n], last, overlap[n], step)
-        soft.force[n], soft.kick[n], soft.largest[n], soft.overlap[n] = now.force, now.kick, now.largest, now.overlap
-        soft.work[n], soft.stored[n], soft.lost[n], soft.damped[n] = now.work, now.stored, now.lost, now.damped
+        spring, last = _spring_at(batch, n), tuple_of(SoftState, batch.states[n])
+        u = (overlap[n] - last.overlap) / step + last.force * step / spring.mass  # before the first force
+        if last.force == 0.0:
+            batch.approach[n] = 0.0
+        elif batch.approach[n] == 0.0 and u > 0.0:
+            batch.approach[n] = u
+            near, rows = _near_at(batch.near, n), batch.friction[0:0]
+            e = bounce(batch.law, spring, (0.0, 0.0, -u), _UP, near, 0.0, 1.0, rows).restitution
+            batch.restitution[n] = e if last.lost == 0.0 else min(e, batch.restitution[n])
+        stiffness, e = spring.stiffness / batch.softening, batch.restitution[n]
+        state = advance_softened(stiffness, spring.mass, e, last, overlap[n], step)
+        for k in range(len(state)):
+            batch.values[n, k] = state[k]
+        batch.force[n] = state.force + state.kick
     return -1
-
-
-@kernel(inline=True)
-def _soft_at(soft: SoftState, n: int) -> SoftState:
-    return SoftState(
-        soft.force[n],
-        soft.kick[n],
-        soft.largest[n],
-        soft.overlap[n],
-        soft.work[n],
-        soft.stored[n],
-        soft.lost[n],
-        soft.damped[n],
-    )
 
 
 @kernel(cache=True)
 def _slide_softened_all(
-    law: Array,
-    kappa: float,
-    springs: Spring,
-    soft: SoftState,
-    came: Array,
-    restitution: Array,
-    rows: Any,
-    friction: float,
-    normal: Array,
-    velocity: Array,
-    step: float,
-    near: EdgeEcho | None,
-    force: Array,
+    batch: _Batch, friction: float, overlap: Array, normal: Array, velocity: Array, step: float, force: Array
 ) -> None:
     """Friction of arrays of softened contacts."""
-    for n in range(came.size):
-        at = normal[n, 0], normal[n, 1], normal[n, 2]
-        slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
-        up = dot(slip, at)
-        slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
-        now, spring, out = _soft_at(soft, n), _spring_at(springs, n), (0.0, 0.0, 0.0)
-        row = rows[n]
-        if now.force + now.kick == 0.0:
+    for n in range(overlap.size):
+        at, slip, _ = _sliding_at(normal, velocity, n)
+        state, spring, out = tuple_of(SoftState, batch.states[n]), _spring_at(batch, n), (0.0, 0.0, 0.0)
+        row, f, kappa, speed = batch.friction[n], batch.force[n], batch.tangential, batch.approach[n]
+        if f == 0.0:
             clear_friction(row)
         else:
-            if row.normal != came[n] > 0.0:  # an impact whose speed has just become known
-                one = rows[n : n + 1]
-                v = slip[0] - came[n] * at[0], slip[1] - came[n] * at[1], slip[2] - came[n] * at[2]
-                keep_drag(row, bounce(law, spring, v, at, _near_at(near, n), friction, kappa, one).drag, slip)
-                row.normal = came[n]
-            lasting, e, x, largest = now.damped * DAMPED, restitution[n], now.overlap, now.largest
-            push = now.force + now.kick
-            out = tangential_push(row, lasting, e, friction, kappa, x, largest, push, spring.mass, at, slip, step)
+            if row.normal != speed > 0.0:  # an impact whose speed has just become known
+                v = slip[0] - speed * at[0], slip[1] - speed * at[1], slip[2] - speed * at[2]
+                rows, near = batch.friction[n : n + 1], _near_at(batch.near, n)
+                keep_drag(row, bounce(batch.law, spring, v, at, near, friction, kappa, rows).drag, slip)
+                row.normal = speed
+            lasting, e, x, largest = state.damped * DAMPED, batch.restitution[n], overlap[n], state.largest
+            out = tangential_push(row, lasting, e, friction, kappa, x, largest, f, spring.mass, at, slip, step)
         force[n, 0], force[n, 1], force[n, 2] = out
+
+
+def _rows(size: int, kind: Any) -> Any:
+    return np.zeros(size, [(name, "f8") for name in kind._fields]).view(np.recarray)
 
 
 def law_of(model: ImpactModel) -> Array:
@@ -345,53 +281,60 @@ class Contacts:
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
         unit = unit_spring(model, 1.0)
         relaxation = unit.relaxation * r
-        self._near = edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME))
+        self._longest = float(relaxation.min(initial=math.inf))
         enable_caching()
-        self._law = law_of(model)
-        self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
-        self._springs = Spring(
-            mass=bodies.mass(given),
-            solid=bodies.solid_mass(r),
-            stiffness=unit.stiffness * np.sqrt(r),
-            mobility=plate_mobility(model.pair.plate, h),
-            scale=unit.scale * r,
-            relaxation=relaxation,
-            ratio=r / h,
+        springs = {
+            "mass": bodies.mass(given),
+            "solid": bodies.solid_mass(r),
+            "stiffness": unit.stiffness * np.sqrt(r),
+            "mobility": plate_mobility(model.pair.plate, h),
+            "scale": unit.scale * r,
+            "relaxation": relaxation,
+            "ratio": r / h,
+        }
+        states = _rows(r.size, SoftState if softening > 1.0 else State)
+        self._batch = _Batch(
+            law=law_of(model),
+            tangential=model.pair.tangential_ratio,
             plate=unit.plate,
+            near=edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME)),
+            softening=float(softening),
+            diameters=2.0 * r,  # with this overlap a sphere is in the plate altogether
+            springs=np.rec.fromarrays([*springs.values()], dtype=[(name, "f8") for name in springs]),
+            states=states,
+            values=states.view(np.float64).reshape(r.size, -1),
+            friction=np.zeros(r.size, FRICTION),
+            force=np.zeros(r.size),
+            largest=np.zeros(r.size),
+            approach=np.zeros(r.size),
+            restitution=np.ones(r.size),
         )
-        self._longest = float(self._springs.relaxation.min(initial=math.inf))
-        self._states = State(*(np.zeros(r.size) for _ in State._fields))
-        self._pair, self._tangential = model.pair, model.pair.tangential_ratio
-        self._rows = np.zeros(r.size, FRICTION)
-        self._deepest, self._overlap, self._step = np.zeros(r.size), np.zeros(r.size), 0.0
-        self._sliding = np.zeros((r.size, 3))
-        self._softening = float(softening)
-        self._soft = SoftState(*(np.zeros(r.size) for _ in SoftState._fields))
-        self._came, self._restitution, self._force = np.zeros(r.size), np.ones(r.size), np.zeros(r.size)
+        self._pair, self._overlap, self._step, self._sliding = model.pair, np.zeros(r.size), 0.0, np.zeros((r.size, 3))
 
     @property
     def mass(self) -> Array:
         """Masses of the beads [kg]."""
-        mass: Array = self._springs.mass
-        return mass
+        return np.asarray(self._batch.springs["mass"])
 
     @property
     def plate_displacement(self) -> Array:
         """Displacement u2 of the plate under the contact [m]."""
-        displacement: Array = self._states.plate_displacement
-        return displacement
+        return self._state("plate_displacement")
 
     @property
     def largest_compression(self) -> Array:
         """Largest compression so far [m]."""
-        compression: Array = self._states.largest_compression if self._softening == 1.0 else self._soft.largest
-        return compression
+        return self._state("largest_compression" if self._batch.softening == 1.0 else "largest")
 
     @property
     def force(self) -> Array:
         """Contact force at the end of the last step [N]."""
-        force: Array = self._states.force if self._softening == 1.0 else self._force
-        return force
+        return self._batch.force
+
+    def _state(self, name: str) -> Array:
+        """Numbers of all contacts; those that softened ones do not have are 0."""
+        states = self._batch.states
+        return np.asarray(states[name]) if name in states.dtype.names else np.zeros(states.size)
 
     def advance(self, overlap: Array, step: float) -> Array:
         """Go to the end of a step.
@@ -428,17 +371,11 @@ class Contacts:
             longest = f"{self._longest:.3g} s, far longer than any contact"
             remedy = "contactlaw.softsphere.time_step advises one"
             raise ArgumentError("step", step, f"must be positive and at most {longest}; {remedy}")
-        law, springs, deepest, near = self._law, self._springs, self._diameters, self._near
-        if self._softening == 1.0:
-            wrong = _advance_all(law, springs, self._states, deepest, overlap, step, near)
-        else:
-            if step != self._step and self._force.any():
-                reason = f"must stay {self._step:g} s while softened contacts last"
-                raise ArgumentError("step", step, reason)
-            soft, came, e = self._soft, self._came, self._restitution
-            none = self._rows[:0]
-            wrong = _soften_all(law, springs, self._softening, soft, came, e, deepest, overlap, step, near, none)
-            np.add(soft.force, soft.kick, out=self._force)
+        softened = self._batch.softening > 1.0
+        if softened and step != self._step and self.force.any():
+            reason = f"must stay {self._step:g} s while softened contacts last"
+            raise ArgumentError("step", step, reason)
+        wrong = (_soften_all if softened else _advance_all)(self._batch, overlap, step)
         if wrong >= 0:
             self._refuse(overlap[wrong], wrong)
         self._overlap[:], self._step = overlap, step
@@ -473,37 +410,8 @@ class Contacts:
         normals, velocities = (
             np.ascontiguousarray(np.broadcast_to(one, shape), np.float64) for one in (normal, velocity)
         )
-        if self._softening > 1.0:
-            _slide_softened_all(
-                self._law,
-                self._tangential,
-                self._springs,
-                self._soft,
-                self._came,
-                self._restitution,
-                self._rows,
-                float(friction),
-                normals,
-                velocities,
-                self._step,
-                self._near,
-                self._sliding,
-            )
-            return self._sliding
-        _slide_all(
-            self._law,
-            self._tangential,
-            self._springs,
-            self._states,
-            self._rows,
-            self._deepest,
-            float(friction),
-            self._overlap,
-            normals,
-            velocities,
-            self._step,
-            self._sliding,
-        )
+        slide = _slide_softened_all if self._batch.softening > 1.0 else _slide_all
+        slide(self._batch, float(friction), self._overlap, normals, velocities, self._step, self._sliding)
         for n in np.flatnonzero(~np.isfinite(self._sliding.sum(axis=1))):
             reason = f"no finite friction at {velocities[n]} m/s, {self._pair}"
             raise ArgumentError("velocity", None, reason)
@@ -514,7 +422,7 @@ class Contacts:
             what = "must be finite [m]"
         else:
             what = (
-                f"must be at most the diameter {self._diameters[n]:.6g} m and the plate's "
+                f"must be at most the diameter {self._batch.diameters[n]:.6g} m and the plate's "
                 f"displacement {self.plate_displacement[n]:.3g} m"
             )
         remedy = "contactlaw.softsphere.time_step advises a step that is short enough"

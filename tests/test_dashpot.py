@@ -26,7 +26,7 @@ def restitution(beta):
     return -run.y[1, -1]
 
 
-@pytest.mark.parametrize("e", [0.06, 0.1353, 0.1354, 0.3, 0.5, 0.7, 0.9, 0.94, 0.97, 0.99, 0.999])
+@pytest.mark.parametrize("e", [0.06, 0.1353, 0.1354, 0.5, 0.9, 0.97, 0.999])
 def test_yades_contact_has_the_cor_that_was_asked_for(e):
     assert restitution(betan(e)) == pytest.approx(e, abs=1e-8)
 

@@ -24,8 +24,9 @@ from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
-from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
+from contactlaw.physical.oblique import FASTEST, ObliqueRebound
 from contactlaw.physical.plates import Thickness, check_contact, wall_of
+from contactlaw.physical.vectors import Vector
 from contactlaw.table import lookup
 
 Collide = Callable[..., tuple[Vector, Vector]]

@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from contactlaw._jit import tuple_of
 from contactlaw.emit import types
 from contactlaw.emit.program import Program
 from contactlaw.emit.types import DOUBLE, ELEMENTS, INT, UNKNOWN, Array, Known, Rows, Struct, Type, Value, traced
@@ -377,6 +378,10 @@ class Function:
         if name == "_array_at":
             return self._at_address(*node.args)
         values = [self.value(one) for one in node.args]
+        if called is tuple_of:
+            whole, changed = node.args[1], {one.arg: one.value for one in node.keywords}
+            fields: list[Any] = [changed.get(name, ast.Attribute(whole, name)) for name in values[0].known._fields]
+            return self._call(ast.Call(node.args[0], fields, []))
         if called is len:
             return self._length(node, values[0])
         if called in (min, max, np.minimum, np.maximum):

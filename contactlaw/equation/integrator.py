@@ -14,7 +14,7 @@ u speed, t time, s the variable of integration, y yield compression.
 import math
 from typing import NamedTuple
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force, legs, losses, motion
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
@@ -184,7 +184,8 @@ def _follow(
 def _finer(scale: Scale, spent: float) -> Scale:
     """Scale after event _ENERGY_LOW, with the next, lower limit and tighter tolerances."""
     energy_low = max(FINER_EVERY * FINER_EVERY * scale.energy_low, spent)
-    return Scale(scale.q, scale.u, scale.t, scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY, energy_low)
+    per_q, per_u = scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY
+    return tuple_of(Scale, scale, per_q=per_q, per_u=per_u, energy_low=energy_low)
 
 
 @kernel

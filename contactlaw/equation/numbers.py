@@ -18,7 +18,7 @@ import math
 from typing import Any, NamedTuple
 
 from contactlaw._arrays import Array
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections, eta_of, is_thin, with_corrections
 from contactlaw.equation.force import growth_at
 
@@ -141,14 +141,12 @@ def relaxed(plate: PlateConstants, root: float, log_time: float) -> tuple[PlateC
     known = plate.growth
     shorter = known.log_time - log_time
     growth, slower = known.modulus_power * shorter, math.exp(-0.5 * known.plate_power * shorter)
-    plate = PlateConstants(
-        plate.inelasticity * slower,
-        plate.transit * slower,
-        plate.x_at_one * math.exp(-growth),
-        plate.saturated,
-        plate.corrections,
-        known,
-        plate.rate,
+    plate = tuple_of(
+        PlateConstants,
+        plate,
+        inelasticity=plate.inelasticity * slower,
+        transit=plate.transit * slower,
+        x_at_one=plate.x_at_one * math.exp(-growth),
     )
     return plate, root * math.exp(0.4 * growth), growth
 
@@ -163,9 +161,7 @@ def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> f
 @kernel(inline=True)
 def with_saturation(plate: PlateConstants, saturated: float) -> PlateConstants:
     """Plate under a pair whose x is constant from another V^(1/5) on."""
-    return PlateConstants(
-        plate.inelasticity, plate.transit, plate.x_at_one, saturated, plate.corrections, plate.growth, plate.rate
-    )
+    return tuple_of(PlateConstants, plate, saturated=saturated)
 
 
 @kernel(inline=True)
@@ -176,14 +172,14 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
     """
     slower = mass**0.4
     root = math.sqrt(slower)
-    plate = PlateConstants(
-        pair.plate.inelasticity * mass / slower,
-        pair.plate.transit / slower,
-        pair.plate.x_at_one * root,
-        pair.plate.saturated / math.sqrt(root),
-        pair.plate.corrections,
-        pair.plate.growth,
-        pair.plate.rate,
+    plate = pair.plate
+    plate = tuple_of(
+        PlateConstants,
+        plate,
+        inelasticity=plate.inelasticity * mass / slower,
+        transit=plate.transit / slower,
+        x_at_one=plate.x_at_one * root,
+        saturated=plate.saturated / math.sqrt(root),
     )
     return PairConstants(plate, pair.time * slower, pair.mass * mass, pair.yield_compression)
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import force, zener
 from contactlaw.equation.corrections import CONTACT_TIME
@@ -25,8 +25,9 @@ from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import constants_of, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.edge import EdgeEcho
-from contactlaw.stepping.energy import Point, dot
+from contactlaw.stepping.energy import Point
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, tangential_push
 from contactlaw.stepping.spring import Spring, State, advance, impact, resized, unit_spring
@@ -183,16 +184,7 @@ def on_plate(pair: Bodies, radius: float, thickness: float) -> Spring:
     unit, h = pair.unit, thickness
     if not fits(radius, thickness):
         radius = h = math.nan
-    return Spring(
-        unit.mass,
-        unit.solid,
-        unit.stiffness,
-        unit.mobility / (h * h),
-        unit.scale,
-        unit.relaxation,
-        unit.ratio / h,
-        unit.plate,
-    )
+    return tuple_of(Spring, unit, mobility=unit.mobility / (h * h), ratio=unit.ratio / h)
 
 
 @kernel
@@ -201,9 +193,7 @@ def spring_of(pair: Bodies, radius: float, thickness: float) -> BeadSpring:
     if not fits(radius, thickness):
         radius = math.nan
     one = resized(on_plate(pair, radius, thickness), radius)
-    return BeadSpring(
-        one.mass, one.stiffness, one.mobility, one.scale, one.relaxation, one.ratio, radius, 0.0, 0, one.plate
-    )
+    return tuple_of(BeadSpring, one, radius=radius, edge_rate=0.0, edge=0)
 
 
 @kernel
@@ -214,34 +204,14 @@ def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadS
         rate = math.nan
     elif edge > 0 and bead.ratio > 0.0:  # the edge of a half-space is too far away
         rate = wave_rate(pair.wave_path, bead.radius / bead.ratio, distance)
-    return BeadSpring(
-        bead.mass,
-        bead.stiffness,
-        bead.mobility,
-        bead.scale,
-        bead.relaxation,
-        bead.ratio,
-        bead.radius,
-        rate,
-        edge,
-        bead.plate,
-    )
+    return tuple_of(BeadSpring, bead, edge_rate=rate, edge=edge)
 
 
 @kernel
 def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
     """Spring of a bead on a plate, as steps take it."""
     r = bead.radius
-    return Spring(
-        bead.mass,
-        pair.unit.mass * (r * r * r),
-        bead.stiffness,
-        bead.mobility,
-        bead.scale,
-        bead.relaxation,
-        bead.ratio,
-        bead.plate,
-    )
+    return tuple_of(Spring, bead, solid=pair.unit.mass * (r * r * r))
 
 
 @kernel
@@ -426,7 +396,7 @@ def bounced(
 
 
 @kernel
-def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
+def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> Any:
     """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
     if not (hit.restitution >= 0.0 and is_valid(impact)):
         return -1
@@ -443,7 +413,7 @@ def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
 
 
 @kernel
-def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> int:
+def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> Any:
     """Limits of the model that an answer to this impact exceeds; -1 for an impact that is NaN."""
     return exceeded(pair, hit, Impact(speed, radius, thickness, hit.mass_ratio))
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import warnings
+from collections.abc import Iterable
 from numbers import Real
 from typing import Any
 
@@ -15,11 +17,15 @@ from contactlaw._errors import ArgumentError
 from contactlaw.table import lookup
 
 # Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
-_SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
-_SI |= dict.fromkeys(("edge_distance", "hole_radius"), "m")
-_SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
-_SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
-_SI |= {"mass": "kg", "velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
+_UNITS = {
+    "m": "radius other_radius thickness edge_distance hole_radius",
+    "s": "times duration contact_time step",
+    "m/s": "speed slowest fastest sliding_speed velocity wall_velocity",
+    "1/s": "rate",
+    "kg": "mass",
+    "rad/s": "spin",
+}
+_SI = {name: unit for unit, names in _UNITS.items() for name in names.split()}
 
 _LARGE = 0.1  # [m], our choice: of larger beads and plates few are modelled, and many are mistakes
 ROUGHEST = 1e3  # largest coefficient of friction
@@ -165,14 +171,10 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     """Refuse values that do not lie between two limits; the remark ends the message."""
     if values.size == 1 and low <= values[0] <= high:
         return
-    # with a NaN, min and max are NaN and the comparison fails
-    if values.size > 1 and low <= values.min() and values.max() <= high:
-        return
     wrong = ~((low <= values) & (values <= high))
     if wrong.any():
         n = int(np.argmax(wrong))
-        limits = f"{low:.9g} and {high:.9g} {remark}".rstrip()
-        reason = f"must lie between {limits}"
+        reason = f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip()
         raise ArgumentError(name, values[n], reason, n if values.size > 1 else None)
 
 
@@ -201,3 +203,16 @@ def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:
 def shaped(values: Array, shape: tuple[int, ...] | None) -> float | Array:
     """Undo `broadcast`."""
     return float(values[0]) if shape is None else np.ascontiguousarray(values).reshape(shape)
+
+
+def unknown(name: str, known: Iterable[str]) -> str:
+    """Say that a name is not among those known, and which of them is like it.
+
+    Examples
+    --------
+    >>> unknown("thicknes", ["radius", "thickness"])
+    "unknown 'thicknes'; did you mean thickness? known: radius, thickness"
+    """
+    names = [*known]
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw._arrays import Array, Integers, Mask
+from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants
 from contactlaw.laws import Law
@@ -15,7 +15,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import check_contact
 from contactlaw.physical.scaling import constants_of, numbers_of, on_wall, without_plate
 from contactlaw.physical.strengths import by_strength
-from contactlaw.physical.validity import Limits, all_mass_flags, limits, limits_by_strength
+from contactlaw.physical.validity import Limits, limits, limits_by_strength, mass_flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +54,9 @@ class SphereOnPlate:
         check_contact(thickness, self.pair.given[1])
         impacts = Impacts.on_plates(speed, radius, thickness, *more, **named)
         if impacts.mass is not None:
-            solid = self.solid_mass(impacts.radius)
-            for n in np.flatnonzero(~beside(impacts.mass, solid))[:1].tolist():
-                raise _refused(impacts.mass[n], solid[n], n if solid.size > 1 else None)
+            share = impacts.mass / self.solid_mass(impacts.radius)
+            for n in np.flatnonzero(~((share >= LIGHTEST) & (share <= HEAVIEST)))[:1].tolist():
+                raise _refused(impacts.mass[n], share[n], n if share.size > 1 else None)
         return impacts if impacts.wall is None else on_wall(self.pair.plate, impacts, memory)
 
     def impact(self, impacts: Impacts) -> Impact:
@@ -82,24 +82,17 @@ class SphereOnPlate:
 
     def mass_flags(self, impacts: Impacts) -> Integers:
         """Limits that masses exceed."""
-        flags = np.empty(impacts.speed.size, dtype=np.int64)
-        all_mass_flags(self.mass(impacts) / self.solid_mass(impacts.radius), flags)
-        return flags
+        return np.asarray(mass_flags(self.mass(impacts) / self.solid_mass(impacts.radius)))
 
 
-def beside(mass: Array, solid: Array) -> Mask:
-    """Whether masses are such as the model is for, beside those of solid spheres."""
-    return np.asarray((mass >= LIGHTEST * solid) & (mass <= HEAVIEST * solid))
-
-
-def _refused(mass: float, solid: float, n: int | None) -> ArgumentError:
+def _refused(mass: float, share: float, n: int | None) -> ArgumentError:
     remedy = (
         "a hollow sphere so light is a thin shell, which bends under the contact"
-        if mass < LIGHTEST * solid
+        if share < LIGHTEST
         else "is it in grams? It is the mass that answers at the contact"
     )
     limits = f"must be {LIGHTEST:g} to {HEAVIEST:g} of it: {remedy}"
-    reason = f"{mass / solid:.4g} of a solid sphere's {solid:.4g} kg; {limits}"
+    reason = f"{share:.4g} of a solid sphere's {mass / share:.4g} kg; {limits}"
     return ArgumentError("mass", mass, reason, n)
 
 

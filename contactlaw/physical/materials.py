@@ -20,7 +20,7 @@ from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw._errors import ArgumentError
-from contactlaw.physical.arguments import refuse_units
+from contactlaw.physical.arguments import refuse_units, unknown
 from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
 
@@ -83,53 +83,25 @@ def sphere_mass(density: Any, radius: T) -> T:
 
 
 class UnknownMaterialError(ValueError):
-    """A name that the catalogue does not have.
-
-    Attributes
-    ----------
-    name : str
-        As given.
-    near : tuple of str
-        Names of the catalogue that are like it.
-    """
-
-    def __init__(self, name: str, near: tuple[str, ...]) -> None:
-        super().__init__(name, near)  # the arguments as given: pickle needs them
-        self.name, self.near = name, near
-
-    @property
-    def what(self) -> str:
-        """What is wrong, and which names are like it."""
-        hint = f" did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
-        return f"unknown material {self.name!r}:{hint}"
+    """A name that the catalogue does not have; its arguments are the name and a tuple of names like it."""
 
     def __str__(self) -> str:
+        name, near = self.args
+        hint = f" did you mean {' or '.join(map(repr, near))}?" if near else ""
         return (
-            f"{self.what} contactlaw.materials() lists all; Material(...) defines your own, and "
-            "read_materials(path) reads them"
+            f"unknown material {name!r}:{hint} contactlaw.materials() lists all; Material(...) defines "
+            "your own, and read_materials(path) reads them"
         )
 
 
 class NoYieldStrengthError(ValueError):
-    """A law that needs a yield strength, and a material that has none.
-
-    Attributes
-    ----------
-    law, material : str
-        Their names.
-    """
-
-    def __init__(self, law: str, material: str) -> None:
-        super().__init__(law, material)
-        self.law, self.material = law, material
+    """A law that needs a yield strength, and a material that has none; its arguments are their names."""
 
     @property
     def what(self) -> str:
         """What is wrong."""
-        return (
-            f"law {self.law!r} needs a yield strength, and material {self.material!r} has none "
-            "(brittle, or no citable value)"
-        )
+        law, material = self.args
+        return f"law {law!r} needs a yield strength, and material {material!r} has none (brittle, or no citable value)"
 
     def __str__(self) -> str:
         return (
@@ -242,27 +214,27 @@ class Material:
         hardness = self.hardness
         if isinstance(hardness, str):
             if self.kind is None and "HV" not in hardness.upper():
-                object.__setattr__(self, "kind", "metal")  # of which alone these scales are
+                self._store(kind="metal")  # of which alone these scales are
             hardness = pascals(hardness)
         if hardness is not None:
             hardness = _positive("hardness", hardness, "Pa")
         _check_units(modulus, density)
         _check_strength("yield_strength", strength, modulus)
         _check_strength("hardness", hardness, modulus)
-        # A frozen dataclass has no other way to store the converted values.
-        object.__setattr__(self, "youngs_modulus", modulus)
-        object.__setattr__(self, "poissons_ratio", ratio)
-        object.__setattr__(self, "density", density)
-        object.__setattr__(self, "yield_strength", strength)
-        object.__setattr__(self, "hardness", hardness)
-        object.__setattr__(self, "hardening", _hardening(self))
-        object.__setattr__(self, "rate", _rate(self))
-        object.__setattr__(self, "loss_factor", _loss_factor(self))
-        object.__setattr__(self, "uncertainty", _uncertainty(self))
+        self._store(
+            youngs_modulus=modulus, poissons_ratio=ratio, density=density, yield_strength=strength, hardness=hardness
+        )
+        self._store(hardening=_hardening(self))
+        self._store(rate=_rate(self), loss_factor=_loss_factor(self), uncertainty=_uncertainty(self))
         if self.specified_minimum not in (False, True):
             reason = "must be True or False: whether yield_strength is a specified minimum"
             raise ArgumentError("specified_minimum", self.specified_minimum, reason)
-        object.__setattr__(self, "specified_minimum", bool(self.specified_minimum) and strength is not None)
+        self._store(specified_minimum=bool(self.specified_minimum) and strength is not None)
+
+    def _store(self, **values: Any) -> None:
+        """Store converted values, for which a frozen dataclass has no other way."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     @property
     def flow(self) -> Flow | None:
@@ -498,26 +470,21 @@ def _catalogue() -> dict[str, Material]:
     return _read(_tables(), {})
 
 
-def number_of(field: str, text: str) -> float | str:
-    """Read a number of a material with its unit; a hardness in HRC, HV or HB stays a text.
+def spelled_out(table: dict[str, Any]) -> dict[str, Any]:
+    """Write short names in full, and numbers with a unit in SI units; HRC, HV and HB stay.
 
     Examples
     --------
-    >>> number_of("youngs_modulus", "210 GPa"), number_of("hardness", "62 HRC")
-    (210000000000.0, '62 HRC')
+    >>> spelled_out({"E": "210 GPa", "hardness": "62 HRC"})
+    {'youngs_modulus': 210000000000.0, 'hardness': '62 HRC'}
     """
-    if field == "hardness" and "H" in text.upper():
-        return text
-    return quantities.value(text, _QUANTITIES[field])
-
-
-def spelled_out(table: dict[str, Any]) -> dict[str, Any]:
-    """Write short names in full, and numbers with a unit in SI units."""
     long = {SHORT.get(key, key): value for key, value in table.items()}
     if len(long) < len(table):
         raise ValueError(f"{', '.join(SHORT)}: give the short name or the long one, not both")
     return {
-        key: number_of(key, value) if key in _QUANTITIES and isinstance(value, str) else value
+        key: quantities.value(value, _QUANTITIES[key])
+        if key in _QUANTITIES and isinstance(value, str) and not (key == "hardness" and "H" in value.upper())
+        else value
         for key, value in long.items()
     }
 
@@ -547,9 +514,7 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
     taken = (*_LABELS, "kind", "specified_minimum")
     known = (*taken, "grade", "aliases", "like", "source", "uncertainty")
     for key in table.keys() - known:
-        near = difflib.get_close_matches(key, known, n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        raise ValueError(f"[{name}]: unknown {key!r}; {hint}known: {', '.join(known)}")
+        raise ValueError(f"[{name}]: {unknown(key, known)}")
     table = _with_like(name, table, tables)
     source = table["source"]
     if missing := [field for field in _ALIKE[1:] if field not in table]:
@@ -624,14 +589,20 @@ def _positive(field: str, value: object, unit: str) -> float:
     return number
 
 
+def _two(field: str, given: Any, expected: str) -> Any:
+    """Check that a value is two numbers."""
+    numbers = given.tolist() if isinstance(given, np.ndarray) else given
+    if not isinstance(numbers, tuple | list) or len(numbers) != 2:
+        raise ArgumentError(field, numbers, f"must be {expected}")
+    return numbers
+
+
 def _hardening(body: Material) -> tuple[float, float] | float | None:
     """Check the hardening of a material; None if it has none."""
     given, refused = body.hardening, functools.partial(ArgumentError, "hardening")
     if given is None:
         return None
-    if isinstance(given, np.ndarray):
-        given = given.tolist()
-    if not isinstance(given, tuple | list):
+    if not isinstance(given, tuple | list | np.ndarray):
         exponent = _finite("hardening", given, "-")
         if not (0.0 < exponent < 1.0):
             raise refused(given, "n must be above 0 and below 1")
@@ -645,8 +616,7 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
             least = f"three times the yield strength {body.yield_strength:g} Pa"
             raise refused(None, f"a hardness of {body.hardness:g} Pa is below {least}, as if it softened")
         return exponent
-    if len(given) != 2:
-        raise refused(given, "must be (B, n), B in Pa, or n alone")
+    given = _two("hardening", given, "(B, n), B in Pa, or n alone")
     if body.yield_strength is None:
         raise refused(given, "needs a yield_strength A in Pa, of A + B strain^n")
     hardening = _finite("hardening", given[0], "Pa")
@@ -662,11 +632,10 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
 
 def _rate(body: Material) -> tuple[float, float] | None:
     """Check what a material's strength has of the rate; None if it has nothing."""
-    given, refused = body.rate, functools.partial(ArgumentError, "rate", body.rate)
-    if given is None:
+    if body.rate is None:
         return None
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refused("must be (C, rate0), rate0 in 1/s")
+    given = _two("rate", body.rate, "(C, rate0), rate0 in 1/s")
+    refused = functools.partial(ArgumentError, "rate", given)
     if body.strength is None:
         raise refused("needs a yield_strength in Pa: an elastic body has no flow stress")
     slope = _finite("rate", given[0], "-")
@@ -678,20 +647,17 @@ def _rate(body: Material) -> tuple[float, float] | None:
 
 def _loss_factor(body: Material) -> tuple[float, float] | None:
     """Check the loss factor of a material; None if it loses nothing."""
-    given, refused = body.loss_factor, functools.partial(ArgumentError, "loss_factor")
-    if given is None:
+    if body.loss_factor is None:
         return None
-    if isinstance(given, np.ndarray):
-        given = given.tolist()
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refused(given, f"must be (tan delta, frequency), the frequency in Hz: {WRITE_LOSS}")
+    given = _two("loss_factor", body.loss_factor, f"(tan delta, frequency), the frequency in Hz: {WRITE_LOSS}")
+    refused = functools.partial(ArgumentError, "loss_factor", given)
     loss = _finite("loss_factor", given[0], "-")
     if not (0.0 <= loss <= _LARGEST_LOSS):
-        raise refused(given, f"tan delta must be from 0 to {_LARGEST_LOSS:g}")
+        raise refused(f"tan delta must be from 0 to {_LARGEST_LOSS:g}")
     frequency = _positive("loss_factor", given[1], "Hz")
     if not (_FREQUENCIES[0] <= frequency <= _FREQUENCIES[1]):
         limits = f"its frequency must be from {_FREQUENCIES[0]:g} to {_FREQUENCIES[1]:g} Hz"
-        raise refused(given, f"{limits}: give that of an impact, 1/(2 contact times), or one near")
+        raise refused(f"{limits}: give that of an impact, 1/(2 contact times), or one near")
     return (loss, frequency) if loss else None
 
 
@@ -703,22 +669,14 @@ def _uncertainty(body: Material) -> dict[str, float]:
     found = {}
     for name, value in given.items():
         if name not in _LABELS:
-            near = difflib.get_close_matches(str(name), _LABELS, n=1)
-            hint = f"did you mean {near[0]!r}? " if near else ""
-            raise refused(name, f"unknown; {hint}known: {', '.join(_LABELS)}")
-        known = getattr(body, name)
+            raise refused(None, unknown(str(name), _LABELS))
         is_number = isinstance(value, Real) and not isinstance(value, bool)
         if not (is_number and 0.0 <= value <= _LARGEST_ERROR):
             reason = f"{name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, as 0.1 for 10 %"
             if name == "yield_strength" and str(value) in ("inf", "minimum"):
                 reason += "; leave it out, and write specified_minimum = true (True in Python)"
-            elif name in ("yield_strength", "hardness") and is_number and value < 0.0 and known is not None:
-                # The error of a strength that is even between the minimum and the largest one.
-                middle, share = known * (1.0 - 0.5 * value), value / (value - 2.0) / math.sqrt(3.0)
-                reason += f"; for {known:.3g} to {known * (1.0 - value):.3g} Pa write {name} = {middle:.3g} "
-                reason += f"and uncertainty = {{{name} = {share:.2g}}}"
             raise refused(value, reason)
-        if known is not None:
+        if getattr(body, name) is not None:
             found[name] = float(value)
     return found
 

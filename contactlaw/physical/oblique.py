@@ -21,10 +21,9 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
+from contactlaw.physical.vectors import Vector, cross, dot, plus
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
-
-Vector = tuple[float, float, float]
 
 # Limits of `Validity.SLIDING_FLOW`.
 _TRACTION = 0.5  # mu p/sigma_Y
@@ -64,6 +63,9 @@ class ObliqueRebound(Rebound):
     friction_energy: float | Array
 
 
+# The following kernels take numbers, and from Python arrays of them, too.
+
+
 class Sliding(NamedTuple):
     """How a bead approaches a plate."""
 
@@ -75,29 +77,25 @@ class Sliding(NamedTuple):
 @kernel
 def unit(n: Vector) -> Vector:
     """Direction of a vector, whose squares may be beyond the largest or least number."""
-    most = max(abs(n[0]), abs(n[1]), abs(n[2]))
-    x, y, z = n[0] / most, n[1] / most, n[2] / most
-    size = math.sqrt(x * x + y * y + z * z)
-    return x / size, y / size, z / size
+    most = np.maximum(np.maximum(abs(n[0]), abs(n[1])), abs(n[2]))
+    n = n[0] / most, n[1] / most, n[2] / most
+    size = np.sqrt(dot(n, n))
+    return n[0] / size, n[1] / size, n[2] / size
 
 
 @kernel
 def surface_velocity(v: Vector, omega: Vector, r: float, n: Vector) -> Vector:
     """Velocity of a sphere's surface at -r n from its centre [m/s]."""
-    return (
-        v[0] - r * (omega[1] * n[2] - omega[2] * n[1]),
-        v[1] - r * (omega[2] * n[0] - omega[0] * n[2]),
-        v[2] - r * (omega[0] * n[1] - omega[1] * n[0]),
-    )
+    return plus(v, -r, cross(omega, n))
 
 
 @kernel
 def sliding(v: Vector, omega: Vector, n: Vector, w: Vector, radius: float) -> Sliding:
     """Speeds of a bead towards and along a plate that moves with w; n has the length 1."""
-    x, y, z = surface_velocity((v[0] - w[0], v[1] - w[1], v[2] - w[2]), omega, radius, n)
-    u = x * n[0] + y * n[1] + z * n[2]
-    s = x - u * n[0], y - u * n[1], z - u * n[2]
-    return Sliding(-u, math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]), s)
+    surface = surface_velocity(plus(v, -1.0, w), omega, radius, n)
+    u = dot(surface, n)
+    s = plus(surface, -u, n)
+    return Sliding(-u, np.sqrt(dot(s, s)), s)
 
 
 @kernel
@@ -105,18 +103,9 @@ def rebound_of(
     v: Vector, omega: Vector, n: Vector, came: Sliding, radius: float, e: float, changed: float
 ) -> tuple[Vector, Vector]:
     """Velocity and spin afterwards, from the restitution and the change of the sliding speed."""
-    up = (1.0 + e) * came.speed
-    part = changed / came.size if came.size > 0.0 else 0.0 * changed  # a NaN stays one
-    centre, s = part / POINT, came.along
-    spin = (1.0 - 1.0 / POINT) * part / radius
-    return (
-        (v[0] + up * n[0] - centre * s[0], v[1] + up * n[1] - centre * s[1], v[2] + up * n[2] - centre * s[2]),
-        (
-            omega[0] + spin * (n[1] * s[2] - n[2] * s[1]),
-            omega[1] + spin * (n[2] * s[0] - n[0] * s[2]),
-            omega[2] + spin * (n[0] * s[1] - n[1] * s[0]),
-        ),
-    )
+    part = changed / np.maximum(came.size, _AT_REST)
+    leaves = plus(plus(v, (1.0 + e) * came.speed, n), -part / POINT, came.along)
+    return leaves, plus(omega, (1.0 - 1.0 / POINT) * part / radius, cross(n, came.along))
 
 
 @kernel
@@ -159,28 +148,18 @@ def collide(
     return rebound_of(v, omega, n, came, radius, e, changed)
 
 
-@kernel
-def _vector(rows: Array, i: int) -> Vector:
-    return rows[i, 0], rows[i, 1], rows[i, 2]
-
-
-@kernel(cache=True)
 def unit_all(normal: Array) -> None:
     """Replace vectors, which are rows, by their directions."""
-    for i in range(len(normal)):
-        n = unit(_vector(normal, i))
-        for k in range(3):
-            normal[i, k] = n[k]
+    normal[:] = np.transpose(unit(normal.T))  # type: ignore[arg-type]
 
 
-@kernel(cache=True)
+@np.errstate(all="ignore")  # callers refuse what is not finite
 def approach_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array, size: Array
 ) -> None:
     """Speeds of beads towards plates and along them; vectors are rows."""
-    for i in range(radius.size):
-        came = sliding(_vector(velocity, i), _vector(spin, i), _vector(normal, i), _vector(wall, i), radius[i])
-        speed[i], size[i] = came.speed, came.size
+    vectors: list[Any] = [velocity.T, spin.T, normal.T, wall.T]
+    speed[:], size[:], _ = sliding(*vectors, radius)  # type: ignore[call-arg]
 
 
 @kernel(cache=True)
@@ -194,18 +173,17 @@ def tangential_all(
         e[i], changed[i] = tangential(table, slides, one, friction[i], size[i])
 
 
-@kernel(cache=True)
+@np.errstate(all="ignore")  # of beads that recede the numbers have no meaning
 def rebound_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array, changed: Array
 ) -> None:
     """Replace velocities and spins by those afterwards, where a bead does not recede."""
-    for i in range(radius.size):
-        v, omega, n = _vector(velocity, i), _vector(spin, i), _vector(normal, i)
-        came = sliding(v, omega, n, _vector(wall, i), radius[i])
-        if came.speed >= lookup.V_MIN:
-            v, omega = rebound_of(v, omega, n, came, radius[i], e[i], changed[i])
-            for k in range(3):
-                velocity[i, k], spin[i, k] = v[k], omega[k]
+    v, omega, n, w, r = velocity.T, spin.T, normal.T, wall.T, radius
+    came: Any = sliding(v, omega, n, w, r)  # type: ignore[arg-type]
+    hit = came.speed >= lookup.V_MIN
+    after = rebound_of(v, omega, n, came, r, e, changed)  # type: ignore[arg-type]
+    for rows, new in zip((velocity, spin), after, strict=True):
+        rows[hit] = np.transpose(new)[hit]
 
 
 def flows(strength: Any, modulus: float, hit: Any, friction: Any, size: Any, after: Any) -> Any:

@@ -122,13 +122,15 @@ class Pair:
         energy = 0.8 * self.effective_modulus * share**2.5  # per (4/3) R^3
         return math.sqrt(energy / (math.pi * self.sphere.density))
 
-    def yield_share(self, coefficient: float = C_YIELD) -> float:
+    def yield_share(self, coefficient: float = C_YIELD, strength: float | None = None) -> float:
         """Yield compression over R of the body that yields first; ``inf`` if neither does.
 
         Parameters
         ----------
         coefficient : float, optional
             Factor of pi^2 (sigma_Y/E*)^2; by default that of law MYC (Peng et al. 2021, Eq. 18).
+        strength : float, optional
+            sigma_Y [Pa]; by default that of the weaker body.
 
         Examples
         --------
@@ -136,5 +138,6 @@ class Pair:
         >>> round(cl.Pair("gamma-alumina", "glass").yield_share(), 5)
         0.01248
         """
-        strength = min(body.strength or math.inf for body in (self.sphere, self.plate))
+        if strength is None:
+            strength = min(body.strength or math.inf for body in (self.sphere, self.plate))
         return coefficient * (math.pi * strength / self.effective_modulus) ** 2

@@ -114,25 +114,17 @@ class Layers(EquivalentThickness):
         if isinstance(layers, str) or not isinstance(layers, Sequence) or not layers:
             raise ArgumentError("layers", layers, 'expected pairs as [("rubber", 6e-3), (steel, 3e-3)]')
         found = tuple(_layer(one) for one in layers)
-        depth, moment, stiff, mass, membrane = 0.0, 0.0, 0.0, 0.0, 0.0
-        for body, thick in found:
-            moment += body.plane_modulus * thick * (depth + 0.5 * thick)
-            stiff += body.plane_modulus * thick
-            mass += body.density * thick
-            membrane += body.youngs_modulus * thick
-            depth += thick
-        neutral, bending, depth = moment / stiff, 0.0, 0.0
-        for body, thick in found:
-            arm = depth + 0.5 * thick - neutral
-            bending += body.plane_modulus * thick * (thick * thick / 12.0 + arm * arm)
-            depth += thick
+        bodies = [(body.plane_modulus, body.density, body.youngs_modulus, thick) for body, thick in found]
+        plane, density, youngs, h = np.array(bodies).T
+        middle, stiff = np.cumsum(h) - 0.5 * h, plane * h
+        arm = middle - (stiff @ middle) / stiff.sum()  # from the neutral plane
+        bending, mass, membrane = float(stiff @ (h * h / 12.0 + arm * arm)), float(density @ h), float(youngs @ h)
         top, thick = found[0]
         alone = len(found) == 1
         self = super().__new__(cls, thick if alone else _equivalent(top, mass, bending))
         self._described((found,), top, mass, bending, membrane)
         self.layers, self.top = found, math.inf if alone else thick
-        moduli = [body.plane_modulus for body, _ in found]
-        self.alike = min(moduli) / max(moduli)
+        self.alike = float(plane.min() / plane.max())
         return self
 
 

@@ -133,10 +133,7 @@ def rebound(
     zener.extremes(bodies.data, outcome, found)
     if edges is not None and impacts.edge_distance is not None:
         deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
-        for n in range(flags.size):
-            flags[n] |= edge_flags(
-                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n], edges.again[n]
-            )
+        flags |= edge_flags(impacts.radius, impacts.thickness, deepest, impacts.edge_distance, edges.again)
     inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))
     wrong = _with_units(

@@ -55,11 +55,9 @@ def response_of(
         each = np.stack([np.interp(given, shares, column) for column in weights.T], axis=-1)
     else:
         each = np.broadcast_to(weights[0], (*given.shape, weights.shape[1]))
-    rates = np.broadcast_to(rates, (*given.shape, *rates.shape[-2:])).reshape(*given.shape, 2 * each.shape[-1])
-    parts = []
-    for n in range(each.shape[-1] // 6):
-        parts += [rates[..., 12 * n : 12 * n + 12], each[..., 6 * n : 6 * n + 6]]
-    return np.ascontiguousarray(np.concatenate(parts, axis=-1))
+    rates = np.broadcast_to(rates, (*given.shape, *rates.shape[-2:])).reshape(*given.shape, -1, 12)
+    parts = np.concatenate([rates, each.reshape(*given.shape, -1, 6)], axis=-1)
+    return np.ascontiguousarray(parts.reshape(*given.shape, -1))
 
 
 RIMS = np.array(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from

@@ -30,13 +30,6 @@ from contactlaw.physical.responses import response_of
 from contactlaw.table.lookup import R_MIN
 
 
-def _transit(plate: Material, thickness: Array) -> Array:
-    """Time of a shear wave through a plate, over `CONTACT_TIME` [s]."""
-    shear = 0.5 * plate.youngs_modulus / (1.0 + plate.poissons_ratio)
-    time: Array = thickness * (math.sqrt(plate.density / shear) / CONTACT_TIME)
-    return time
-
-
 def plate_mobility(plate: Material, thickness: Array) -> Array:
     """Speed of an infinite plate under a point force, per force [m/(s N)]; 0 for a half-space.
 
@@ -56,13 +49,7 @@ def _yield_compression(pair: Pair, law: Law) -> float:
         return law.scale
     if law.yield_coefficient is None:
         return math.inf
-    return _yield_share(pair, law.yield_coefficient, law.name)
-
-
-def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
-    """d_Y/R*."""
-    strain = math.pi * pair.sphere.require_yield_strength(law) / pair.effective_modulus
-    return coefficient * strain**2
+    return pair.yield_share(law.yield_coefficient, pair.sphere.require_yield_strength(law.name))
 
 
 def yield_share(pair: Pair, law: Law) -> float:
@@ -74,7 +61,7 @@ def yield_share(pair: Pair, law: Law) -> float:
 
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
     """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
-    compression = _yield_share(pair, coefficient, "measured") * radius
+    compression = pair.yield_share(coefficient, pair.sphere.require_yield_strength("measured")) * radius
     return compression, _stiffness(pair, np.array(radius)).item() * compression**1.5
 
 
@@ -117,11 +104,12 @@ def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
         share = pair.effective_modulus / pair.plate.plane_modulus
         b, b_h, b4, b_p = law.waves
         corrections = plate_corrections(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
+    shear = 0.5 * pair.plate.youngs_modulus / (1.0 + pair.plate.poissons_ratio)
     # beyond yield the force grows no faster than the compression
     most = SATURATION * SATURATION * _yield_compression(pair, law) / time
     return PlateConstants(
         inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
-        transit=_transit(pair.plate, one).item() / time,
+        transit=math.sqrt(pair.plate.density / shear) / CONTACT_TIME / time,  # of a shear wave
         x_at_one=math.sqrt(time),
         saturated=most**0.25,
         corrections=corrections,
@@ -178,6 +166,7 @@ def numbers_of(constants: PairConstants, laws: Array, impact: Impact) -> Numbers
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
+_FAR = 1e300  # [m] no plate is so large
 _LONGEST = 500.0  # T_H over tau near holes: the response was fitted for forces of 2000 tau
 # A plate is softer in torsion than Kirchhoff's by the strip of this share of its thickness along an
 # edge: a band of width b is as stiff as one of b - 2 times that (St Venant; Timoshenko & Goodier,
@@ -201,18 +190,14 @@ def wave_rate(path: float, thickness: Any, distance: Any) -> Any:
 
 
 @kernel
-def least_from_rim(path: float, thickness: Any, time: Any) -> Any:
-    """Distance [m] from the rim of a hole at which the response was fitted for contacts of T_H [s]."""
-    return np.sqrt(path * thickness * time / _LONGEST)
-
-
-def from_rim(plate: Material, thickness: Array, distance: Array, hole_radius: Array, time: Array) -> Array:
+def from_rim(path: float, thickness: Any, distance: Any, hole_radius: Any, time: Any) -> Any:
     """Distance from an edge [m] that an impact with this T_H [s] has in the equation.
 
     Right at the rim of a hole a contact is as long in tau as any that the response was fitted for.
+    The arguments are numbers or arrays, `path` is that of `wave_path`.
     """
-    least = least_from_rim(wave_path(plate), thickness, time)
-    return np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
+    nearest = np.minimum(np.sqrt(path * thickness * time / _LONGEST), _FAR)  # a half-space has inf
+    return np.maximum(distance, (hole_radius < math.inf) * nearest)
 
 
 def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
@@ -239,8 +224,9 @@ def edges_of(
     The radius of a hole is that of the rim, inf for a straight edge [m].
     """
     thickness = impact.thickness
-    distance = from_rim(plate, thickness, distance, hole_radius, units.time)
-    rate = wave_rate(wave_path(plate), thickness, distance) * units.time
+    path = wave_path(plate)
+    distance = from_rim(path, thickness, distance, hole_radius, units.time)
+    rate = wave_rate(path, thickness, distance) * units.time
     response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
     return Edges(response, _coupling(plate, constants, units, impact), rate, np.zeros(rate.size))
 

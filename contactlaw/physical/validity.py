@@ -143,14 +143,6 @@ class Validity(enum.IntFlag):
     """All limits of accuracy."""
 
 
-# The flags that kernels raise, as the numbers that they take.
-_THIN_PLATE, _FAST_IMPACT = int(Validity.THIN_PLATE), int(Validity.FAST_IMPACT)
-_THICK_PLATE, _DEEP_CONTACT = int(Validity.THICK_PLATE), int(Validity.DEEP_CONTACT)
-_BENT_PLATE, _DAMAGE = int(Validity.BENT_PLATE), int(Validity.DAMAGE)
-_NEAR_EDGE, _STRIKES_AGAIN = int(Validity.NEAR_EDGE), int(Validity.STRIKES_AGAIN)
-_LINER_FLAG, _RIBS = int(Validity.LINER), int(Validity.RIBS)
-_NOT_SOLID, _CURVED_WALL = int(Validity.NOT_SOLID), int(Validity.CURVED_WALL)
-
 # For each flag: which limit is exceeded; what to do about it, and by how much the COR is wrong in
 # the finite elements of `validation`, where that is known. Errors are absolute.
 _WORDS = {
@@ -457,33 +449,36 @@ def flags_of(
     if compression > limits.share * radius:
         flags |= limits.on_yield
     if radius > limits.slender * thickness:
-        flags |= _THIN_PLATE
+        flags |= Validity.THIN_PLATE.value
     if thickness < math.inf and contact_time < TRANSITS * thickness * limits.slowness:
-        flags |= _THICK_PLATE
+        flags |= Validity.THICK_PLATE.value
     yield_ratio = limits.share * radius / scale
     if yield_ratio < limits.least_yield_ratio:
         flags |= limits.flags_when_yielded
     if yield_ratio < limits.fastest or scale > limits.swiftest * radius:
-        flags |= _FAST_IMPACT
+        flags |= Validity.FAST_IMPACT.value
     if compression > limits.deepest * radius:
-        flags |= _DEEP_CONTACT
+        flags |= Validity.DEEP_CONTACT.value
     if force > limits.bending * (thickness * thickness):
-        flags |= _BENT_PLATE
+        flags |= Validity.BENT_PLATE.value
     if force > limits.damage * (radius * radius):
-        flags |= _DAMAGE
+        flags |= Validity.DAMAGE.value
     return flags
 
 
+# The following rules take numbers or arrays.
+
+
 @kernel
-def mass_flags(mass: float) -> int:
+def mass_flags(mass: Any) -> Any:
     """Flag what is due to a mass, over that of a solid sphere."""
-    return 0 if _HOLLOW <= mass <= _HEAVY else _NOT_SOLID
+    return ((mass < _HOLLOW) | (mass > _HEAVY)) * Validity.NOT_SOLID.value
 
 
 @kernel
-def curved_flags(bending: float) -> int:
+def curved_flags(bending: Any) -> Any:
     """Flag what is due to a curved wall, from R* over the radius."""
-    return 0 if abs(bending - 1.0) <= _CURVED else _CURVED_WALL
+    return (abs(bending - 1.0) > _CURVED) * Validity.CURVED_WALL.value
 
 
 @kernel
@@ -492,7 +487,7 @@ def layer_flags(top: Any, alike: Any, pitch: Any, wave: Any, radius: Any, compre
     # by Hertz's law the radius of the contact is sqrt(R d)
     liner = (top < _LINER * np.sqrt(radius * compression)) | (alike < _ALIKE)
     ribs = pitch > 0.5 * np.sqrt(math.pi * wave * contact_time)  # the frequency is 1/(2 contact times)
-    return liner * _LINER_FLAG + ribs * _RIBS
+    return liner * Validity.LINER.value + ribs * Validity.RIBS.value
 
 
 def wall_flags(
@@ -504,27 +499,16 @@ def wall_flags(
         top, alike, pitch, wave = (wall[name] for name in ("top", "alike", "pitch", "wave"))
         flags |= layer_flags(top, alike, pitch, wave, radius, compression, contact_time)
     if bending is not None:
-        flags |= np.where(abs(bending - 1.0) <= _CURVED, 0, _CURVED_WALL)
+        flags |= curved_flags(bending)
     return flags
-
-
-@kernel(cache=True)
-def all_mass_flags(mass: Array, out: Integers) -> None:
-    """`mass_flags` of many impacts."""
-    for n in range(mass.size):
-        out[n] = mass_flags(mass[n])
 
 
 @kernel
-def edge_flags(radius: float, thickness: float, compression: float, edge_distance: float, again: float) -> int:
+def edge_flags(radius: Any, thickness: Any, compression: Any, edge_distance: Any, again: Any) -> Any:
     """Flag what is due to the edge of a plate, from the largest compression [m]."""
-    flags = 0
     # by Hertz's law the radius of the contact is sqrt(R d)
-    if edge_distance < max(2.0 * math.sqrt(radius * compression), thickness):
-        flags |= _NEAR_EDGE
-    if again > 0.0:
-        flags |= _STRIKES_AGAIN
-    return flags
+    near = edge_distance < np.maximum(2.0 * np.sqrt(radius * compression), thickness)
+    return near * Validity.NEAR_EDGE.value + (again > 0.0) * Validity.STRIKES_AGAIN.value
 
 
 def edge_distance(plate: Material, thickness: ArrayLike, contact_time: ArrayLike) -> float | Array:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw._arrays import Array, Rows
 from contactlaw.equation.losses import DESCRIPTIONS
@@ -80,23 +82,24 @@ _LATER = "wall_start", "run", "run_start"  # which files of older versions lack
 OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 
 
-def typed(rows: Rows) -> Rows:
+def typed(columns: Mapping[str, NDArray[Any]]) -> Rows:
     """Give the columns of a record from a file the types of `IMPACT`; refuse what has no such.
 
     Files of older versions get the run 0, which is not known; their walls began to move at time 0.
     """
-    names = [name for name in rows.dtype.names or () if name in _NAMES]
-    found = np.zeros(rows.size, [(name, IMPACT[name]) for name in _NAMES if name in (*names, *_LATER)])
+    names = [name for name in _NAMES if name in (*columns, *_LATER)]
+    rows = np.zeros(columns["time"].size, [(name, IMPACT[name]) for name in names])
     for name in names:
-        if (kind := rows.dtype[name]).kind not in "iuf":
-            raise ValueError(f"column {name} holds values of type {kind}, expected numbers")
+        values = columns.get(name, rows[name])
+        if values.dtype.kind not in "iuf":
+            raise ValueError(f"column {name} holds values of type {values.dtype}, expected numbers")
         with np.errstate(invalid="ignore", over="ignore"):  # what is lost by it is refused
-            found[name] = rows[name]
-        wrong = (found[name] != rows[name]) & (IMPACT[name].kind == "i")
+            rows[name] = values
+        wrong = (rows[name] != values) & (IMPACT[name].kind == "i")
         if wrong.any():
             row = int(np.argmax(wrong))
-            raise ValueError(f"{name} of row {row} is {rows[name][row]}, expected a whole number")
-    return found
+            raise ValueError(f"{name} of row {row} is {values[row]}, expected a whole number")
+    return rows
 
 
 def fill(rows: Rows, rebound: Rebound, energy: Array) -> None:

@@ -16,7 +16,6 @@ import io
 import json
 import os
 import platform
-import tokenize
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -44,17 +43,13 @@ FORMAT, SCHEMA = "contactlaw record", 1
 HDF5 = ".h5", ".hdf5"
 _BODIES = "sphere", "plate"
 _UNITS = "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own"
-# Fields of a material that are texts, and lists of numbers; the others are numbers.
-_TEXTS = "name", "source", "kind", "uncertainty"
-_LISTS = "hardening", "rate", "loss_factor"
-_REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
-_CORNERS = tuple((f"corner_{axis}", "corners, three by triangle") for axis in "xyz")
+# Points of the walls at the start of a run, in columns that end in _x, _y and _z.
+_PLACES = {"corner": "corners, three by triangle", "point": "where on the wall each row is"}
 # To find impacts on a plate that still moves from another bead's: rows in place and time that are
 # looked at, the row itself included; square of the distance over b t up to which a wave has come in
 # the time t; least motion of the plate by the other bead over that by the own one. By superposition
 # on a thin plate, of 500 pairs those beyond these have a COR within 0.04 of that of one bead.
 _NEAREST, _REACH, _MOVED = 9, 16.0, 0.1
-_POINTS = tuple((f"point_{axis}", "where on the wall each row is") for axis in "xyz")
 
 
 class Bodies(NamedTuple):
@@ -144,6 +139,10 @@ class Record:
             known = 0 if len(self.bodies) == 1 else -1
             object.__setattr__(self, "which", np.full(self.rows.size, known))
 
+    @property
+    def _columns(self) -> tuple[str, ...]:
+        return self.rows.dtype.names or ()
+
     @cached_property
     def impact(self) -> Mask:
         """Whether each row is an impact: of other contacts COR and speed mean nothing."""
@@ -162,13 +161,13 @@ class Record:
 
     @cached_property
     def _only_impacts(self) -> tuple[Mask, str]:
-        known = "kind" in (self.rows.dtype.names or ())  # else a table of an older version
+        known = "kind" in self._columns  # else a table of an older version
         return only_impacts(self.rows["kind"] if known else np.zeros(self.rows.size))
 
     @property
     def lacks(self) -> str:
         """What the record does not say; empty for a complete one."""
-        missing = [name for name in IMPACT.names or () if name not in (self.rows.dtype.names or ())]
+        missing = [name for name in IMPACT.names or () if name not in self._columns]
         parts = [f"the column{'s' * (len(missing) > 1)} {', '.join(missing)}"] if missing else []
         parts += [] if self.bodies else ["materials and law"]
         return "; ".join(parts + ([] if self.surface else ["the surface of the walls"]))
@@ -198,7 +197,7 @@ class Record:
         """
         import pandas as pd
 
-        table = pd.DataFrame({name: self.rows[name] for name in self.rows.dtype.names or ()})
+        table = pd.DataFrame({name: self.rows[name] for name in self._columns})
         if "kind" in table:
             table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
         if "flags" in table:
@@ -226,7 +225,7 @@ class Record:
             )
             table = file.create_group("impacts")
             for name, _, unit, text in COLUMNS:
-                if name in (self.rows.dtype.names or ()):
+                if name in self._columns:
                     write(table, name, self.rows[name], unit, text)
             write(table, "bodies", self.which, "1", "number of the group in /bodies, -1: unknown")
             for n, one in enumerate(self.bodies):
@@ -330,12 +329,12 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
         warnings.warn(what, stacklevel=2)
         whole = whole.part(~again)
     if others:  # a run that went on after a save has the rows of before in both files
-        if "flags" in (whole.rows.dtype.names or ()):  # one of them alone may know of a shared plate
+        if "flags" in whole._columns:  # one of them alone may know of a shared plate
             whole = whole.part(np.argsort(-whole.rows["flags"], kind="stable"))
         key = whole.rows.copy()
-        key[[name for name in key.dtype.names or () if name in ("run", "run_start", "flags")]] = 0
+        key[[name for name in whole._columns if name in ("run", "run_start", "flags")]] = 0
         whole = whole.part(np.unique(key.view(f"V{key.itemsize}"), return_index=True)[1])
-    keys = [whole.rows[name] for name in ("bead", "time") if name in (whole.rows.dtype.names or ())]
+    keys = [whole.rows[name] for name in ("bead", "time") if name in whole._columns]
     return whole.part(np.lexsort(keys))
 
 
@@ -352,15 +351,12 @@ def read_from(file: h5py.File) -> Record:
         raise ValueError(f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again")
     group = hdf5.group(file, "impacts")
     size = hdf5.numbers(group, "time").size
-    columns = {n: hdf5.numbers(group, n, size) for n in IMPACT.names or () if n in group}
-    table = np.empty(size, [(name, column.dtype) for name, column in columns.items()])
-    for name, column in columns.items():
-        table[name] = column
+    rows = typed({name: hdf5.numbers(group, name, size) for name in IMPACT.names or () if name in group})
     pairs = hdf5.group(file, "bodies") if "bodies" in file else {}
     bodies = [_read_bodies(hdf5.group(file, f"bodies/{n}")) for n in range(len(pairs))]
-    which = hdf5.indices(group, "bodies", len(bodies), size).astype(np.int64)
+    which = hdf5.indices(group, "bodies", len(bodies), size)
     surface = _read_surface(hdf5.group(file, "surface"), size) if "surface" in file else None
-    return Record(typed(table), bodies, which, surface, dict(file.attrs))
+    return Record(rows, bodies, which, surface, dict(file.attrs))
 
 
 def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
@@ -375,10 +371,10 @@ def _read(path: Path) -> Record:
     try:
         content = content_of(path)
         if path.suffix.lower() == ".npy":
-            rows = typed(saved(content))
+            rows = saved(content)
             if "time" not in (rows.dtype.names or ()):
                 raise ValueError("its rows have no column time")
-            return Record(rows)
+            return Record(typed({name: rows[name] for name in rows.dtype.names or ()}))
         with hdf5.opened(content) as file:
             return read_from(file)
     except ValueError as error:
@@ -397,7 +393,7 @@ def saved(content: bytes) -> Rows:
         raise ValueError("no file of np.save")
     try:
         rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError, tokenize.TokenError) as error:
+    except Exception as error:  # a damaged head is evaluated as Python
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
     if rows.dtype.names is None or rows.ndim != 1:
         raise ValueError(
@@ -438,17 +434,12 @@ def _write_material(file: h5py.File, name: str, material: Material) -> None:
 
 
 def _read_bodies(group: h5py.Group) -> Bodies:
-    return Bodies(Pair(*(_material(hdf5.group(group, body)) for body in _BODIES)), hdf5.attribute(group, "law", str))
+    return Bodies(Pair(*(_material(hdf5.group(group, body)) for body in _BODIES)), str(group.attrs["law"]))
 
 
 def _material(group: h5py.Group) -> Material:
-    stored: dict[str, Any] = {
-        name: hdf5.number_or_list(group, name)
-        if name in _LISTS
-        else hdf5.attribute(group, name, str if name in _TEXTS else float)
-        for name in Material.__dataclass_fields__
-        if name in _REQUIRED or name in group.attrs
-    }
+    names = [name for name in Material.__dataclass_fields__ if name in group.attrs]
+    stored: dict[str, Any] = {name: np.asarray(group.attrs[name]).tolist() for name in names}
     errors = json.loads(stored.pop("uncertainty", "{}")).items()
     # 0.3 stored inf and negative numbers for specified minima, whose errors are not stated.
     return Material(**stored, uncertainty={name: error for name, error in errors if 0.0 <= error <= 1.0})
@@ -458,19 +449,19 @@ def _write_surface(group: h5py.Group, surface: Surface) -> None:
     write(group, "wall", surface.wall, "1", "number of the wall of each triangle")
     write(group, "triangle", surface.triangle, "1", "number of the triangle of each row, -1: none")
     group.attrs["names"] = list(surface.names)
-    for names, points in (_CORNERS, surface.corners.reshape(-1, 3)), (_POINTS, surface.point):
-        for (name, text), values in zip(names, () if points is None else points.T, strict=False):
-            write(group, name, values, "m", f"{text}, at the start of the run")
+    for name, points in zip(_PLACES, (surface.corners.reshape(-1, 3), surface.point), strict=True):
+        for axis, values in zip("xyz", () if points is None else points.T, strict=points is not None):
+            write(group, f"{name}_{axis}", values, "m", f"{_PLACES[name]}, at the start of the run")
 
 
 def _read_surface(group: h5py.Group, size: int) -> Surface:
     wall = hdf5.numbers(group, "wall").astype(np.int64)
     triangle = hdf5.indices(group, "triangle", wall.size, size).astype(np.int64)
-    corners = _points(group, _CORNERS, 3 * wall.size).reshape(-1, 3, 3)
-    point = _points(group, _POINTS, size) if _POINTS[0][0] in group else None
+    corners = _points(group, "corner", 3 * wall.size).reshape(-1, 3, 3)
+    point = _points(group, "point", size) if "point_x" in group else None
     names = [str(name) for name in group.attrs.get("names", ())]
     return Surface(corners, wall, triangle, point, names)
 
 
-def _points(group: h5py.Group, names: Sequence[tuple[str, str]], size: int) -> Array:
-    return np.stack([hdf5.numbers(group, name, size) for name, _ in names], axis=1)
+def _points(group: h5py.Group, name: str, size: int) -> Array:
+    return np.stack([hdf5.numbers(group, f"{name}_{axis}", size) for axis in "xyz"], axis=1)

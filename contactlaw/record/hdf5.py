@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._arrays import Places
+from contactlaw._arrays import Integers
 
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
 # Errors that h5py raises for what it cannot read.
@@ -47,16 +47,11 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
     """Read a column of numbers, of `size` rows if that is given and of `LARGEST` at most."""
     dataset = _member(parent, name, h5py.Dataset, "a dataset")
     where = f"dataset {dataset.name[1:]}"
-    if dataset.shape is None or dataset.ndim != 1:
-        raise ValueError(f"{where} has the shape {dataset.shape}, expected a column of numbers")
-    if dataset.dtype.kind not in "iuf":
-        text = dataset.dtype.kind in "OSU"
-        what = "text or objects" if text else f"values of type {dataset.dtype}"
-        raise ValueError(f"{where} holds {what}, expected numbers")
-    if dataset.size > LARGEST:
-        raise ValueError(f"{where} has {dataset.size} rows, expected {LARGEST} at most")
-    if size is not None and dataset.size != size:
-        raise ValueError(f"{where} has {dataset.size} rows, expected {size} as in the other columns")
+    is_column = dataset.ndim == 1 and dataset.dtype.kind in "iuf" and dataset.size <= LARGEST
+    if not (is_column and size in (None, dataset.size)):
+        rows = f"{LARGEST} rows at most" if size is None else f"{size} rows as in the other columns"
+        what = f"has the shape {dataset.shape} and the type {dataset.dtype}"
+        raise ValueError(f"{where} {what}, expected a column of numbers, {rows}")
     try:
         found = np.asarray(dataset[()])  # limits of numbers would overflow in two bytes
         return found.astype(np.float64) if found.dtype.kind == "f" else found
@@ -64,7 +59,7 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
         raise ValueError(f"{where} is damaged: {error}") from None
 
 
-def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> Places:
+def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> Integers:
     """Read a column of whole numbers from 0 to `count` - 1, or -1 for none."""
     found = numbers(parent, name, size)
     # not (...) also for NaN
@@ -74,28 +69,7 @@ def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) 
             f"dataset {parent.name[1:]}/{name} has {found[wrong[0]]} in row {wrong[0]}, expected a "
             f"whole number from 0 to {count - 1}, or -1 for none"
         )
-    return found.astype(np.intp)
-
-
-def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
-    """Read an attribute that is a string or a number."""
-    expected = "text" if kind is str else "a number"
-    value = parent.attrs.get(name)
-    if value is None:
-        raise ValueError(f"{_place(parent)} has no attribute {name}, expected {expected}")
-    if isinstance(value, np.generic) and value.dtype.kind in "biuf":
-        value = value.item()
-    if not isinstance(value, (int, float) if kind is float else kind):
-        raise ValueError(f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}")
-    return kind(value)
-
-
-def number_or_list(parent: h5py.Group, name: str) -> float | list[float]:
-    """Read an attribute that is a number or a list of numbers."""
-    value = parent.attrs.get(name)
-    if isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and value.ndim == 1:
-        return [float(number) for number in value]
-    return float(attribute(parent, name, float))
+    return found.astype(np.int64)
 
 
 def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
@@ -106,13 +80,3 @@ def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
     if not isinstance(found, kind):
         raise ValueError(f"{path} is a {type(found).__name__.lower()}, expected {expected}")
     return found
-
-
-def _words(value: object) -> str:
-    if isinstance(value, np.ndarray):
-        return f"an array of shape {value.shape} and type {value.dtype}"
-    return repr(value) if isinstance(value, (str, int, float)) else f"of type {type(value).__name__}"
-
-
-def _place(parent: h5py.Group) -> str:
-    return f"group {parent.name[1:]}" if parent.name != "/" else "the file"

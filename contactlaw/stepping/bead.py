@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._errors import ArgumentError
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
+from contactlaw.physical.vectors import dot
 from contactlaw.record.file import Record, Surface, bodies_of, flagged
 from contactlaw.stepping.contact import (
     ALONE,
@@ -29,7 +30,6 @@ from contactlaw.stepping.contact import (
     contact_of,
     report_trouble,
 )
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.loads import LOAD
 from contactlaw.stepping.plate_rows import plate_rows
@@ -286,7 +286,7 @@ def _end_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, k: int, 
         bead.contacts[merged_into].disturbance = SHARING
     t = touch_in_space(scene.frames[one.frame], one, bead.x, bead.r)
     if t.x > -bead.r:  # else something has moved the bead far away between two steps
-        t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
+        t = tuple_of(Touch, t, x=min(t.x, 0.0))
         contact = contact_of(scene, bead, body, facet, t, (t.nx, t.ny, t.nz), True, merged_into)
         apply_contact(scene, clock, bead, body, contact, k)
     else:

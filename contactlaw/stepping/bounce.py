@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping import energy
 from contactlaw.stepping.edge import EdgeEcho
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.rigid import known, point_answer
 from contactlaw.stepping.spring import PARTED, Spring, at_largest, impact

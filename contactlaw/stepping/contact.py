@@ -12,19 +12,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import NO_MEMORY
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.responses import CYLINDER, SPHERE
-from contactlaw.physical.scaling import least_from_rim, wave_rate
+from contactlaw.physical.scaling import from_rim, wave_rate
 from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of, layer_flags
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
-from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.loads import bear
 from contactlaw.stepping.plate_rows import SOLID, limits_of, solid_mass, spring_of
@@ -499,26 +499,7 @@ def clear_contact(bead: Bead, k: int) -> None:
 @kernel
 def state_of(row: Any) -> State:
     """State of the normal force in the row of a contact."""
-    return State(
-        row.plate_displacement,
-        row.largest_compression,
-        row.force,
-        row.mobility,
-        row.stiffening,
-        row.strength,
-        row.x1,
-        row.y1,
-        row.x2,
-        row.y2,
-        row.x3,
-        row.y3,
-        row.x4,
-        row.y4,
-        row.x5,
-        row.y5,
-        row.x6,
-        row.y6,
-    )
+    return tuple_of(State, row)
 
 
 @kernel
@@ -552,9 +533,7 @@ def _near_edge(
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
     if not distance < reach:
         return NearestEdge(place, swing, distance)
-    away = distance
-    if hole < math.inf:
-        away = max(distance, least_from_rim(path, thickness, lasting / CONTACT_TIME))
+    away = from_rim(path, thickness, distance, hole, lasting / CONTACT_TIME)
     return NearestEdge(place_of(kind, away, hole, thickness), wave_rate(path, thickness, away), distance)
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import recall
 from contactlaw.equation.edge import KINDS, NO_MEMORY, Memories
 from contactlaw.equation.edge import weighted as weighted_sum
@@ -41,7 +41,7 @@ def edge_echo(
     """Edges at these distances [m] from contacts with this T_H [s]; None where no plate has any."""
     if distance is None or hole_radius is None:
         return None
-    distance = from_rim(plate, thickness, distance, hole_radius, time)
+    distance = from_rim(wave_path(plate), thickness, distance, hole_radius, time)
     share = share_of(distance, hole_radius, thickness)
     return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance))
 
@@ -87,4 +87,4 @@ def recalled(near: EdgeEcho | None, m: Memories, force: float, step: float) -> R
     if near.rate == 0.0:
         return NOTHING
     after = recall.recalled(near.response, m, force, 0.5 * step * near.rate)
-    return Recalled(weighted(near, m) + after.known, after.per_force, after.memory, after.gain)
+    return tuple_of(Recalled, after, known=weighted(near, m) + after.known)

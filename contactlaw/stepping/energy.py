@@ -20,10 +20,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.edge import EdgeEcho, weighted
-from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance, memory_of, returning, with_memory
+from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance, memory_of, returning
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -55,18 +56,13 @@ def step(
     """
     f0, u2 = state.force, state.plate_displacement
     shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
-    last = with_memory(
-        State(u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening, state.strength),
-        memory_of(state),
-    )
+    last = tuple_of(State, state, plate_displacement=u2 - shift * f0)
     new = advance(law, spring, last, x, h, near)
     f1 = new.force
     if f1 > 0.0 and shift != 0.0:
         u2 = new.plate_displacement + shift * (f1 - f0)
-        new = with_memory(
-            State(u2, new.largest_compression, f1, new.mobility, new.stiffening, new.strength), memory_of(new)
-        )
-        return new, spring.mass * shift * (f1 - f0) / (h * h)
+        moved = tuple_of(State, new, plate_displacement=u2)
+        return moved, spring.mass * shift * (f1 - f0) / (h * h)
     first = f1 > 0.0 and state.largest_compression == 0.0
     if first and x - u2 <= _FIRST_OVERLAP * u * h and force.is_hertz(force.at_strength(law, 0.0)):
         return new, _first_step_correction(spring, x - u2, u * h)
@@ -93,12 +89,6 @@ def wave_energy(spring: Spring, last: State, state: State, h: float, near: EdgeE
         speed_0 += thin * weighted(near, memory_of(last))
         speed_1 += thin * weighted(near, memory_of(state))
     return 0.5 * h * (last.force * speed_0 + state.force * speed_1)
-
-
-@kernel
-def dot(a: Point, b: Point) -> float:
-    """Scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel

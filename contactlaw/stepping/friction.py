@@ -23,7 +23,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import BlendedLaw, at_strength, growth_at
 from contactlaw.equation.tangential import Stiffness, kept, part_of, share_within, stiffness_at
-from contactlaw.stepping.energy import dot
+from contactlaw.physical.vectors import dot
 from contactlaw.stepping.spring import Spring, State, impact
 from contactlaw.walls.facet import Point
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
@@ -158,40 +158,17 @@ def spring_of(row: Any, r: float, parcel: float, bending: float, mass: float) ->
     A parcel stands for so many beads that are smaller by the factor `parcel`: at the same overlap
     it has their mass, their force, and a plate that gives way as under one of them.
     """
-    corrections = PlateCorrections(
-        row.eta,
-        row.eta_h,
-        row.eta4,
-        row.plastic_growth,
-        row.steepest,
-        row.bulk_factor,
-        row.p1,
-        row.p2,
-        row.p3,
-        row.p4,
-        row.p5,
+    plate = tuple_of(
+        PlateConstants,
+        row,
+        corrections=tuple_of(PlateCorrections, row),
+        growth=tuple_of(ModulusGrowth, row),
+        rate=tuple_of(RateOfStrain, row),
     )
-    plate = PlateConstants(
-        row.inelasticity,
-        row.transit,
-        row.x_at_one,
-        row.saturated,
-        corrections,
-        ModulusGrowth(row.log_time, row.modulus_power, row.plate_power, row.yield_power, row.wave, row.wave_slope),
-        RateOfStrain(row.slope, row.per_speed),
-    )
-    unit = Spring(row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio, plate)
+    unit = tuple_of(Spring, row, plate=plate)
     one, many = curved(resized(unit, r / parcel), bending), parcel * parcel * parcel
-    return Spring(
-        mass,
-        one.solid * many,
-        one.stiffness * many,
-        one.mobility / many,
-        one.scale,
-        one.relaxation,
-        one.ratio,
-        one.plate,
-    )
+    solid, stiffness, mobility = one.solid * many, one.stiffness * many, one.mobility / many
+    return tuple_of(Spring, one, mass=mass, solid=solid, stiffness=stiffness, mobility=mobility)
 
 
 @kernel
@@ -203,17 +180,4 @@ def solid_mass(row: Any, r: float) -> float:
 @kernel
 def limits_of(row: Any) -> Limits:
     """Limits of the model behind a plate row."""
-    return Limits(
-        row.slender,
-        row.slowness,
-        row.always,
-        row.flags_when_yielded,
-        row.least_yield_ratio,
-        row.fastest,
-        row.swiftest,
-        row.share,
-        row.deepest,
-        row.bending,
-        row.damage,
-        row.on_yield,
-    )
+    return tuple_of(Limits, row)

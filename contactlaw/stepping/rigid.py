@@ -16,7 +16,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
-from contactlaw.stepping.energy import dot
+from contactlaw.physical.vectors import cross, dot
 from contactlaw.walls.facet import Point
 
 # The body that a bead is a part of. Arm and inertia are along the body's principal axes, which the
@@ -33,15 +33,10 @@ BODY = np.dtype(
 
 
 @kernel
-def _cross(a: Point, b: Point) -> Point:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@kernel
 def _turned(w: float, u: Point, v: Point) -> Point:
     """Vector v turned by the quaternion (w, u)."""
-    once = _cross(u, v)
-    twice = _cross(u, once)
+    once = cross(u, v)
+    twice = cross(u, once)
     return (
         v[0] + 2.0 * (w * once[0] + twice[0]),
         v[1] + 2.0 * (w * once[1] + twice[1]),
@@ -70,8 +65,8 @@ def answer(body: Any, force: Point, n: Point, s: float) -> Point:
     w, back, turned = q[0], (-q[1], -q[2], -q[3]), (q[1], q[2], q[3])
     m, f = _turned(w, back, n), _turned(w, back, force)
     p = row.arm[0] - s * m[0], row.arm[1] - s * m[1], row.arm[2] - s * m[2]
-    spin = _cross(p, f)
-    more = _cross((less[0] * spin[0], less[1] * spin[1], less[2] * spin[2]), p)
+    spin = cross(p, f)
+    more = cross((less[0] * spin[0], less[1] * spin[1], less[2] * spin[2]), p)
     return _turned(w, turned, (per * f[0] + more[0], per * f[1] + more[1], per * f[2] + more[2]))
 
 
@@ -94,7 +89,7 @@ def turn(row: Any, omega: Point, dt: float) -> None:
     q, h = row.turn, 0.5 * dt
     w, u = q[0], (q[1], q[2], q[3])
     by = h * omega[0], h * omega[1], h * omega[2]
-    more = _cross(by, u)
+    more = cross(by, u)
     q[0] = w - by[0] * u[0] - by[1] * u[1] - by[2] * u[2]
     for k in range(3):
         q[k + 1] = u[k] + w * by[k] + more[k]

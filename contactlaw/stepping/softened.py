@@ -31,7 +31,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import number
-from contactlaw.stepping.energy import dot
+from contactlaw.physical.vectors import dot
 from contactlaw.walls.facet import Point
 
 # Least share of the work that the spring gives back: unloading curves that are steeper would need

@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
 from contactlaw.equation.edge import Memories, Memory
@@ -131,35 +131,28 @@ PARTED = State(*[0.0] * 18)
 def with_memory(state: State, m: Memories) -> State:
     """State with this memory of the plate."""
     one, two = m.first, m.second
-    return State(
-        state.plate_displacement,
-        state.largest_compression,
-        state.force,
-        state.mobility,
-        state.stiffening,
-        state.strength,
-        one.x1,
-        one.y1,
-        one.x2,
-        one.y2,
-        one.x3,
-        one.y3,
-        two.x1,
-        two.y1,
-        two.x2,
-        two.y2,
-        two.x3,
-        two.y3,
+    return tuple_of(
+        State,
+        state,
+        x1=one.x1,
+        y1=one.y1,
+        x2=one.x2,
+        y2=one.y2,
+        x3=one.x3,
+        y3=one.y3,
+        x4=two.x1,
+        y4=two.y1,
+        x5=two.x2,
+        y5=two.y2,
+        x6=two.x3,
+        y6=two.y3,
     )
 
 
 @kernel(inline=True)
 def memory_of(state: State) -> Memories:
     """Memory of the plate."""
-    return Memories(
-        Memory(state.x1, state.y1, state.x2, state.y2, state.x3, state.y3),
-        Memory(state.x4, state.y4, state.x5, state.y5, state.x6, state.y6),
-    )
+    return Memories(tuple_of(Memory, state), Memory(state.x4, state.y4, state.x5, state.y5, state.x6, state.y6))
 
 
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:
@@ -198,46 +191,33 @@ def at_usual_frequency(spring: Spring) -> Spring:
     stiffness = spring.stiffness * math.exp(growth)
     softer = math.exp(own.growth.yield_power * growth)
     slower = plate.inelasticity / own.inelasticity if own.inelasticity > 0.0 else 1.0
-    return Spring(
-        spring.mass,
-        spring.solid,
-        stiffness,
-        spring.mobility * slower,
-        spring.scale * softer,
-        spring.relaxation,
-        spring.ratio,
-        PlateConstants(
-            plate.inelasticity * faster,
-            plate.transit * faster,
-            plate.x_at_one * (faster * faster),
-            plate.saturated / faster,
-            plate.corrections,
-            ModulusGrowth(
-                0.4 * math.log(spring.solid / stiffness) - usual,
-                own.growth.modulus_power,
-                own.growth.plate_power,
-                own.growth.yield_power,
-                own.growth.wave,
-                own.growth.wave_slope,
-            ),
-            RateOfStrain(own.rate.slope, own.rate.per_speed * softer),
-        ),
+    plate = tuple_of(
+        PlateConstants,
+        plate,
+        inelasticity=plate.inelasticity * faster,
+        transit=plate.transit * faster,
+        x_at_one=plate.x_at_one * (faster * faster),
+        saturated=plate.saturated / faster,
+        growth=tuple_of(ModulusGrowth, own.growth, log_time=0.4 * math.log(spring.solid / stiffness) - usual),
+        rate=RateOfStrain(own.rate.slope, own.rate.per_speed * softer),
     )
+    mobility, scale = spring.mobility * slower, spring.scale * softer
+    return tuple_of(Spring, spring, stiffness=stiffness, mobility=mobility, scale=scale, plate=plate)
 
 
 @kernel(cache=True)
 def resized(unit: Spring, radius: float) -> Spring:
     """Spring of a bead of this radius [m], from that of radius 1 m on the same plate."""
     return at_usual_frequency(
-        Spring(
-            unit.mass * (radius * radius * radius),
-            unit.solid * (radius * radius * radius),
-            unit.stiffness * math.sqrt(radius),
-            unit.mobility,
-            unit.scale * radius,
-            unit.relaxation * radius,
-            unit.ratio * radius,
-            unit.plate,
+        tuple_of(
+            Spring,
+            unit,
+            mass=unit.mass * (radius * radius * radius),
+            solid=unit.solid * (radius * radius * radius),
+            stiffness=unit.stiffness * math.sqrt(radius),
+            scale=unit.scale * radius,
+            relaxation=unit.relaxation * radius,
+            ratio=unit.ratio * radius,
         )
     )
 
@@ -253,22 +233,19 @@ def curved(spring: Spring, bending: float) -> Spring:
         return spring
     plate, root = spring.plate, bending**0.1
     faster = root * root
-    return Spring(
-        spring.mass,
-        spring.solid,
-        spring.stiffness * math.sqrt(bending),
-        spring.mobility,
-        spring.scale * bending,
-        spring.relaxation / faster,
-        spring.ratio,
-        PlateConstants(
-            plate.inelasticity * faster,
-            plate.transit * faster,
-            plate.x_at_one * (faster * faster),
-            plate.saturated * (faster * root),
-            plate.corrections,
-            plate.growth,
-            plate.rate,
+    return tuple_of(
+        Spring,
+        spring,
+        stiffness=spring.stiffness * math.sqrt(bending),
+        scale=spring.scale * bending,
+        relaxation=spring.relaxation / faster,
+        plate=tuple_of(
+            PlateConstants,
+            plate,
+            inelasticity=plate.inelasticity * faster,
+            transit=plate.transit * faster,
+            x_at_one=plate.x_at_one * (faster * faster),
+            saturated=plate.saturated * (faster * root),
         ),
     )
 

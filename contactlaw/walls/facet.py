@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.walls.profile import RECTANGLE, TRIANGLE, direction_at, in_half_plane, on_profile
 
 Point = tuple[float, float, float]
@@ -59,13 +59,12 @@ def turned(frame: Any, t: Touch) -> Touch:
     if frame.moves == 0:
         return t
     turn = frame.turn
-    return Touch(
-        t.x,
-        t.s,
-        turn[0] * t.nx + turn[1] * t.ny + turn[2] * t.nz,
-        turn[3] * t.nx + turn[4] * t.ny + turn[5] * t.nz,
-        turn[6] * t.nx + turn[7] * t.ny + turn[8] * t.nz,
-        t.face,
+    return tuple_of(
+        Touch,
+        t,
+        nx=turn[0] * t.nx + turn[1] * t.ny + turn[2] * t.nz,
+        ny=turn[3] * t.nx + turn[4] * t.ny + turn[5] * t.nz,
+        nz=turn[6] * t.nx + turn[7] * t.ny + turn[8] * t.nz,
     )
 
 

@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.walls.edges import SMOOTH
 from contactlaw.walls.facet import Point, Touch, cell_of, contains, height, normal_at, on_facet, to_frame, turned
 from contactlaw.walls.memory import array_at
@@ -58,7 +58,7 @@ OVERLAP = np.dtype(
 @kernel
 def touch_of(row: Any) -> Touch:
     """Touch of a row of the list."""
-    return Touch(row.x, row.s, row.nx, row.ny, row.nz, row.face != 0)
+    return tuple_of(Touch, row, face=row.face != 0)
 
 
 @kernel

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.emit import DOUBLE, INT, Array, C, JavaScript, Known, Program, add
 from contactlaw.walls.memory import array_at
 
@@ -21,6 +22,14 @@ class Pair(NamedTuple):
 
     one: float  # the first
     two: float = 2.0
+
+
+class Contact(NamedTuple):
+    """Another class with the same names."""
+
+    one: float
+    two: float
+    depth: float
 
 
 def sliced(law, x):
@@ -169,6 +178,23 @@ def test_operators_bind_as_in_python(tmp_path):
     program = Program(JavaScript("$"))
     add(program, nested, DOUBLE, DOUBLE, DOUBLE)
     assert "Math.floor((Math.trunc(a) + Math.trunc(b)) / 2)" in " ".join(program.text().split())
+
+
+def rebuilt(a, b, c):
+    """NamedTuple of the fields of another class, two of which are given anew."""
+    contact = Contact(a, b, 7.0)
+    pair = tuple_of(Pair, contact, two=c)
+    last = tuple_of(Contact, pair, depth=b)
+    return last.one + 10.0 * last.two + 100.0 * last.depth
+
+
+def test_tuples_are_rebuilt_as_in_python(tmp_path):
+    program = Program(C("k_"))
+    add(program, rebuilt, DOUBLE, DOUBLE, DOUBLE)
+    new = "#define k_new(kind) (k_##kind)"
+    source = f"{new}\n{program.text()}\ndouble run(double a, double b, double c) {{ return k_rebuilt(a, b, c); }}"
+    in_c = compiled(source, tmp_path).run(*map(ctypes.c_double, (2.0, 3.0, 5.0)))
+    assert in_c == kernel(entry=True)(rebuilt)(2.0, 3.0, 5.0) == rebuilt(2.0, 3.0, 5.0) == 352.0
 
 
 def test_rows_are_read_as_in_python(tmp_path):

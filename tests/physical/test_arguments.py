@@ -116,21 +116,16 @@ def test_units_of_none_of_them_are_taken(model):
 
 ODD = [
     "5",
-    b"5",
     True,
     np.True_,
     1j,
-    {},
     {1.0},
-    object(),
     Decimal(1),
     Fraction(1, 2),
     10**400,
     [1.0, 10**400],
     [[1.0], [1.0, 2.0]],
     np.array("5"),
-    np.datetime64("2020"),
-    len,
     np.ma.masked_array([1.0], [True]),
     np.longdouble("1e4000"),
 ]

@@ -11,11 +11,12 @@ import numpy as np
 from contactlaw import quantities
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.fit import figure, printed
-from contactlaw.cli.parts import chosen, measured, options, own, rebounds, wording
+from contactlaw.cli.parts import chosen, measured, options, rebounds, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.table import in_words
 from contactlaw.fitting import Measurements, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.arguments import unknown
 from contactlaw.quantities import LENGTH
 from contactlaw.record.file import HDF5, read_record
 
@@ -56,7 +57,7 @@ def add(commands: Any) -> None:
 def _named(text: str) -> str:
     name = text.strip().replace("-", "_")
     if name not in UNKNOWNS:
-        raise argparse.ArgumentTypeError(own.unknown(name, UNKNOWNS))
+        raise argparse.ArgumentTypeError(unknown(name, UNKNOWNS))
     return name
 
 

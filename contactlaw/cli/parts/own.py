@@ -1,27 +1,14 @@
 """Materials on the command line and in heads of files: a name, or numbers of one's own."""
 
 import dataclasses
-import difflib
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import wording
+from contactlaw.physical.arguments import unknown
 from contactlaw.physical.materials import SHORT, Material, find, spelled_out
-
-
-def unknown(name: str, known: Iterable[str]) -> str:
-    """Say that a name is not among those known, and which of them is like it.
-
-    Examples
-    --------
-    >>> unknown("thicknes", ["radius", "thickness"])
-    "unknown 'thicknes'; did you mean thickness? known: radius, thickness"
-    """
-    names = [*known]
-    near = difflib.get_close_matches(name, names, n=1)
-    return f"unknown {name!r}; {f'did you mean {near[0]}? ' if near else ''}known: {', '.join(names)}"
 
 
 def check_keys(keys: Iterable[str], known: Iterable[str]) -> None:

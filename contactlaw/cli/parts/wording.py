@@ -59,10 +59,10 @@ def sentence(error: Exception, options: Mapping[str, Any]) -> str:
     "--speed-error: got '-1%'; must be 0 to 1"
     """
     match error:
-        case UnknownMaterialError():
-            near = f"did you mean {' or '.join(map(repr, error.near[:_NEAREST]))}? " if error.near else ""
+        case UnknownMaterialError(args=(name, names)):
+            near = f"did you mean {' or '.join(map(repr, names[:_NEAREST]))}? " if names else ""
             return (
-                f"unknown material {error.name!r}: {near}`contactlaw materials` lists all; one of your own "
+                f"unknown material {name!r}: {near}`contactlaw materials` lists all; one of your own "
                 f"is in --materials FILE, or numbers: {OWN}"
             )
         case NoYieldStrengthError():
