@@ -21,7 +21,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
-from contactlaw.physical.vectors import Vector, cross, dot, plus
+from contactlaw.physical.vectors import Vector, cross, divided, dot, plus
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
 
@@ -78,9 +78,8 @@ class Sliding(NamedTuple):
 def unit(n: Vector) -> Vector:
     """Direction of a vector, whose squares may be beyond the largest or least number."""
     most = np.maximum(np.maximum(abs(n[0]), abs(n[1])), abs(n[2]))
-    n = n[0] / most, n[1] / most, n[2] / most
-    size = np.sqrt(dot(n, n))
-    return n[0] / size, n[1] / size, n[2] / size
+    n = divided(n, most)
+    return divided(n, np.sqrt(dot(n, n)))
 
 
 @kernel

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Rows
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel, tuple_of
-from contactlaw.physical.vectors import dot
+from contactlaw.physical.vectors import dot, norm, plus, vector
 from contactlaw.record.file import Record, Surface, bodies_of, flagged
 from contactlaw.stepping.contact import (
     ALONE,
@@ -40,8 +40,6 @@ from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
 from contactlaw.walls.rest import at_rest
 from contactlaw.walls.surface import OVERLAP, ROOM, group_surfaces, on_listed_facet, overlaps, pass_gradient, touch_of
-
-Rows = NDArray[np.void]
 
 # Most contacts of a bead at once: three in a corner; in a hole one for each edge.
 MOST_CONTACTS = 8
@@ -103,8 +101,8 @@ class WallContacts:
         check_friction(friction)
         check_softening(softening, parcel)
         check_models(models)
-        names = [*walls] if isinstance(walls, Mapping) else [getattr(wall, "name", "") for wall in walls]
-        self.names, walls = names, [*walls.values()] if isinstance(walls, Mapping) else walls
+        self.names = [*walls] if isinstance(walls, Mapping) else [getattr(wall, "name", "") for wall in walls]
+        walls = [*walls.values()] if isinstance(walls, Mapping) else walls
         kinds = sorted(set().union(*(by_type(one, types) for one in (models, *(wall.model for wall in walls)))))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ArgumentError("models", None, f"the types of beads are 1 to {types}, got {kinds}")
@@ -114,10 +112,17 @@ class WallContacts:
         facets, frames, self._framed = framed(walls, numbers, largest)
         self.places = min(len(facets), MOST_CONTACTS)
         self._warned = 0.0  # the deepest overlap of which a warning told [r]
-        scratch, status = np.zeros(ROOM, OVERLAP), np.zeros(1, STATUS)
-        borne = np.zeros(len(walls), LOAD), np.zeros(len(facets))
-        contact = float(friction), float(softening), float(parcel)
-        self.scene = WallScene(rows, frames, facets, scratch, impacts, status, *borne, *contact)
+        self.scene = WallScene(
+            rows,
+            frames,
+            facets,
+            np.zeros(ROOM, OVERLAP),
+            impacts,
+            np.zeros(1, STATUS),
+            np.zeros(len(walls), LOAD),
+            np.zeros(len(facets)),
+            *map(float, (friction, softening, parcel)),
+        )
 
     def collisions(self) -> Rows:
         """Impacts that have ended, one row each.
@@ -218,15 +223,14 @@ def _contact_with(scene: WallScene, bead: Bead, body: Any, n: int, touching: boo
         share = row.shared / row.x
         share *= math.sqrt(share)
         less = pass_gradient(scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other])
-        along = along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
+        along = plus(along, -share, less)
     return contact_of(scene, bead, body, row.facet, touch_of(row), along, touching, -1)
 
 
 @kernel
 def _path(clock: Clock, bead: Bead) -> float:
     """Largest path of a bead in a step, plus the overlap of one put down at rest [m]."""
-    v = bead.v
-    return math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+    return norm(bead.v) * clock.dt + AT_REST * bead.r
 
 
 @kernel
@@ -340,20 +344,21 @@ def _disturbance_of(bead: Bead) -> float:
         one = bead.contacts[k]
         if not one.force > 0.0:
             continue
-        push = one.push[0], one.push[1], one.push[2]
         for j in range(k):
             other = bead.contacts[j]
-            if other.force > 0.0:
-                pushes = other.push[0], other.push[1], other.push[2]
-                if abs(dot(push, pushes)) > _PERPENDICULAR * one.force * other.force:
-                    return UNEVEN
+            cosine = dot(vector(one.push), vector(other.push))
+            if other.force > 0.0 and abs(cosine) > _PERPENDICULAR * one.force * other.force:
+                return UNEVEN
     return ALONE
 
 
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
-@kernel(inline=True)
-def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
-    """As `interact`."""
+@kernel(cache=True, inline=True)
+def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = None) -> None:
+    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``.
+
+    Of a bead that is a part of a rigid body, `body` is a row of `contactlaw.stepping.rigid.BODY`.
+    """
     if not 0 <= bead.kind < len(scene.plate_rows):
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
@@ -379,12 +384,3 @@ def _interact(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
             _end_contact(scene, clock, bead, body, k, count)
     if clock.advancing:
         _begin_all(scene, clock, bead, body, count, touching)
-
-
-@kernel(cache=True, inline=True)
-def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = None) -> None:
-    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``.
-
-    Of a bead that is a part of a rigid body, `body` is a row of `contactlaw.stepping.rigid.BODY`.
-    """
-    _interact(scene, clock, bead, body)

@@ -11,20 +11,16 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.physical.vectors import dot
+from contactlaw.physical.vectors import divided, dot, plus
 from contactlaw.stepping import energy
 from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.rigid import known, point_answer
 from contactlaw.stepping.spring import PARTED, Spring, at_largest, impact
 from contactlaw.walls.facet import Point
-
-Array = NDArray[np.float64]
 
 STEPS = 40  # of an elastic contact: the COR is within 1e-4 of smaller steps
 # [contact times of an elastic bead]; of plates so thin that it takes longer the COR is below 1e-4,
@@ -79,14 +75,13 @@ def bounce(
             break
         drag = 0.0, 0.0, 0.0
         if len(rows) > 0:
-            slip = v[0] + u * n[0], v[1] + u * n[1], v[2] + u * n[2]
+            slip = plus(v, u, n)
             drag = tangential_force(
                 rows[0], friction, kappa, law, spring, state, last.largest_compression, x, speed, n, slip, h, extra
             )
         force = state.force + extra
-        dragged = dragged[0] + h * drag[0], dragged[1] + h * drag[1], dragged[2] + h * drag[2]
-        change = point_answer(body, m, (drag[0] + force * n[0], drag[1] + force * n[1], drag[2] + force * n[2]), n, s)
-        v = v[0] + h * change[0], v[1] + h * change[1], v[2] + h * change[2]
+        dragged = plus(dragged, h, drag)
+        v = plus(v, h, point_answer(body, m, plus(drag, force, n), n, s))
         pushed += h * force
     if len(rows) > 0:
         clear_friction(rows[0])
@@ -107,6 +102,6 @@ def bounce(
         state.largest_compression,
         (gone - other) / lost if lost > 0.0 else 0.0,
         wave / lost if lost > 0.0 else 0.0,
-        (dragged[0] / pushed, dragged[1] / pushed, dragged[2] / pushed),
+        divided(dragged, pushed),
         1.0 if u >= 0.0 and near is not None and near.rate > 0.0 else 0.0,
     )

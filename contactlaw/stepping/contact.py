@@ -10,18 +10,17 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.equation.edge import NO_MEMORY
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
-from contactlaw.physical.oblique import sliding, surface_velocity
+from contactlaw.physical.oblique import Sliding, sliding, surface_velocity
 from contactlaw.physical.responses import CYLINDER, SPHERE
 from contactlaw.physical.scaling import from_rim, wave_rate
 from contactlaw.physical.validity import Validity, curved_flags, edge_flags, flags_of, layer_flags
-from contactlaw.physical.vectors import dot
+from contactlaw.physical.vectors import cross, divided, dot, norm, plus, put, scaled, vector
 from contactlaw.stepping import energy
 from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
@@ -37,20 +36,18 @@ from contactlaw.stepping.softened import (
     keep_drag,
     must_ask,
     push,
-    residual,
     settling_kick,
+    stored_work,
     tangential_push,
 )
-from contactlaw.stepping.spring import FEWEST_STEPS, RELAXATION, Largest, Spring, State, at_largest, impact, with_memory
+from contactlaw.stepping.spring import FEWEST_STEPS, PARTED, RELAXATION, Spring, State, at_largest, impact
 from contactlaw.stepping.trouble import Trouble
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
 from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
 from contactlaw.walls.memory import array_at
-from contactlaw.walls.profile import bending
+from contactlaw.walls.profile import Bend, bending
 from contactlaw.walls.surface import wall_ends
-
-Array = NDArray[np.float64]
 
 AT_REST = 1e-3  # [r] overlap with which a bead may be put down on a wall
 # A touching bead that is 1 % faster than when it arrived was struck by another: a new impact.
@@ -60,25 +57,27 @@ _FASTER = 1.01
 # any array of numbers that it stores with its beads.
 CONTACT = np.dtype(
     [
-        # facet's number from 1, negative for a bead opposite to its normal; 0: an empty row
-        ("facet", "f8"),
-        *((name, "f8") for name in State._fields),
-        # time since first touch [s]: a sum of steps, so that a run in pieces gives the same bits
-        ("duration", "f8"),
-        ("approach_speed", "f8"),  # [m/s]
-        ("wave_energy", "f8"),  # energy that the plate has taken [J]
-        ("reported_loss", "f8"),  # energy lost in the contact that the record already holds [J]
-        ("overlap", "f8"),  # [m]
-        ("work", "f8"),  # work of the normal force on the bead, in the frame of the wall [J]
-        ("wall_work", "f8"),  # work that the wall's motion does on the bead [J]
-        ("extra_force", "f8"),  # correction added to `force` in this step alone [N]
-        ("disturbance", "f8"),  # ALONE, UNEVEN or SHARING
-        ("wall_power", "f8"),  # power of the normal force at the wall's velocity [W]
-        ("push", "f8", 3),  # force on the bead without friction [N]
-        ("sliding_speed", "f8"),  # of the contact point along the wall at first touch [m/s]
-        ("arrival", "f8"),  # FREE, ON_EDGE, SLIDING or HIT_BACK
-        *SOFTENED,
+        (name, "f8")
+        for name in (
+            "facet",  # its number from 1, negative for a bead opposite to its normal; 0: an empty row
+            *State._fields,
+            # time since first touch [s]: a sum of steps, so that a run in pieces gives the same bits
+            "duration",
+            "approach_speed",  # [m/s]
+            "wave_energy",  # energy that the plate has taken [J]
+            "reported_loss",  # energy lost in the contact that the record already holds [J]
+            "overlap",  # [m]
+            "work",  # work of the normal force on the bead, in the frame of the wall [J]
+            "wall_work",  # work that the wall's motion does on the bead [J]
+            "extra_force",  # correction added to `force` in this step alone [N]
+            "disturbance",  # ALONE, UNEVEN or SHARING
+            "wall_power",  # power of the normal force at the wall's velocity [W]
+            "sliding_speed",  # of the contact point along the wall at first touch [m/s]
+            "arrival",  # FREE, ON_EDGE, SLIDING or HIT_BACK
+            *SOFTENED,
+        )
     ]
+    + [("push", "f8", 3)]  # force on the bead without friction [N]
 )
 NO_CONTACT = np.zeros(1, CONTACT)
 
@@ -100,17 +99,17 @@ _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more th
 # What the kernels report to their caller, who clears it.
 STATUS = np.dtype(
     [
-        ("impacts", "i8"),  # number of impacts in the record
-        ("left_out", "i8"),  # contacts left out because no row was empty, counted in every step
-        ("trouble", "i8"),  # the first `Trouble`, 0 without any
-        ("worst", "i8"),  # the `Trouble` with the largest number
-        ("wall", "i8"),  # wall, wrong value and its limit are those of the first `Trouble`
-        ("value", "f8"),
-        ("limit", "f8"),
-        # the deepest overlap of softened contacts [r], and the approach speed in that impact [m/s]
-        ("overlap", "f8"),
-        ("speed", "f8"),
+        (name, "i8")
+        for name in (
+            "impacts",  # number of impacts in the record
+            "left_out",  # contacts left out because no row was empty, counted in every step
+            "trouble",  # the first `Trouble`, 0 without any
+            "worst",  # the `Trouble` with the largest number
+            "wall",  # wall, wrong value and its limit are those of the first `Trouble`
+        )
     ]
+    # overlap: the deepest of softened contacts [r]; speed: of the approach in that impact [m/s]
+    + [(name, "f8") for name in ("value", "limit", "overlap", "speed")]
 )
 
 
@@ -171,17 +170,17 @@ class Contact(NamedTuple):
     wall: int  # number of the plate or mesh
     triangle: int
     touch: Touch
+    n: Point  # its normal
     point: Point  # [m]
     v: Point  # velocity of the bead relative to the wall, half a step before [m/s]
     w: Point  # velocity of the wall [m/s]
     along: Point  # vector that the law's force is multiplied by; the normal, if none is shared
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
-    bending: float  # R*/R; negative: radius of a round wall that the bead is too large for [m]
-    curvature: float  # of the wall around its axis [1/m]
-    domed: bool  # whether it is curved in the other direction, too
+    bend: Bend
     mass: float  # that answers at the contact [kg]
     answer: Point  # of a rigid body, as in `contactlaw.stepping.rigid`; zero of a free bead [1/kg]
+    of_body: bool  # whether the bead is a part of a rigid body
 
 
 @kernel
@@ -191,31 +190,26 @@ def contact_of(
     """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
     frame = scene.frames[row.frame]
-    before, v = velocity(frame, frame.half_rate, point), bead.v
-    u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
-    w = velocity(frame, frame.rate, point)
-    bent = bending(row, to_frame(frame, bead.x), bead.r, bead.r / scene.parcel)
     n = touch.nx, touch.ny, touch.nz
     answers = answer(body, n, n, bead.r)
     per = dot(answers, n)
-    mass = 1.0 / per if per > 0.0 else bead.mass
     return Contact(
         facet,
         row.plate_row,
         row.wall,
         row.triangle,
         touch,
+        n,
         point,
-        u,
-        w,
+        plus(bead.v, -1.0, velocity(frame, frame.half_rate, point)),
+        velocity(frame, frame.rate, point),
         along,
         touching,
         merged_into,
-        bent.ratio,
-        bent.around,
-        bent.along != 0.0,
-        mass,
+        bending(row, to_frame(frame, bead.x), bead.r, bead.r / scene.parcel),
+        1.0 / per if per > 0.0 else bead.mass,
         answers,
+        per > 0.0,
     )
 
 
@@ -226,12 +220,6 @@ def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, 
     if status.trouble == 0:
         status.trouble, status.wall, status.value, status.limit = code, wall, value, limit
     status.worst = max(status.worst, code)
-
-
-@kernel
-def _of_body(contact: Contact) -> bool:
-    """Whether the bead is a part of a rigid body."""
-    return dot(contact.answer, contact.answer) > 0.0
 
 
 @kernel
@@ -247,9 +235,15 @@ def _check_step(law: Array, scene: WallScene, clock: Clock, contact: Contact, sp
     In a hollow wall a contact is shorter, by 3 % for a cylinder of 4 radii: `time_step` knows none.
     """
     limit = _stretched(scene) * CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
-    limit *= max(contact.bending, 1.0) ** 0.2
+    limit *= max(contact.bend.ratio, 1.0) ** 0.2
     if clock.dt > limit:
         report_trouble(scene, Trouble.STEP_TOO_LARGE, contact.wall, u, limit)
+
+
+@kernel
+def _slip(bead: Bead, contact: Contact) -> Sliding:
+    """Speeds of a bead's surface relative to the wall, half a step before."""
+    return sliding(contact.v, bead.omega, contact.n, (0.0, 0.0, 0.0), bead.r)
 
 
 @kernel
@@ -269,14 +263,12 @@ def _begin(
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
     row.approach_speed, row.wave_energy, row.work, row.wall_work = u, 0.0, 0.0, 0.0
-    n = touch.nx, touch.ny, touch.nz
-    row.sliding_speed = sliding(contact.v, bead.omega, n, (0.0, 0.0, 0.0), bead.r).size
+    row.sliding_speed = _slip(bead, contact).size
     row.arrival = ON_EDGE if _over_edge(scene, bead, contact) else FREE
-    for j in range(len(bead.contacts) if contact.touching else 0):
-        if j != k and bead.contacts[j].force > 0.0:
-            row.arrival = SLIDING
+    if contact.touching and _presses_elsewhere(bead, k):
+        row.arrival = SLIDING
     solid = solid_mass(plate_row, bead.r)
-    if not (_of_body(contact) or abs(bead.mass - solid) <= SOLID * solid):
+    if not (contact.of_body or abs(bead.mass - solid) <= SOLID * solid):
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, solid)
     if u > 0.0:
         _check_step(law, scene, clock, contact, spring, u)
@@ -300,24 +292,30 @@ def _sharing_row(bead: Bead, k: int) -> int:
 
 
 @kernel
+def _presses_elsewhere(bead: Bead, k: int) -> bool:
+    """Whether a contact except k presses the bead."""
+    for j in range(len(bead.contacts)):
+        if j != k and bead.contacts[j].force > 0.0:
+            return True
+    return False
+
+
+@kernel
 def _power(bead: Bead, k: int, v: Point) -> float:
     """Power of all contacts except k on a bead of velocity v [W]."""
     power = 0.0
     for j in range(len(bead.contacts)):
         other = bead.contacts[j]
         if j != k and other.force > 0.0:
-            power += dot((other.push[0], other.push[1], other.push[2]), v)
+            power += dot(vector(other.push), v)
     return power
 
 
 @kernel
 def _normal_jumped(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
     """Whether the normal has turned by more than the bead's motion in the step explains."""
-    size = math.sqrt(dot(held, held))
-    turn = 0.0
-    for k in range(3):
-        turn += (held[k] / size - n[k]) ** 2
-    return turn * distance * distance > 4.0 * dot(v, v) * dt * dt
+    turn = plus(divided(held, norm(held)), -1.0, n)
+    return dot(turn, turn) * distance * distance > 4.0 * dot(v, v) * dt * dt
 
 
 @kernel
@@ -340,17 +338,10 @@ def _kind_of(scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: flo
     came = 0.5 * contact.mass * row.approach_speed * row.approach_speed
     others = lost + 0.5 * contact.mass * leaves * abs(leaves) - came
     # Friction may make a point of a body leave faster.
-    faster = leaves > (1.0 + _ROUNDING) * row.approach_speed and not _of_body(contact)
+    faster = leaves > (1.0 + _ROUNDING) * row.approach_speed and not contact.of_body
     if row.disturbance == SHARING or faster or not abs(others) <= _WORK * came:
         return Kind.STRUCK.value
-    return Kind.OF_BODY.value if _of_body(contact) else Kind.IMPACT.value
-
-
-@kernel
-def _softened_at_largest(row: Any) -> Largest:
-    """Say what the largest overlap of a softened contact means for its unloading, in SI units."""
-    lost = (1.0 - row.restitution * row.restitution) * row.stored
-    return Largest(1.0, 1.0, lost, 0.0, residual(row.largest_compression, row.restitution), row.true_force)
+    return Kind.OF_BODY.value if contact.of_body else Kind.IMPACT.value
 
 
 @kernel
@@ -374,9 +365,11 @@ def _end(
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     softened = scene.softening > 1.0
-    ended = _softened_at_largest(row) if softened else at_largest(law, spring, last)
+    ended = at_largest(law, spring, last)
     scale, unit = ended.scale, ended.unit
     lost, other = ended.lost * unit * scale, ended.other * unit * scale
+    if softened:
+        lost = (1.0 - row.restitution * row.restitution) * row.stored
     if contact.merged_into >= 0:
         to = bead.contacts[contact.merged_into]
         to.reported_loss += row.reported_loss - lost
@@ -404,22 +397,21 @@ def _end(
         missing = 0.0
     elif softened and row.lasting == DAMPED:
         damped, missing = missing, 0.0
-    elif row.disturbance != ALONE and not _of_body(contact):
+    elif row.disturbance != ALONE and not contact.of_body:
         more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
         size = more * bead.mass / clock.dt
-        extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
+        extra, leaves = scaled(size, v), -u * (1.0 + more)
     else:
         if softened:
-            if body is not None and row.lasting == BOUNCING and _of_body(contact):
+            if body is not None and row.lasting == BOUNCING and contact.of_body:
                 # A body turns further than in the true impact, which throws its point up by this at most.
-                arm, up = body[0].arm, row.restitution * row.approach_speed
-                reach = math.sqrt(arm[0] ** 2 + arm[1] ** 2 + arm[2] ** 2) + bead.r
+                up, reach = row.restitution * row.approach_speed, norm(vector(body[0].arm)) + bead.r
                 if abs(up + u) <= dot(bead.omega, bead.omega) * reach * row.duration:
                     due = 0.5 * contact.mass * (up * up - u * u)
             size = settling_kick(due, contact.mass, u, row.approach_speed, clock.dt)
         else:
             size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
-        extra = size * touch.nx, size * touch.ny, size * touch.nz
+        extra = scaled(size, contact.n)
         leaves = size * clock.dt / contact.mass - u
     if put_down:
         if sharing >= 0 and len(bead.friction) > 0:
@@ -429,8 +421,7 @@ def _end(
     if size != 0.0:
         scheme, missing = missing - due, 0.0
     if not touch.face and u < 0.0 and row.disturbance == ALONE:
-        around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
-        leaves = energy.free_speed(leaves, around, bead.r, touch.x)
+        leaves = energy.free_speed(leaves, touch.x, bead.r, row.overlap, touch.x, u, clock.dt)
     n = scene.status[0].impacts
     if n == len(scene.impacts):
         report_trouble(scene, Trouble.TOO_MANY_IMPACTS, contact.wall, 0.0, n)
@@ -465,8 +456,8 @@ def _end(
     record.parcel, record.wall_start, record.run, record.run_start = scene.parcel, 0.0, 0, 0.0
     expected = impact(law, spring, abs(row.approach_speed))
     total = gone + row.wave_energy + missing  # damping is no part of an impact
-    bent = curved_flags(contact.bending)
-    if body is not None and _of_body(contact):
+    bent = curved_flags(contact.bend.ratio)
+    if body is not None and contact.of_body:
         total -= body[0].coupled
         if abs(body[0].coupled) > _WORK * 0.5 * contact.mass * row.approach_speed * row.approach_speed:
             bent |= _COUPLED
@@ -475,16 +466,13 @@ def _end(
     if softened:
         record.flags = int(row.true_flags) | bent
         return extra
-    r, deepest, limits = bead.r / scene.parcel, last.largest_compression, limits_of(plate_row)
-    time, force = record.contact_time, record.peak_force
-    record.flags = flags_of(limits, r, plate_row.thickness, expected.compression, time, deepest, force)
     if edge.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
         record.kind = Kind.STRUCK.value
     # Whether the plate comes back later is not known here; the strike will have a row of its own.
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
-    record.flags |= edge_flags(r, plate_row.thickness, deepest, edge.distance, recedes)
-    record.flags |= bent | _layer_flags(plate_row, r, deepest, time)
+    scale, time, deepest, force = expected.compression, record.contact_time, last.largest_compression, record.peak_force
+    record.flags = bent | _flags(plate_row, record.radius, scale, time, deepest, force, edge.distance, recedes)
     return extra
 
 
@@ -503,21 +491,25 @@ def state_of(row: Any) -> State:
 
 
 @kernel
-def _layer_flags(row: Any, r: float, compression: float, time: float) -> Any:
-    return layer_flags(row.top, row.softest, row.pitch, row.wave_of_all, r, compression, time)
+def _flags(
+    row: Any, r: float, scale: float, time: float, deepest: float, force: float, distance: float, recedes: float
+) -> Any:
+    """Limits that an impact exceeds on the plate of a row, at this distance [m] from an edge."""
+    flags = flags_of(limits_of(row), r, row.thickness, scale, time, deepest, force)
+    flags |= edge_flags(r, row.thickness, deepest, distance, recedes)
+    return flags | layer_flags(row.top, row.softest, row.pitch, row.wave_of_all, r, deepest, time)
 
 
 @kernel
-def _near_edge(
-    scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring, speed: float
-) -> NearestEdge:
+def _near_edge(scene: WallScene, bead: Bead, contact: Contact, spring: Spring, speed: float) -> NearestEdge:
     """Edge that is nearest to a contact, and how it acts there; far from edges, how the wall swings back."""
-    facet = scene.facets[contact.facet]
+    facet, plate_row = scene.facets[contact.facet], scene.plate_rows[bead.kind, contact.plate_row]
     if plate_row.thickness == math.inf:
         return NearestEdge(0, 0.0, math.inf)
     place, swing = plate_row.swing_place, plate_row.swing
-    if contact.curvature != 0.0:
-        place, swing = SPHERE if contact.domed else CYLINDER, plate_row.shell_speed * abs(contact.curvature)
+    bend = contact.bend
+    if bend.around != 0.0:
+        place, swing = SPHERE if bend.along != 0.0 else CYLINDER, plate_row.shell_speed * abs(bend.around)
     lasting = spring.relaxation / RELAXATION * math.pow(max(speed, _SLOWEST), -0.2)
     if swing > 0.0:
         swing = min(swing, _SWINGS / lasting)
@@ -544,12 +536,9 @@ def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k
     now = push(stiffness, spring.mass, row.largest_compression, row.restitution, x, u, clock.dt)
     if now.damped:
         row.lasting = DAMPED
-    elif row.disturbance != ALONE:
+    elif row.disturbance != ALONE or _presses_elsewhere(bead, k):  # at a right angle only friction is shared
         row.lasting = max(row.lasting, HELD)
-    for j in range(len(bead.contacts)):
-        if j != k and bead.contacts[j].force > 0.0:  # at a right angle, where only friction is shared
-            row.lasting = max(row.lasting, HELD)
-    return with_memory(State(0.0, now.largest, now.force, 0.0, 0.0, 0.0), NO_MEMORY)
+    return tuple_of(State, PARTED, largest_compression=now.largest, force=now.force)
 
 
 @kernel
@@ -576,25 +565,20 @@ def _ask(
         row.restitution, row.lasting = 1.0, HELD
         row.asked_speed = row.true_time = row.true_force = row.plastic_share = row.wave_share = row.true_flags = 0.0
         return
-    touch, rough = contact.touch, len(bead.friction) > 0
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    edge = _near_edge(scene, bead, contact, plate_row, spring, u)
+    edge = _near_edge(scene, bead, contact, spring, u)
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
-    n = touch.nx, touch.ny, touch.nz
+    n, rows, mu, kappa = contact.n, bead.friction[k : k + 1], scene.friction, plate_row.tangential
     came = surface_velocity(contact.v, bead.omega, bead.r, n)
-    slip = sliding(contact.v, bead.omega, n, (0.0, 0.0, 0.0), bead.r).along
-    rows, mu, kappa = bead.friction[k : k + 1], scene.friction, plate_row.tangential
     if not begins:  # what friction has done so far stays, because a spring holds now
         rows = bead.friction[0:0]
     true = bounce(law, spring, came, n, near, mu, kappa, rows, body, bead.r)
-    if rough and begins:
-        keep_drag(bead.friction[k], true.drag, slip)
-    r, thickness = bead.r / scene.parcel, plate_row.thickness
+    if len(rows) > 0:
+        keep_drag(rows[0], true.drag, _slip(bead, contact).along)
     force = true.peak_force / scene.parcel**3  # of one of the true beads
     scale = impact(law, spring, u).compression
-    flags = flags_of(limits_of(plate_row), r, thickness, scale, true.contact_time, true.compression, force)
-    flags |= edge_flags(r, thickness, true.compression, edge.distance, true.recedes)
-    flags |= _layer_flags(plate_row, r, true.compression, true.contact_time)
+    r, time, deepest = bead.r / scene.parcel, true.contact_time, true.compression
+    flags = _flags(plate_row, r, scale, time, deepest, force, edge.distance, true.recedes)
     # In a dent that an earlier impact has left, no energy may come back that has been lost.
     row.restitution = true.restitution if row.stored == 0.0 else min(true.restitution, row.restitution)
     if begins:
@@ -606,39 +590,24 @@ def _ask(
 
 
 @kernel
-def _store(scene: WallScene, clock: Clock, row: Any, spring: Spring, state: State, u: float) -> None:
-    """Keep the work that has been put into a softened contact up to its largest overlap.
-
-    A bead that nothing else disturbs puts in what it has lost up to here, and what it still has.
-    """
-    x, after = state.largest_compression, u - clock.dt * state.force / spring.mass
-    # With velocity Verlet, u^2 becomes the product of the speeds half a step before and after.
-    stored = row.reported_loss - row.work + 0.5 * spring.mass * u * after
-    if row.lasting == DAMPED or row.disturbance != ALONE:
-        stored = 0.4 * spring.stiffness / scene.softening * x * x * math.sqrt(x)
-    row.stored = stored
-
-
-@kernel
-def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int) -> None:
+def _advance(
+    law: Array, scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int, spring: Spring
+) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
-    n, along = (touch.nx, touch.ny, touch.nz), contact.along
-    u = -dot(v, n)
-    if contact.bending < 0.0:
-        report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bending)
+    n, u = contact.n, -dot(v, contact.n)
+    if contact.bend.ratio < 0.0:
+        report_trouble(scene, Trouble.TOO_WIDE, contact.wall, bead.r, -contact.bend.ratio)
     side = math.copysign(contact.facet + 1.0, touch.s)
     if row.facet == 0.0:
         # The overlap is at most the path of a step, which on an edge is not along the normal.
-        deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+        deepest = norm(v) * clock.dt + AT_REST * bead.r
         # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
             report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
     elif touch.face and side != row.facet:
         report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    law = array_at(plate_row.law, plate_row.law_size, np.float64)
-    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass)
     last, softened = state_of(row), scene.softening > 1.0
     moved = (dot(v, v) - u * u) * row.duration * row.duration
     if last.force == 0.0 and not softened and moved > 2.0 * bead.r * last.largest_compression > 0.0:
@@ -649,7 +618,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
         last = state_of(row)
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
-        edge = _near_edge(scene, bead, contact, plate_row, spring, max(row.approach_speed, u))
+        edge = _near_edge(scene, bead, contact, spring, max(row.approach_speed, u))
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
     if softened:
         state, extra = _softened_step(scene, clock, spring, bead, k, touch.x, u), 0.0
@@ -657,7 +626,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
         state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
-        held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
+        held, power_0 = vector(row.push), row.wall_power
         if row.extra_force == 0.0 and _normal_jumped(held, n, v, clock.dt, bead.r - touch.x):
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
@@ -666,14 +635,14 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
             row.arrival = HIT_BACK
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
             clear_friction(bead.friction[k])
-        if body is not None and _of_body(contact):
+        if body is not None and contact.of_body:
             body[0].coupled = 0.0
     else:
         first = 0.0 < row.duration < clock.before
         if not touch.face and last.force > 0.0 and first and row.disturbance == ALONE:
             # How fast the normal turns is first known in the second step.
-            around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
-            row.approach_speed = energy.free_speed(row.approach_speed, around, bead.r, row.overlap)
+            arrived, x = row.approach_speed, row.overlap
+            row.approach_speed = energy.free_speed(arrived, x, bead.r, x, touch.x, u, clock.dt)
         row.duration += clock.dt
         if u > _FASTER * max(row.approach_speed, 0.0):
             row.approach_speed = u
@@ -685,11 +654,13 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     else:
         row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, near)
     pressed = state.force + extra
-    pushes = pressed * along[0], pressed * along[1], pressed * along[2]
+    pushes = scaled(pressed, contact.along)
     power = dot(pushes, contact.w)
     row.work += energy.work(spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before)
     if softened and state.largest_compression > last.largest_compression:
-        _store(scene, clock, row, spring, state, u)
+        undisturbed = row.lasting != DAMPED and row.disturbance == ALONE
+        k_soft, most, left = spring.stiffness / scene.softening, state.largest_compression, row.reported_loss - row.work
+        row.stored = stored_work(k_soft, most, undisturbed, left, spring.mass, u, state.force, clock.dt)
     if state.force == 0.0 and last.force > 0.0:
         pushes = _end(law, scene, clock, bead, body, contact, k, spring, last, u, edge)
         extra = dot(pushes, n)
@@ -706,27 +677,24 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Con
     if extra != 0.0:
         row.facet = side  # kept after parting too, because a set-up asks for this force again
     row.extra_force, row.wall_power = extra, power
-    row.push[0], row.push[1], row.push[2] = pushes
+    put(row.push, pushes)
 
 
 @kernel
 def _complete(record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point) -> None:
     """Complete a row of the record with what follows from the forces of the contact's last step."""
-    push, v, omega = bead.contacts[k].push, contact.v, bead.omega
-    per = 0.0 if _of_body(contact) else clock.dt / bead.mass  # of a body it is small, and left out
+    omega, n = bead.omega, contact.n
+    per = 0.0 if contact.of_body else clock.dt / bead.mass  # of a body it is small, and left out
     turn = per / (0.4 * bead.r * bead.r)  # of a solid sphere
-    x, y, z = v[0] + per * push[0], v[1] + per * push[1], v[2] + per * push[2]
-    v = x + per * drag[0], y + per * drag[1], z + per * drag[2]
-    spin = omega[0] + turn * torque[0], omega[1] + turn * torque[1], omega[2] + turn * torque[2]
-    n = contact.touch.nx, contact.touch.ny, contact.touch.nz
+    v = plus(plus(contact.v, per, vector(bead.contacts[k].push)), per, drag)
+    spin = plus(omega, turn, torque)
     left = sliding(v, spin, n, (0.0, 0.0, 0.0), bead.r)
     record.spin_x, record.spin_y, record.spin_z = spin
     record.sliding_speed_after, record.friction_energy = left.size, 0.0
     if len(bead.friction) > 0:
         slid = bead.friction[k]
         if record.sliding_speed > 0.0:
-            along = slid.along[0], slid.along[1], slid.along[2]
-            record.sliding_speed_after = dot(left.along, along)
+            record.sliding_speed_after = dot(left.along, vector(slid.along))
         # The second half of the last step's force acts in the next step.
         slip = surface_velocity(bead.v, omega, bead.r, n)
         after = dot(drag, slip) + POINT * per * dot(drag, drag)
@@ -736,13 +704,9 @@ def _complete(record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, d
 @kernel
 def _finish_work(clock: Clock, bead: Bead, k: int) -> None:
     """Add the work of friction's last force in this step, by the velocity and normal before it."""
-    row, slid = bead.contacts[k], bead.friction[k]
-    push = row.push[0], row.push[1], row.push[2]
-    drag = slid.force[0], slid.force[1], slid.force[2]
-    size = math.sqrt(dot(push, push))
-    if size > 0.0:
-        n = push[0] / size, push[1] / size, push[2] / size
-        slip = surface_velocity(bead.v, bead.omega, bead.r, n)
+    push, slid = vector(bead.contacts[k].push), bead.friction[k]
+    if norm(push) > 0.0:
+        slip, drag = surface_velocity(bead.v, bead.omega, bead.r, divided(push, norm(push))), vector(slid.force)
         slid.work += energy.work(bead.mass / POINT, drag, (0.0, 0.0, 0.0), slip, 0.0, 0.0, clock.dt, clock.before)
 
 
@@ -754,62 +718,36 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
     if plate_row.law == 0:
         report_trouble(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
         return
+    law = array_at(plate_row.law, plate_row.law_size, np.float64)
+    spring = spring_of(plate_row, bead.r, scene.parcel, contact.bend.ratio, contact.mass)
     recorded, rough = scene.status[0].impacts, len(bead.friction) > 0
     before = row.largest_compression
     if clock.advancing:
         if rough and (row.force > 0.0 or row.extra_force != 0.0):
             _finish_work(clock, bead, k)
-        _advance(scene, clock, bead, body, contact, k)
+        _advance(law, scene, clock, bead, body, contact, k, spring)
     ended = scene.status[0].impacts > recorded
-    n, drag, torque = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    n, drag, torque = contact.n, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if row.force != 0.0 or row.extra_force != 0.0:
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
-            law = array_at(plate_row.law, plate_row.law_size, np.float64)
-            spring, state = spring_of(plate_row, bead.r, scene.parcel, contact.bending, contact.mass), state_of(row)
-            h = clock.dt if clock.advancing else 0.0
+            kappa, h, slid = plate_row.tangential, clock.dt if clock.advancing else 0.0, bead.friction[k]
+            x, most = touch.x, row.largest_compression
             if scene.softening > 1.0:
-                drag = tangential_push(
-                    bead.friction[k],
-                    row.lasting,
-                    row.restitution,
-                    scene.friction,
-                    plate_row.tangential,
-                    touch.x,
-                    state.largest_compression,
-                    row.force + row.extra_force,
-                    bead.mass,
-                    n,
-                    slip,
-                    h,
-                )
+                f, lasting, e = row.force + row.extra_force, row.lasting, row.restitution
+                drag = tangential_push(slid, lasting, e, scene.friction, kappa, x, most, f, bead.mass, n, slip, h)
             else:
+                state, speed, extra = state_of(row), row.approach_speed, row.extra_force
                 drag = tangential_force(
-                    bead.friction[k],
-                    scene.friction,
-                    plate_row.tangential,
-                    law,
-                    spring,
-                    state,
-                    before,
-                    touch.x,
-                    row.approach_speed,
-                    n,
-                    slip,
-                    h,
-                    row.extra_force,
+                    slid, scene.friction, kappa, law, spring, state, before, x, speed, n, slip, h, extra
                 )
-            torque = (
-                -bead.r * (n[1] * drag[2] - n[2] * drag[1]),
-                -bead.r * (n[2] * drag[0] - n[0] * drag[2]),
-                -bead.r * (n[0] * drag[1] - n[1] * drag[0]),
-            )
+            torque = scaled(-bead.r, cross(n, drag))
             if clock.advancing:
-                if body is not None and _of_body(contact):
+                if body is not None and contact.of_body:
                     body[0].coupled += clock.dt * contact.mass * dot(contact.v, n) * dot(contact.answer, drag)
                 slip = surface_velocity(bead.v, bead.omega, bead.r, n)
-                bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
-        both = row.push[0] + drag[0], row.push[1] + drag[1], row.push[2] + drag[2]
+                slid.work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
+        both = plus(vector(row.push), 1.0, drag)
         for i in range(3):
             if not abs(both[i]) < math.inf:
                 report_trouble(scene, Trouble.NO_FORCE, contact.wall, row.approach_speed, bead.r)

@@ -10,8 +10,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import recall
 from contactlaw.equation.edge import KINDS, NO_MEMORY, Memories
@@ -20,8 +20,6 @@ from contactlaw.equation.recall import Recalled
 from contactlaw.physical.materials import Material
 from contactlaw.physical.responses import RIMS, response_of
 from contactlaw.physical.scaling import SOFT_RIM, from_rim, share_of, wave_path, wave_rate
-
-Array = NDArray[np.float64]
 
 
 class EdgeEcho(NamedTuple):

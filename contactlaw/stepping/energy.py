@@ -18,15 +18,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force
 from contactlaw.physical.vectors import dot
 from contactlaw.stepping.edge import EdgeEcho, weighted
 from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance, memory_of, returning
 
-Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6, highest power first: a least-squares fit
@@ -134,18 +133,13 @@ def settling_share(missing: float, m: float, v: Point, power: float, h: float, s
 
 
 @kernel
-def tangential_square(r: float, x0: float, x1: float, u: float, h: float) -> float:
-    """Square of the tangential speed around an edge or a corner [m^2/s^2]."""
-    path = 2.0 * r - x0 - x1 + u * h
-    return max((x1 - x0 - u * h) * path, 0.0) / (h * h)
+def free_speed(speed: float, x: float, r: float, x0: float, x1: float, u: float, h: float) -> float:
+    """Speed along the normal at overlap 0, in free flight, of a bead with this speed at overlap x.
 
-
-@kernel
-def free_speed(u: float, tangential_square: float, r: float, x: float) -> float:
-    """Speed along the normal at overlap 0, in free flight, of a bead with u at overlap x.
-
-    Around an edge the normal turns during the contact. Approach and rebound are compared at the
-    same distance from the edge, so that an elastic bead has a COR of 1.
+    Around an edge or a corner the normal turns during the contact. Approach and rebound are compared
+    at the same distance from the edge, so that an elastic bead has a COR of 1. The tangential speed
+    follows from the overlaps x0 and x1 at the ends of a step.
     """
-    s = 1.0 - x / r
-    return math.sqrt(u * u + tangential_square * (1.0 - s * s))
+    s, path = 1.0 - x / r, 2.0 * r - x0 - x1 + u * h
+    tangential_square = max((x1 - x0 - u * h) * path, 0.0) / (h * h)
+    return math.sqrt(speed * speed + tangential_square * (1.0 - s * s))

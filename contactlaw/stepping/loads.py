@@ -9,6 +9,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
+from contactlaw.physical.vectors import cross, plus, vector
 from contactlaw.walls.facet import Point
 
 # Integrals over time of what a wall bears.
@@ -28,13 +29,11 @@ class Loads(NamedTuple):
 @kernel
 def bear(load: Any, frame: Any, point: Point, force: Point, power: float, dt: float) -> None:
     """Add what a wall bears in a step by the force on a bead at a point."""
-    hub = frame.hub  # of walls that do not turn the origin
-    x, y, z = point[0] - hub[0], point[1] - hub[1], point[2] - hub[2]
+    # The hub of walls that do not turn is the origin.
+    torque = cross(plus(point, -1.0, vector(frame.hub)), force)
     for i in range(3):
         load.force[i] -= dt * force[i]
-    load.torque[0] -= dt * (y * force[2] - z * force[1])
-    load.torque[1] -= dt * (z * force[0] - x * force[2])
-    load.torque[2] -= dt * (x * force[1] - y * force[0])
+        load.torque[i] -= dt * torque[i]
     load.power += dt * power
 
 

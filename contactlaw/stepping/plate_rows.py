@@ -12,8 +12,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Places, Rows
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
@@ -37,7 +37,6 @@ from contactlaw.stepping.spring import Spring, curved, resized, unit_spring
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import by_type
 
-Rows = NDArray[np.void]
 SOLID = 1e-6  # largest relative difference of a bead's mass from that of the model's solid sphere
 
 PLATE_ROW = np.dtype(
@@ -69,16 +68,14 @@ PLATE_ROW = np.dtype(
 
 def plate_rows(
     walls: Sequence[Wall], models: Mapping[int, ImpactModel | None], types: int
-) -> tuple[Rows, list[NDArray[np.intp]], list[Any]]:
+) -> tuple[Rows, list[Places], list[Any]]:
     """Plate rows by bead type and number, their numbers for each wall's facets, what they need."""
     table: dict[Any, int] = {}
     plates: dict[int, Any] = {}
     numbers = []
-    by_id = {id(model): model for model in models.values()}
     for wall in walls:
         values, which = np.unique(np.asarray(sheet_of(wall.thickness), dtype=float), return_inverse=True)
         own = {**models, **by_type(wall.model, types)}
-        by_id |= {id(model): model for model in own.values()}
         given = getattr(wall, "given", wall.thickness)
         sheet = sheet_of(given)
         for known in filter(None, own.values()):  # where a shell has edges, the nearest one counts
@@ -90,20 +87,21 @@ def plate_rows(
             one = named.get(value, value)
             key = keys, value, swings, *(getattr(one, name, None) for name in ATTRIBUTES)
             found.append(table.setdefault(key, len(table)))
-            plates[found[-1]] = replace(given, thickness=one) if isinstance(given, Foundation | Shell) else one
+            one = replace(given, thickness=one) if isinstance(given, Foundation | Shell) else one
+            plates[found[-1]] = own, one
         numbers.append(np.array(found)[which.ravel()])
     rows = np.zeros((types, len(table)), PLATE_ROW)
     laws: list[list[Any]] = [[""] * len(table) for _ in range(types)]
-    held: list[Any] = list(by_id.values())
-    for (kinds, *_), number in table.items():
-        for kind, key in kinds:
+    held: list[Any] = [plates]
+    for number, (own, plate) in plates.items():
+        for kind, model in own.items():
             row = rows[kind - 1, number]
-            row["passes"] = by_id[key] is None
-            model = by_id[key] or models.get(kind)  # which has the mass of the beads
+            row["passes"] = model is None
+            model = model or models.get(kind)  # which has the mass of the beads
             if model is None:
                 continue
-            _fill(row, model, float(sheet_of(plates[number])))
-            _fill_wall(row, model.pair.plate, plates[number])
+            _fill(row, model, float(sheet_of(plate)))
+            _fill_wall(row, model.pair.plate, plate)
             law = by_strength(model.pair, model.force_law, COARSE)
             row["law"], row["law_size"] = law.ctypes.data, law.size
             laws[kind - 1][number], held = law.tobytes(), [*held, law]
@@ -111,25 +109,24 @@ def plate_rows(
     return rows, numbers, held
 
 
-def _first_alike(rows: Any, laws: list[list[Any]]) -> NDArray[np.intp]:
+def _first_alike(rows: Any, laws: list[list[Any]]) -> Places:
     """First bead type, from 0, with equal rows and laws on all plates, for each bead type.
 
     Laws are compared by what they are, because equal models hold their data at different addresses.
     """
-    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "responses")]
-    said = [(row[numbers].tolist(), row["responses"].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
-    return np.array([said.index(one) for one in said])
+    rows = rows.copy()
+    rows["law"] = 0
+    contents = [(row.tobytes(), keys) for row, keys in zip(rows, laws, strict=True)]
+    return np.array([contents.index(one) for one in contents])
 
 
 def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     row["tangential"] = model.pair.tangential_ratio
     spring = unit_spring(model, thickness)
-    parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
-    parts |= parts.pop("plate")._asdict()
-    for name in ("corrections", "growth", "rate"):
-        parts |= parts.pop(name)._asdict()
-    for name, value in parts.items():
-        row[name] = value
+    parts: Any = spring, spring.plate, *spring.plate[-3:], model.limits
+    for part in parts:
+        for name in {*part._fields}.intersection(PLATE_ROW.names or ()):
+            row[name] = getattr(part, name)
     row["thickness"], plate = thickness, model.pair.plate
     row["responses"] = responses_of(plate.poissons_ratio)
     row["wave_path"] = wave_path(plate)

@@ -16,7 +16,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
-from contactlaw.physical.vectors import cross, dot
+from contactlaw.physical.vectors import cross, dot, plus, scaled, vector
 from contactlaw.walls.facet import Point
 
 # The body that a bead is a part of. Arm and inertia are along the body's principal axes, which the
@@ -36,12 +36,7 @@ BODY = np.dtype(
 def _turned(w: float, u: Point, v: Point) -> Point:
     """Vector v turned by the quaternion (w, u)."""
     once = cross(u, v)
-    twice = cross(u, once)
-    return (
-        v[0] + 2.0 * (w * once[0] + twice[0]),
-        v[1] + 2.0 * (w * once[1] + twice[1]),
-        v[2] + 2.0 * (w * once[2] + twice[2]),
-    )
+    return plus(v, 2.0, plus(cross(u, once), w, once))
 
 
 @kernel
@@ -61,13 +56,14 @@ def answer(body: Any, force: Point, n: Point, s: float) -> Point:
     if body is None or not known(body):
         return 0.0, 0.0, 0.0
     row = body[0]
-    q, less, per = row.turn, row.inverse_inertia, row.inverse_mass
-    w, back, turned = q[0], (-q[1], -q[2], -q[3]), (q[1], q[2], q[3])
-    m, f = _turned(w, back, n), _turned(w, back, force)
-    p = row.arm[0] - s * m[0], row.arm[1] - s * m[1], row.arm[2] - s * m[2]
+    q, less = row.turn, row.inverse_inertia
+    w, turned = q[0], (q[1], q[2], q[3])
+    back = scaled(-1.0, turned)
+    f = _turned(w, back, force)
+    p = plus(vector(row.arm), -s, _turned(w, back, n))
     spin = cross(p, f)
     more = cross((less[0] * spin[0], less[1] * spin[1], less[2] * spin[2]), p)
-    return _turned(w, turned, (per * f[0] + more[0], per * f[1] + more[1], per * f[2] + more[2]))
+    return _turned(w, turned, plus(more, row.inverse_mass, f))
 
 
 @kernel
@@ -75,12 +71,7 @@ def point_answer(body: Any, mass: float, force: Point, n: Point, s: float) -> Po
     """As `answer`, or of a solid sphere of this mass [kg] that is no part of a body."""
     if known(body):
         return answer(body, force, n, s)
-    up, per = (1.0 - POINT) * dot(force, n), 1.0 / mass
-    return (
-        per * (POINT * force[0] + up * n[0]),
-        per * (POINT * force[1] + up * n[1]),
-        per * (POINT * force[2] + up * n[2]),
-    )
+    return scaled(1.0 / mass, plus(scaled(POINT, force), (1.0 - POINT) * dot(force, n), n))
 
 
 @kernel
@@ -88,11 +79,9 @@ def turn(row: Any, omega: Point, dt: float) -> None:
     """Turn the axes of a body by a step of this angular velocity [rad/s]."""
     q, h = row.turn, 0.5 * dt
     w, u = q[0], (q[1], q[2], q[3])
-    by = h * omega[0], h * omega[1], h * omega[2]
-    more = cross(by, u)
-    q[0] = w - by[0] * u[0] - by[1] * u[1] - by[2] * u[2]
+    by = scaled(h, omega)
+    w, u = w - dot(by, u), plus(plus(u, w, by), 1.0, cross(by, u))
+    size = math.sqrt(w * w + dot(u, u))
+    q[0] = w / size
     for k in range(3):
-        q[k + 1] = u[k] + w * by[k] + more[k]
-    size = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    for k in range(4):
-        q[k] /= size
+        q[k + 1] = u[k] / size

@@ -31,7 +31,7 @@ from contactlaw._errors import ArgumentError
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import number
-from contactlaw.physical.vectors import dot
+from contactlaw.physical.vectors import dot, norm, plus, put, scaled, vector
 from contactlaw.walls.facet import Point
 
 # Least share of the work that the spring gives back: unloading curves that are steeper would need
@@ -58,20 +58,17 @@ def check_softening(softening: Any, parcel: Any) -> None:
 
 
 # What a softened contact keeps of the true impact, in columns of its own.
-SOFTENED = [
-    (name, "f8")
-    for name in (
-        "restitution",
-        "asked_speed",  # at which the true impact was carried out [m/s]; 0: not yet
-        "true_time",  # its contact time [s]
-        "true_force",  # its peak force [N]
-        "plastic_share",  # of the energy that is lost
-        "wave_share",  # of the energy that is lost
-        "true_flags",
-        "stored",  # work put into the spring up to dm [J]
-        "lasting",  # BOUNCING, HELD or DAMPED
-    )
-]
+SOFTENED = (
+    "restitution",
+    "asked_speed",  # at which the true impact was carried out [m/s]; 0: not yet
+    "true_time",  # its contact time [s]
+    "true_force",  # its peak force [N]
+    "plastic_share",  # of the energy that is lost
+    "wave_share",  # of the energy that is lost
+    "true_flags",
+    "stored",  # work put into the spring up to dm [J]
+    "lasting",  # BOUNCING, HELD or DAMPED
+)
 
 
 class Push(NamedTuple):
@@ -89,6 +86,20 @@ def must_ask(begins: bool, deepens: bool, u: float, asked_speed: float) -> bool:
     `deepens` says that the overlap is larger than ever in this contact, at the speed u.
     """
     return begins or (deepens and u > FASTER * asked_speed)
+
+
+@kernel
+def stored_work(
+    stiffness: float, largest: float, undisturbed: bool, left: float, mass: float, u: float, force: float, h: float
+) -> float:
+    """Work that has been put into a spring up to its largest overlap [J].
+
+    An undisturbed bead puts in what it still has, and `left`, the energy it has lost up to here.
+    With velocity Verlet, u^2 becomes the product of the speeds half a step before and after.
+    """
+    if undisturbed:
+        return left + 0.5 * mass * u * (u - h * force / mass)
+    return 0.4 * stiffness * largest * largest * math.sqrt(largest)
 
 
 @kernel
@@ -157,9 +168,7 @@ def advance_softened(
         work -= 0.5 * state.force * (path + step * step * state.force / mass)
     stored, kick = state.stored, 0.0
     if now.largest > state.largest:
-        stored = lost - work + 0.5 * mass * u * (u - step * now.force / mass)
-        if damped > 0.0:
-            stored = 0.4 * stiffness * now.largest * now.largest * math.sqrt(now.largest)
+        stored = stored_work(stiffness, now.largest, damped == 0.0, lost - work, mass, u, now.force, step)
     if now.force == 0.0 and state.force > 0.0 and damped == 0.0:
         missing = lost - (1.0 - restitution * restitution) * stored - work
         kick = settling_kick(missing, mass, u, math.sqrt(2.0 * max(stored - lost, 0.0) / mass), step)
@@ -174,7 +183,7 @@ def keep_drag(row: Any, drag: Point, slip: Point) -> None:
 
     That is against the sliding, but for a rigid body, which may turn.
     """
-    row.width, size = math.sqrt(dot(drag, drag)), math.sqrt(dot(slip, slip))
+    row.width, size = norm(drag), norm(slip)
     for i in range(3):
         row.along[i] = slip[i] / size if size > 0.0 else 0.0
         row.stretch[3 + i] = -drag[i] / row.width if row.width > 0.0 else 0.0
@@ -202,33 +211,28 @@ def tangential_push(
     against the tangential force of an impact.
     """
     if h == 0.0:
-        return row.force[0], row.force[1], row.force[2]
-    ax, ay, az = row.stretch[3], row.stretch[4], row.stretch[5]
+        return vector(row.force)
     if lasting == BOUNCING:
-        up, size = dot((ax, ay, az), n), -f * row.width
-        force = size * (ax - up * n[0]), size * (ay - up * n[1]), size * (az - up * n[2])
-        row.stretch[0], row.stretch[1], row.stretch[2] = force
-        row.force[0], row.force[1], row.force[2] = force
+        against = row.stretch[3], row.stretch[4], row.stretch[5]
+        force = scaled(-f * row.width, plus(against, -dot(against, n), n))
+        put(row.stretch, force)
+        put(row.force, force)
         return force
-    up = dot(slip, n)
-    slip = slip[0] - up * n[0], slip[1] - up * n[1], slip[2] - up * n[2]
+    slip = plus(slip, -dot(slip, n), n)
     left = residual(largest, restitution) if x < largest else 0.0
     k = kappa * 1.5 * f / (x - left) if f > 0.0 and x > left else 0.0
     # A spring that softens keeps its stretch and so gives up a part of its force.
     share = min(k / row.stiffness, 1.0) if row.stiffness > 0.0 else 1.0
     row.stiffness = k
-    ax, ay, az = share * row.stretch[0], share * row.stretch[1], share * row.stretch[2]
-    up, path = dot((ax, ay, az), n), k * h
-    ax, ay, az = (ax - up * n[0] - path * slip[0], ay - up * n[1] - path * slip[1], az - up * n[2] - path * slip[2])
+    stretched = scaled(share, vector(row.stretch))
+    stretched = plus(plus(stretched, -dot(stretched, n), n), -k * h, slip)
     damping = 0.0
     if lasting == DAMPED:
         damping = min(2.0 * _DAMPING * math.sqrt(mass / POINT * k), _MOST_DAMPING * mass / POINT / h)
-    force = ax - damping * slip[0], ay - damping * slip[1], az - damping * slip[2]
-    size, most = math.sqrt(dot(force, force)), friction * max(f, 0.0)  # the last step may pull
+    force = plus(stretched, -damping, slip)
+    size, most = norm(force), friction * max(f, 0.0)  # the last step may pull
     if size > most:
-        less = most / size
-        force = force[0] * less, force[1] * less, force[2] * less
-        ax, ay, az = force
-    row.stretch[0], row.stretch[1], row.stretch[2] = ax, ay, az
-    row.force[0], row.force[1], row.force[2] = force
+        force = stretched = scaled(most / size, force)
+    put(row.stretch, stretched)
+    put(row.force, force)
     return force

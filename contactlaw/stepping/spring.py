@@ -38,8 +38,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
@@ -62,8 +62,6 @@ from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import constants_of, plate_mobility
 from contactlaw.stepping.edge import EdgeEcho, recalled
-
-Array = NDArray[np.float64]
 
 RELAXATION = 1e5  # [contact times]; within an impact, u2 relaxes by 1e-5 of itself
 # Speed of the impacts at whose frequency springs have their moduli [m/s]. Slower ones flow little,
@@ -126,28 +124,6 @@ class Largest(NamedTuple):
 
 
 PARTED = State(*[0.0] * 18)
-
-
-@kernel(inline=True)
-def with_memory(state: State, m: Memories) -> State:
-    """State with this memory of the plate."""
-    one, two = m.first, m.second
-    return tuple_of(
-        State,
-        state,
-        x1=one.x1,
-        y1=one.y1,
-        x2=one.x2,
-        y2=one.y2,
-        x3=one.x3,
-        y3=one.y3,
-        x4=two.x1,
-        y4=two.y1,
-        x5=two.x2,
-        y5=two.y2,
-        x6=two.x3,
-        y6=two.y3,
-    )
 
 
 @kernel(inline=True)
@@ -276,14 +252,14 @@ def _first_known(law: Array, spring: Spring, state: State, overlap: float, step:
 
 
 @kernel
-def _force(law: BlendedLaw, loading: bool, q: float, curve: UnloadingCurve) -> float:
-    if loading or curve.stiffness == 0.0:
+def _force(law: BlendedLaw, q: float, curve: UnloadingCurve) -> float:
+    if curve.stiffness == 0.0:
         return forces.loading(law, q)
     return forces.unloading_force(law, curve, q)
 
 
 @kernel
-def _balance(law: BlendedLaw, loading: bool, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
+def _balance(law: BlendedLaw, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -292,7 +268,7 @@ def _balance(law: BlendedLaw, loading: bool, curve: UnloadingCurve, b: float, r:
     if not r > 0.0:
         return 0.0, 0.0
     q = math.sqrt(r)
-    f = _force(law, loading, q, curve)
+    f = _force(law, q, curve)
     if b == 0.0:
         return q, f
     gap = b * f
@@ -300,7 +276,7 @@ def _balance(law: BlendedLaw, loading: bool, curve: UnloadingCurve, b: float, r:
     for _ in range(MOST_ITERATIONS):
         change = gap / slope
         q = max(q - change, 0.0)
-        f = _force(law, loading, q, curve)
+        f = _force(law, q, curve)
         if not abs(change) > CONVERGED * q:
             break
         last, gap = gap, q * q + b * f - r
@@ -349,10 +325,10 @@ def advance(
     least = forces.lossless(own)
     if dm > least and not top:
         curve = forces.unloading(own, dm)
-        q, f = _balance(own, False, curve, b, r - curve.residual)
+        q, f = _balance(own, curve, b, r - curve.residual)
         loading = q * q + curve.residual > dm
     if loading:
-        q, f = _balance(own, True, NO_CURVE, b, r)
+        q, f = _balance(own, NO_CURVE, b, r)
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
@@ -361,12 +337,28 @@ def advance(
                 dm = max(d, dm + 0.5 * fall * max(vertex, 0.0) ** 2)
                 if dm > least:
                     curve = forces.unloading(own, dm)
-                    q, f = _balance(own, False, curve, b, r - curve.residual)
+                    q, f = _balance(own, curve, b, r - curve.residual)
         dm = max(d, dm)
     force = f * unit
     moved += by_edge
-    new = State(known + moved * force, dm * scale, force, own_mobility, stiffening, strength)
-    return with_memory(new, remembered(before_edge, force))
+    after = remembered(before_edge, force)
+    rest = after.second
+    return tuple_of(
+        State,
+        after.first,
+        plate_displacement=known + moved * force,
+        largest_compression=dm * scale,
+        force=force,
+        mobility=own_mobility,
+        stiffening=stiffening,
+        strength=strength,
+        x4=rest.x1,
+        y4=rest.y1,
+        x5=rest.x2,
+        y5=rest.y2,
+        x6=rest.x3,
+        y6=rest.y3,
+    )
 
 
 @kernel

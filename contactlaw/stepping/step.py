@@ -14,6 +14,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.physical.kind import Kind
+from contactlaw.physical.vectors import divided, norm, scaled, vector
 from contactlaw.stepping.bead import MOST_CONTACTS, interact, touches
 from contactlaw.stepping.contact import CONTACT, NO_CONTACT, Bead, Clock, WallScene
 from contactlaw.stepping.friction import FRICTION, clear_friction
@@ -34,10 +35,9 @@ ROWS = 2 * MOST_CONTACTS  # of the record that one bead may need in a step
 # rows, then, with friction, the FRICTION rows. An engine may give a new bead the row of a removed
 # one without emptying it: `owner` shows whose row it is.
 HEAD = np.dtype(
-    [("error", "f8")]  # a `Trouble`, which ends the run; 0 without one
-    + [("owner", "f8")]  # number of the bead
-    + [("layout", "f8")]  # LAYOUT and how many numbers the history has
-    + [("start", "f8")]  # of the walls' motion [s], as in RUN, so that a restart knows it
+    # error: a `Trouble`, which ends the run, 0 without one; owner: number of the bead; layout: LAYOUT
+    # and how many numbers the history has; start: of the walls' motion [s], as in RUN, for restarts
+    [(name, "f8") for name in ("error", "owner", "layout", "start")]
     # the bead as it was when it began to touch walls, in SI units; a radius of 0: it touches none
     + [(name, "f8") for name in ("radius", "mass", "kind", "softening", "parcel")]
     + [("force", "f8", 3), ("torque", "f8", 3)]  # of the last step, in the engine's units
@@ -50,12 +50,11 @@ LAYOUT = 2000  # of these columns; histories of version 0.3 have numbers below 1
 # differently in a run in pieces, or be reset: `ticks` steps of length `tick` since `base`.
 RUN = np.dtype(
     [(name, "f8") for name in ("length", "time", "mass")]  # the engine's units, in SI
-    + [("base", "f8"), ("tick", "f8"), ("before", "f8"), ("ticks", "i8")]  # before: the step before [s]
-    # time at which moving walls are where they were given [s]; what the engine's clock is ahead of the walls'
-    + [("start", "f8"), ("ahead", "f8")]
-    + [("group", "i8")]  # bits of the beads that touch walls
+    # before: the step before [s]; start: time at which moving walls are where they were given [s]; ahead:
+    # what the engine's clock is ahead of the walls'; energy: the sum of what beads give to walls, in the engine's units
+    + [(name, "f8") for name in ("base", "tick", "before", "start", "ahead", "energy")]
+    + [(name, "i8") for name in ("ticks", "group", "accounts")]  # group: bits of the beads; accounts: whether to sum
     + [("low", "f8", 3), ("period", "f8", 3)]  # of the box, in the engine's units; 0: not periodic
-    + [("accounts", "i8"), ("energy", "f8")]  # whether to sum what beads give to walls; the sum, in the engine's units
     + [(name, "f8") for name in ("error", "bead", "wall", "value", "limit")]  # the first error; 0: none
     + [("forces", "f8", (2, 3))]  # force and torque on a bead
 )
@@ -107,7 +106,7 @@ def fail(run: Any, head: Any, bead: float, code: int, wall: int, value: float, l
 @kernel
 def _forget(head: Any, bead: Bead) -> None:
     """End all contacts of a bead, without a record."""
-    head.radius = head.mass = head.kind = head.softening = head.parcel = 0.0
+    head.radius = 0.0
     for k in range(3):
         head.force[k] = head.torque[k] = 0.0
     for k in range(len(bead.contacts)):
@@ -125,8 +124,8 @@ def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) ->
         float(beads.tag[i]),
         beads.kind[i] - 1,
         centre,
-        (beads.v[i, 0] * per, beads.v[i, 1] * per, beads.v[i, 2] * per),
-        (beads.omega[i, 0] / run.time, beads.omega[i, 1] / run.time, beads.omega[i, 2] / run.time),
+        scaled(per, vector(beads.v[i])),
+        divided(vector(beads.omega[i]), run.time),
         beads.radius[i] * run.length,
         beads.mass[i] * run.mass,
         run.forces[0],
@@ -134,6 +133,18 @@ def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) ->
         array_at(beads.history + beads.bytes * i + at, beads.places, CONTACT),
         array_at(beads.history + beads.bytes * i + at + 8 * WIDTH * beads.places, sliding, FRICTION),
     )
+
+
+@kernel
+def _heads_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
+    """One row, the head of a bead's history; a new bead in the row of a removed one does not inherit that."""
+    heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
+    head = heads[0]
+    head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
+    if head.owner != bead.number:
+        _forget(head, bead)
+        head.owner, beads.last[i] = bead.number, 0.0
+    return heads
 
 
 @kernel
@@ -149,20 +160,15 @@ def _wrapped(run: Any, beads: Beads, i: int, k: int) -> float:
 def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None:
     """Report beads that could jump through a wall in one step, or of another radius or density.
 
-    A new bead in the row of a removed one does not inherit the last COR. A bead that has left the
-    group has left the walls.
+    A bead that has left the group has left the walls.
     """
     fastest = 0.0
     for f in range(len(scene.frames)):
         fastest = max(fastest, scene.frames[f].fastest)
     for i in range(beads.n):
         bead = _bead_of(scene, run, beads, i, (0.0, 0.0, 0.0))
-        heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
-        head, tag, size = heads[0], bead.number, bead.r
-        speed = math.sqrt(bead.v[0] ** 2 + bead.v[1] ** 2 + bead.v[2] ** 2) + fastest
-        head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
-        if head.owner != tag:
-            beads.last[i] = 0.0
+        heads, tag, size, speed = _heads_of(run, beads, i, bead), bead.number, bead.r, norm(bead.v) + fastest
+        head = heads[0]
         if not beads.mask[i] & run.group:
             _forget(head, bead)
             continue
@@ -171,17 +177,14 @@ def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None
         if not (speed * clock.dt < size or flies_through):
             code = Trouble.TOO_FAST.value if speed < math.inf else Trouble.NOT_FINITE.value
             fail(run, head, tag, code, -1, speed, size)
-        if head.owner == tag and head.radius != 0.0 and not _same(size, head.radius):
+        if head.radius != 0.0 and not _same(size, head.radius):
             # `_check` misses a bead that has become so small that no wall is near it.
             fail(run, head, tag, Trouble.RESIZED.value, -1, size, head.radius)
             _forget(head, bead)
-        body, free = body_of(beads.bodies, i), True  # a part of a body may have any mass
-        if body is not None and len(body) > 0:
-            free = body[0].inverse_mass == 0.0
-        if free and (head.owner != tag or head.radius == 0.0):  # `_check` has the others
-            solid = solid_mass(row, size)
-            if abs(bead.mass - solid) > SOLID * solid:
-                fail(run, head, tag, Trouble.WRONG_MASS.value, -1, bead.mass, solid)
+        body, solid = body_of(beads.bodies, i), solid_mass(row, size)
+        free = body is None or len(body) == 0 or body[0].inverse_mass == 0.0  # a part of a body may have any mass
+        if free and head.radius == 0.0 and abs(bead.mass - solid) > SOLID * solid:  # `_check` has the others
+            fail(run, head, tag, Trouble.WRONG_MASS.value, -1, bead.mass, solid)
 
 
 @kernel
@@ -296,12 +299,9 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
             continue
         if status.impacts + ROWS > len(scene.impacts):
             return i
-        heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
-        head, bead = heads[0], _bead_of(scene, run, beads, i, centre)
-        if head.owner != bead.number:
-            _forget(head, bead)
-            head.owner, beads.last[i] = bead.number, 0.0
-            head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
+        bead = _bead_of(scene, run, beads, i, centre)
+        heads = _heads_of(run, beads, i, bead)
+        head = heads[0]
         if head.radius != 0.0:
             _check(scene, run, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
