@@ -9,7 +9,7 @@ set-up of each run and in every 100th step, and kept with each bead of a body, i
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,10 +113,8 @@ class Bodies:
         columns[found] = rows.view(np.float64).reshape(len(rows), columns.shape[1])
 
     def _nearest(self, apart: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Distances to the nearest periodic image."""
-        low, high, xy, yz, xz, periodic, _ = self._lmp.extract_box()
-        sides: Any = np.diag(np.subtract(high, low))
-        sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
-        turns = np.round(np.linalg.solve(sides.T, apart.T)).T
-        moved: NDArray[np.float64] = apart - (turns * np.array(periodic)) @ sides
+        """Distances to the nearest periodic image, in a box that is not triclinic."""
+        low, high, _, _, _, periodic, _ = self._lmp.extract_box()
+        side = np.subtract(high, low)
+        moved: NDArray[np.float64] = apart - np.round(apart / side) * side * periodic
         return moved

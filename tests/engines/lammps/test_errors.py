@@ -50,11 +50,8 @@ def test_impacts_that_are_refused(model, position, speed, dt, commands, words):
 
 
 def test_a_density_that_is_a_little_off_is_seen_before_any_impact(model):
-    """By `attach`, and in the first step: not when such a bead comes to a wall, hours later."""
-    far = above(0.02)
-    with pytest.raises(ValueError, match="bead 1 at step 0: density: its mass is 2.69488e-06 kg"):
-        scene(model, position=far, density=1.004 * box.DENSITY)
-    lmp, _ = scene(model, position=[ABOVE, far])
+    """In the first step: not when such a bead comes to a wall, hours later."""
+    lmp, _ = scene(model, position=[ABOVE, above(0.02)])
     lmp.command(f"set atom 2 density {1.004 * box.DENSITY}")
     with pytest.raises(RuntimeError, match="bead 2 at step 0: density: its mass is 2.69488e-06 kg"):
         lmp.command("run 0")
@@ -151,16 +148,6 @@ def test_a_restart_file_written_after_an_error(model, tmp_path):
     assert lmp.extract_global("ntimestep") == 1080
 
 
-def test_a_run_that_is_halted_by_someone_elses_mark(model):
-    lmp, _ = scene(model)
-    lmp.command("run 10")
-    lmp.numpy.extract_atom("d2_contactlaw")[0, 0] = 1.0
-    with pytest.raises(RuntimeError, match=r"beads \[1\]: marked as wrong"):
-        lmp.command("run 1000")
-    lmp.command("run 1000")
-    assert lmp.extract_global("ntimestep") > 1000
-
-
 @pytest.mark.parametrize(
     ("commands", "words"),
     [
@@ -179,8 +166,8 @@ def test_another_kind_of_simulation(model, commands, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"plates": []}, "plates: at least one"),
-        ({"plates": [1.0]}, "plates: expected"),
+        ({"plates": []}, "plates: expected a list"),
+        ({"plates": [1.0]}, "plates: expected a list"),
         ({"model": 0.9}, "model: expected"),
         ({"friction": -0.1}, "friction"),
         ({"friction": math.nan}, "friction"),
@@ -218,7 +205,6 @@ def test_a_lammps_without_mpi(model, monkeypatch):
 @pytest.mark.parametrize(
     ("theirs", "words"),
     [
-        ("compute contactlaw_error all ke", "compute 'contactlaw_error' already"),
         ("fix contactlaw_halt all momentum 1 linear 1 1 1", "fix 'contactlaw_halt' already"),
         ("variable contactlaw_error equal 1", "variable 'contactlaw_error' already"),
         ("group contactlaw id 1", "group 'contactlaw' with beads"),
@@ -251,7 +237,7 @@ def test_plates_serve_the_same_beads_and_law(model):
     steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
     for other in (cl.ImpactModel(PAIR, law="hertz"), cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")):
-        with pytest.raises(ValueError, match="another law or other beads"):
+        with pytest.raises(ValueError, match="differ from it in the plate alone"):
             attach(lmp, model, [flat(1e-3, model=other)])
 
 

@@ -9,8 +9,9 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Ring, Sphere, memory
+from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Ring, Sphere
 from contactlaw.softsphere import time_step
+from contactlaw.stepping.step import WIDTH
 
 HERTZ, MYC = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc"))
 DRUM = 8 * R
@@ -185,7 +186,7 @@ def test_an_elastic_bead_keeps_its_energy_anywhere(name):
         lmp.command("run 10000")
         now = state(lmp)
         x, v = now["x"][0], now["v"][0]
-        if not now["d2_contactlaw"][0, PLATE :: memory.WIDTH].any():
+        if not now["d2_contactlaw"][0, PLATE::WIDTH].any():
             energies.append(0.5 * v @ v + 5e3 * x[2])
     assert len(energies) > 30 and len(attached.collisions()) > 10
     assert np.ptp(energies) < (1e-3 if name == "hopper" else 1e-8) * np.mean(np.abs(energies))

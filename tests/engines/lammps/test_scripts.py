@@ -17,8 +17,7 @@ STARTS = [above(x=0.01), above(x=-0.01), above(y=0.02)]
 PARTS = [
     ("fix", "contactlaw"),
     ("fix", "contactlaw_force"),
-    ("variable", "contactlaw_errors"),
-    ("compute", "contactlaw_error"),
+    ("variable", "contactlaw_error"),
     ("fix", "contactlaw_halt"),
 ]
 
@@ -126,7 +125,6 @@ def test_deleting_all_beads(scene):
         ("unfix contactlaw_force\nrun 300", "fix 'contactlaw_force'"),
         ("run 230\nunfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
         ("run 300\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),  # LAMMPS itself fails
-        ("uncompute contactlaw_error\nrun 300", "compute 'contactlaw_error'"),
         ("variable contactlaw_error delete\nrun 300", "variable 'contactlaw_error'"),
     ],
 )
