@@ -43,7 +43,7 @@ _LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
 _FORCE = f"{HISTORY}_force"
 # LAMMPS's units of length, time and mass, in SI
 _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-15)}
-_ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
+_ROUNDED = 6  # decimals of the time steps by which LAMMPS's clock differs from a whole number of them
 _HALT_EVERY = 100  # steps between looks at errors, in the steps in which the C function shows them
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 # Parts of an attachment in LAMMPS, in the order in which they are made: kind, name, settings. The
@@ -53,10 +53,11 @@ _PARTS = (
     ("group", HISTORY, "empty"),
     ("fix", _FORCE, f"{HISTORY} external pf/callback 1 1"),
     ("variable", f"{HISTORY}_error", f"equal f_{_FORCE}[{{shown}}]"),
-    # It has the group of the beads, because LAMMPS refuses to delete a group that a fix has.
-    ("fix", f"{HISTORY}_halt", f"{{group}} halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+    ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+    ("compute", f"{HISTORY}_group", "{group} ke"),  # because LAMMPS refuses to delete a group that a compute has
 )
-_REMOVED = {"fix": "unfix {}", "group": "group {} delete", "variable": "variable {} delete"}
+_ERROR = "bead", "wall", "value", "limit", "error"  # of RUN
+_REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
 
 
 def attach(
@@ -156,31 +157,37 @@ def attach(
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
     if start is not None and not math.isfinite(number("start", start)):
         raise ArgumentError("start", start, "must be finite [s]")
-    memory = _record_memory(records)
     _check_simulation(lmp)
-    models = _checked(plates, model, lmp.extract_setting("ntypes"))
-    groups = lmp.available_ids("group")  # None where one was deleted
-    if group is None or group not in groups:
-        raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(filter(None, groups))}")
-    radius = _largest_radius(lmp, _bit_of(lmp, group))
-    if isinstance(softening, str) and softening == "auto":
-        softening = _most_softening(models, speeds, radius)
-    elif speeds is not None:
-        raise ArgumentError("speeds", speeds, "are for softening='auto' alone: leave them out")
+    groups = [*filter(None, lmp.available_ids("group"))]  # None where one was deleted
+    if group not in groups:
+        raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(groups)}")
     contact = {"friction": friction, "softening": softening, "parcel": parcel}
-    return LammpsPlates(lmp, models, plates, memory, radius, group, rigid, start, **contact)
+    contacts = _contacts(lmp, model, plates, _record_memory(records), speeds, _bit_of(lmp, group), contact)
+    return LammpsPlates(lmp, contacts, group, rigid, start)
 
 
-def _most_softening(models: dict[int, ImpactModel | None], speeds: Any, radius: float) -> float:
-    """Most softening that all beads allow."""
-    if np.shape(speeds) != (2,):
-        reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
+def _contacts(
+    lmp: lammps, models: Any, plates: Any, records: NDArray[np.void], speeds: Any, bit: int, contact: dict[str, Any]
+) -> WallContacts:
+    """Contacts of the beads that LAMMPS has, after a look at walls and softening."""
+    types, comm = lmp.extract_setting("ntypes"), lmp.get_mpi_comm()
+    own, largest = _checked(plates, models, types), float(_beads(lmp, "radius", bit).max(initial=0.0))
+    radius = max(comm.allgather(largest)) * _UNITS[lmp.extract_global("units")][0]
+    auto = isinstance(contact["softening"], str) and contact["softening"] == "auto"
+    if np.shape(speeds) != (2,) if auto else speeds is not None:
+        reason = "softening='auto', and it alone, takes the slowest and fastest approach, as in speeds=(0.1, 3.0)"
         raise ArgumentError("speeds", speeds, reason)
-    if radius == 0.0:
+    if auto and radius == 0.0:
         reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
         raise ArgumentError("softening", "auto", reason)
-    slowest, fastest = map(float, speeds)
-    return min(most_softening(model, fastest, radius, slowest) for model in models.values() if model)
+    if auto:
+        slow, fast = map(float, speeds)
+        contact["softening"] = min(most_softening(model, fast, radius, slow) for model in own.values() if model)
+    with warnings.catch_warnings():
+        if comm.rank > 0:
+            warnings.simplefilter("ignore")  # the first rank warns of large beads, and walls that cross
+        warn_of_metres("radius", radius, stacklevel=3)
+        return WallContacts(plates, own, radius, records, types=types, **contact)
 
 
 def _bit_of(lmp: lammps, group: str) -> int:
@@ -190,15 +197,10 @@ def _bit_of(lmp: lammps, group: str) -> int:
 
 def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
     """Read a number of each bead on this rank, in LAMMPS's units; `bit` is that of a group."""
-    n = lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
-    found = np.asarray(lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, int))
-    return found if bit == 1 else found[_beads(lmp, "mask").astype(int) & bit != 0]
-
-
-def _largest_radius(lmp: lammps, bit: int) -> float:
-    """Radius of the largest bead of a group on all ranks so far [m]."""
-    length, largest = _UNITS[lmp.extract_global("units")][0], _beads(lmp, "radius", bit)
-    return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
+    if not (n := lmp.extract_setting("nlocal")):  # LAMMPS may have no array for no bead
+        return np.zeros(0, int)
+    found, mask = (np.asarray(lmp.numpy.extract_atom(one)[:n]) for one in (name, "mask"))
+    return found[mask & bit != 0]
 
 
 def _checked(plates: Any, models: Any, types: int) -> dict[int, ImpactModel | None]:
@@ -216,7 +218,7 @@ def _checked(plates: Any, models: Any, types: int) -> dict[int, ImpactModel | No
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
             if model and not (beads and _beads_of(model) == _beads_of(beads)):
-                reason = f"attach() has {beads!r} for atom type {kind}; a wall may differ from it in the plate alone"
+                reason = f"attach() needs a model of this law and these beads for atom type {kind}, and has {beads!r}"
                 raise ArgumentError("plates", model, reason)
     return own
 
@@ -227,10 +229,8 @@ def _beads_of(model: ImpactModel) -> tuple[Any, Any]:
 
 def _record_memory(records: Any) -> NDArray[np.void]:
     """Empty rows for a number of impacts, which take memory only when they are written."""
-    if not isinstance(records, Integral) or isinstance(records, bool):
-        raise TypeError(f"records: expected an integer, got {records!r}")
-    if records < 1:
-        raise ArgumentError("records", records, "must be positive")
+    if not isinstance(records, Integral) or isinstance(records, bool) or records < 1:
+        raise ArgumentError("records", records, "must be a positive whole number")
     try:
         return np.empty(int(records) + ROWS, IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
@@ -253,13 +253,10 @@ def _check_simulation(lmp: lammps) -> None:
             raise ArgumentError("lmp", None, reason)
     _check_run_style(lmp)
     for kind, name, _ in _PARTS:
-        if kind != "group" and lmp.has_id(kind, name):
-            raise RuntimeError(
-                f"lmp: has a {kind} {name!r} already: detach() the plates that it belongs to, or "
-                "give yours another name"
-            )
-    if lmp.has_id("group", HISTORY) and _beads(lmp, "id", _bit_of(lmp, HISTORY)).size:  # a restart brings an empty one
-        raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; rename it")
+        # a restart brings an empty group
+        if lmp.has_id(kind, name) and (kind != "group" or _beads(lmp, "id", _bit_of(lmp, name)).size):
+            remedy = "detach() the plates that it belongs to, or give yours another name"
+            raise RuntimeError(f"lmp: has a {kind} {name!r} already: {remedy}")
 
 
 def _check_run_style(lmp: lammps) -> None:
@@ -274,14 +271,14 @@ def _check_run_style(lmp: lammps) -> None:
 
 def _remove(lmp: lammps) -> None:
     """Remove from LAMMPS all parts of an attachment that are left."""
-    for kind, name, _ in reversed(_PARTS):
+    for kind, name, _ in reversed([*_PARTS, ("fix", COLUMN, ""), ("compute", COLUMN, "")]):
         if lmp.has_id(kind, name):
             lmp.command(_REMOVED[kind].format(name))
 
 
-def _address(lmp: lammps, name: str) -> int:
+def _address(lmp: lammps, name: str) -> Any:
     """Address of a function of LAMMPS's C interface."""
-    return ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value or 0
+    return ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value
 
 
 def _called(lmp: lammps, name: str, *given: Any) -> Any:
@@ -301,34 +298,16 @@ class LammpsPlates:
         Time at which walls that move are where they were given, by `time` [s].
     """
 
-    def __init__(
-        self,
-        lmp: lammps,
-        models: dict[int, ImpactModel | None],
-        plates: Sequence[Wall] | Mapping[str, Wall],
-        records: NDArray[np.void],
-        radius: float,
-        group: str,
-        rigid: str | None,
-        start: float | None,
-        **contact: Any,
-    ) -> None:
-        self._lmp, self._comm, self._attached = lmp, lmp.get_mpi_comm(), True
+    def __init__(self, lmp: lammps, contacts: WallContacts, group: str, rigid: str | None, start: float | None) -> None:
+        self._lmp, self._comm, self._attached, self._contacts = lmp, lmp.get_mpi_comm(), True, contacts
         self._parts: list[NDArray[np.void]] = []
-        with warnings.catch_warnings():
-            if self._comm.rank > 0:
-                warnings.simplefilter("ignore")  # the first rank warns of large beads, and walls that cross
-            warn_of_metres("radius", radius, stacklevel=3)
-            types = lmp.extract_setting("ntypes")
-            self._contacts = WallContacts(plates, models, radius, records, types=types, **contact)
-        self.softening, self.parcel = self._contacts.scene.softening, self._contacts.scene.parcel
+        self.softening, self.parcel = contacts.scene.softening, contacts.scene.parcel
         length, _, mass = self._units = _UNITS[lmp.extract_global("units")]
         self._bodies = Bodies(lmp, (length, mass), rigid)
         try:
             self._bodies.follow()
             self._install(group, start)
         except BaseException:
-            self._bodies.forget()
             _remove(lmp)
             raise
         self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}
@@ -355,8 +334,8 @@ class LammpsPlates:
         self.start = float(start if start is not None else self.time if before is None else before)
         self._lasting["start"], self._shared["since"] = self.start, self.time
         self._run = self._comm.bcast(time.time_ns() // 1000), self.time
-        self._borne = self.time, np.zeros((len(scene.loads), NUMBERS))
-        self._saved = [self.time], np.zeros(len(scene.facets)), 0, ""
+        self._borne: tuple[float, Any] = self.time, 0.0
+        self._saved: tuple[list[float], Any, int, str] = [self.time], 0.0, 0, ""
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
@@ -383,14 +362,14 @@ class LammpsPlates:
 
     def _start_clock(self, bit: int) -> None:
         """Start the walls' clock at LAMMPS's time, so that walls go on moving after a restart."""
-        tick, now, since = (self._lmp.extract_global(name) for name in ("dt", "atime", "atimestep"))
-        time = now + (self._lmp.extract_global("ntimestep") - since) * tick
-        ticks, unit = round(time / tick), self._units[1]
-        apart = time - ticks * tick
-        self._lasting = run = np.zeros(1, RUN)
-        run["length"], run["time"], run["mass"] = self._units
+        names = "dt", "atime", "atimestep", "ntimestep"
+        tick, now, since, step = (self._lmp.extract_global(name) for name in names)
+        time, unit = now + (step - since) * tick, self._units[1]
+        ticks, self._lasting = round(time / tick), np.zeros(1, RUN)
+        run = self._lasting
+        run[["length", "time", "mass"]] = self._units
         run["group"], run["tick"], run["ticks"] = bit, tick * unit, ticks
-        run["base"] = apart * unit if abs(apart) > _ROUNDED * tick else 0.0
+        run["base"] = round(time / tick - ticks, _ROUNDED) * tick * unit
 
     @property
     def time(self) -> float:
@@ -435,13 +414,12 @@ class LammpsPlates:
             self._after_steps(lammps_error)
         else:
             self._tidy_rows(renumber=True)
-        gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
-        if gone:
-            cleared = all(kind != "fix" or (kind, name) in gone for kind, name, _ in _PARTS)
+        left = [(kind, name) for kind, name, _ in _PARTS if self._lmp.has_id(kind, name)]
+        if len(left) < len(_PARTS):
             self.detach()
-            if cleared:  # a restart file may restore the group
+            if "fix" not in dict(left):  # by `clear`; a restart file may restore the group
                 return
-            names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
+            names = ", ".join(f"{kind} {name!r}" for kind, name, _ in _PARTS if (kind, name) not in left)
             raise RuntimeError(
                 f"{names}: taken out by a command, and all plates with it; LammpsPlates.detach() is the way to do it"
             ) from lammps_error
@@ -457,13 +435,12 @@ class LammpsPlates:
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)
-        step, bead, value, limit = self._shared["error_step"][0], run["bead"], run["value"], run["limit"]
-        own = int(step), int(bead), float(limit), float(value), int(run["wall"]), int(run["error"])
+        own = self._shared["error_step"][0].item(), *(run[name].item() for name in _ERROR)
         errors = [error for error in self._comm.allgather(own) if error[-1]]
         self._lasting["error"] = self._history()[1]["error"] = 0.0
         if errors:
-            step, bead, limit, value, wall, code = min(errors)
-            raise RuntimeError(explain(code, wall, value, limit, bead, step)) from lammps_error
+            step, bead, wall, value, limit, code = min(errors)
+            raise RuntimeError(explain(code, int(wall), value, limit, int(bead), step)) from lammps_error
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.void], NDArray[np.int32]]:
         """Return the contact state of this rank's beads, with the spare rows, their HEAD rows, and their IDs."""
@@ -522,7 +499,7 @@ class LammpsPlates:
         ValueError, RuntimeError
             If no step was simulated; the walls were detached.
         """
-        self._check_attached("loads")
+        self._together(self._check_attached, "loads")
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)
@@ -544,16 +521,20 @@ class LammpsPlates:
             is hit before that, the approach speed is the largest one. The time is LAMMPS's at first
             touch.
         """
-        return np.concatenate([np.empty(0, IMPACT), *self._parts])
+        return self._since(0)
+
+    def _since(self, part: int) -> NDArray[np.void]:
+        return np.concatenate([np.empty(0, IMPACT), *self._parts[part:]])
 
     def gather(self) -> NDArray[np.void] | None:
         """Impacts of all ranks, sorted by time: on rank 0, None on the others.
 
         Every rank has to call it. The columns are those of `collisions`.
         """
-        return self._gathered(self.collisions())
+        return self._gathered(0)
 
-    def _gathered(self, own: NDArray[np.void]) -> NDArray[np.void] | None:
+    def _gathered(self, part: int) -> NDArray[np.void] | None:
+        own = self._together(self._since, part)
         if (parts := self._comm.gather(own)) is None:
             return None
         whole: NDArray[np.void] = np.concatenate(parts)
@@ -565,14 +546,14 @@ class LammpsPlates:
         Every rank has to call it.
         """
         made = {"engine": "LAMMPS", "version_engine": self._lmp.version()}
-        return self._on_rank_0(lambda rows: self._contacts.record(rows, **made), self.gather())
+        return self._together(lambda rows: self._contacts.record(rows, **made), self.gather())
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record of all ranks to a file, see `contactlaw.Record.save`.
 
         Every rank has to call it; rank 0 writes.
         """
-        self._on_rank_0(lambda record: record.save(path), self.record())
+        self._together(lambda record: record.save(path), self.record())
 
     def save_series(self, path: str | os.PathLike[str]) -> None:
         """Add a map of what the walls bore since the last call to a series that ParaView plays.
@@ -583,16 +564,16 @@ class LammpsPlates:
         name begins another series.
         """
         (times, before, part, name), now = self._saved, self.time
-        self._check_attached("save_series")
+        self._together(self._check_attached, "save_series")
         times = times if name in ("", os.fspath(path)) else times[-1:]
-        rows = self._gathered(np.concatenate([np.empty(0, IMPACT), *self._parts[part:]]))
+        rows = self._gathered(part)
         pressed = self._comm.allreduce(self._contacts.scene.pressed)
 
         def add(rows: NDArray[np.void]) -> None:
             force = mean(pressed - before, now - times[-1])
             add_to_series(path, [*times[1:], now], self._contacts.record(rows), force)
 
-        self._on_rank_0(add, rows)
+        self._together(add, rows)
         self._saved = [*times, now], pressed, len(self._parts), os.fspath(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
@@ -600,22 +581,22 @@ class LammpsPlates:
 
         Every rank has to call it; rank 0 writes. The walls are in the energy map.
         """
-        self._on_rank_0(lambda record: report(record, out), self.record())
+        self._together(lambda record: report(record, out), self.record())
         return Path(out) / "index.html"
 
-    def _on_rank_0(self, do: Callable[[Any], _T], given: Any) -> _T | None:
-        """Do something with what rank 0 has and the others have not; all ranks raise what goes wrong in it."""
-        result = own = raised = None
+    def _together(self, do: Callable[[Any], _T], given: Any) -> _T | None:
+        """Do something with what is given, on rank 0 alone if that alone has it; all ranks raise what goes wrong."""
+        result = own = None
         try:
             result = None if given is None else do(given)
         except Exception as error:  # the other ranks wait to hear of it
-            own = raised = error
+            own = error
             try:
                 pickle.loads(pickle.dumps(error))
             except Exception:
                 own = RuntimeError(repr(error))
-        if other := self._comm.bcast(own):
-            raise raised or other
+        for other in filter(None, self._comm.allgather(own)):
+            raise own or other
         return result
 
     def detach(self) -> None:
@@ -631,5 +612,4 @@ class LammpsPlates:
             vars(self._lmp).pop(name, None)
         vars(self._lmp).update(self._replaced)
         if self._lmp.lmp is not None:  # not closed
-            self._bodies.forget()
             _remove(self._lmp)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from contactlaw._jit import c_function
-from contactlaw.engines.lammps.memory import SHARED, elapsed, extract, look, matrix, minimizing, rows_at, show
+from contactlaw.engines.lammps.memory import SHARED, call, extract, matrix, rows_at, show
 from contactlaw.record.columns import IMPACT
 from contactlaw.stepping import Clock, Trouble
 from contactlaw.stepping.contact import STATUS, WallScene
@@ -28,6 +28,7 @@ from contactlaw.walls.memory import array_at, carray
 from contactlaw.walls.surface import OVERLAP, ROOM
 
 _EVERY = 100  # steps between looks at all beads, which happen in the first step of a run, too
+_MINIMIZING = 2  # for `lammps_is_running`; 1 is a run
 
 _pointer: Any = types.CPointer
 _SIGNATURE = types.void(
@@ -49,9 +50,10 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if run.error == 0.0:
         shared.error_step = step
     # At a set-up, no step of the run has elapsed. The step number may be reset, so it is not used.
-    advancing = elapsed(shared) > 0.0
+    advancing = call(shared.lammps_get_thermo, 0.0, (shared.lammps, shared.elapsed)) > 0.0  # type: ignore[call-arg]
     follows, shared.step = step == shared.step + 1, step
-    if minimizing(shared) or (advancing and not follows):
+    state = call(shared.lammps_is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
+    if state == _MINIMIZING or (advancing and not follows):
         if run.error == 0.0:
             run.error, run.bead, run.wall = Trouble.NO_STEPS.value, -1.0, -1.0
         return
@@ -78,7 +80,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if advancing and looks:  # on all ranks, also without beads
         show(shared, run, scene.loads)
     if shared.look != 0 and looks:  # on all ranks, too
-        look(shared)
+        call(shared.look, np.int32(0), ())  # type: ignore[call-arg]
     history = extract(shared, shared.history)
     if history == 0:  # a command has removed the fix of the history
         return

@@ -30,7 +30,7 @@ SHARED = np.dtype(
 
 
 @intrinsic
-def _call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
+def call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
     """Call a C function with a tuple of addresses; its result has the type of `result`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -45,31 +45,13 @@ def _call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
 @kernel
 def extract(shared: Any, name: int) -> Any:
     """Address of one of LAMMPS's arrays, from the address of its name."""
-    return _call(shared.lammps_extract_atom, np.int64(0), (shared.lammps, name))  # type: ignore[call-arg]
+    return call(shared.lammps_extract_atom, np.int64(0), (shared.lammps, name))  # type: ignore[call-arg]
 
 
 @kernel
 def matrix(shared: Any, name: int, n: int) -> Any:
     """One of LAMMPS's arrays of three numbers for each of n beads."""
     return array_at(rows_at(extract(shared, name), n), (n, 3), np.float64)
-
-
-@kernel
-def elapsed(shared: Any) -> Any:
-    """Time steps since a run began."""
-    return _call(shared.lammps_get_thermo, 0.0, (shared.lammps, shared.elapsed))  # type: ignore[call-arg]
-
-
-@kernel
-def minimizing(shared: Any) -> Any:
-    """Whether LAMMPS minimizes an energy."""
-    return _call(shared.lammps_is_running, np.int32(0), (shared.lammps,)) == 2  # type: ignore[call-arg]
-
-
-@kernel
-def look(shared: Any) -> None:
-    """Look at the rigid bodies, in Python."""
-    _call(shared.look, np.int32(0), ())  # type: ignore[call-arg]
 
 
 @kernel
@@ -84,13 +66,13 @@ def show(shared: Any, run: Any, loads: Any) -> None:
     before[1, n] = run.error
     send = shared.shown[0] + 8 * size
     given = send, send + 8 * size, np.int32(size), shared.double, shared.sum, shared.comm
-    _call(shared.MPI_Allreduce, np.int32(0), given)  # type: ignore[call-arg]
+    call(shared.MPI_Allreduce, np.int32(0), given)  # type: ignore[call-arg]
     force = run.mass * run.length / run.time**2
     for i in range(size):
         unit = force * run.length if i % NUMBERS > 2 else force
         unit /= run.time if i % NUMBERS == NUMBERS - 1 else 1.0
         one = shared.lammps, shared.force_fix, np.int32(i + 1), before[2, i] / unit
-        _call(shared.lammps_fix_external_set_vector, np.int32(0), one)
+        call(shared.lammps_fix_external_set_vector, np.int32(0), one)
     shared.since = now
 
 

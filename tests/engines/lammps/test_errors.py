@@ -175,8 +175,8 @@ def test_another_kind_of_simulation(model, commands, words):
         ({"friction": True}, "friction: expected a number"),
         ({"plates": flat(1e-3)}, "plates: expected a list"),
         ({"records": 0}, "records"),
-        ({"records": True}, "records: expected an integer"),
-        ({"records": 1e3}, "records: expected an integer"),
+        ({"records": True}, "records: got .*; must be a positive whole number"),
+        ({"records": 1e3}, "records: got .*; must be a positive whole number"),
         ({"records": 10**13}, "records: no memory for 10000000000000"),
         ({"records": 10**30}, "records: no memory"),
         ({"group": "beads"}, "group: got 'beads'; LAMMPS has none of this name, but all"),
@@ -205,9 +205,10 @@ def test_a_lammps_without_mpi(model, monkeypatch):
 @pytest.mark.parametrize(
     ("theirs", "words"),
     [
+        ("compute contactlaw_group all ke", "compute 'contactlaw_group' already"),
         ("fix contactlaw_halt all momentum 1 linear 1 1 1", "fix 'contactlaw_halt' already"),
         ("variable contactlaw_error equal 1", "variable 'contactlaw_error' already"),
-        ("group contactlaw id 1", "group 'contactlaw' with beads"),
+        ("group contactlaw id 1", "group 'contactlaw' already"),
     ],
 )
 def test_names_that_the_user_has_taken(model, theirs, words):
@@ -220,24 +221,12 @@ def test_names_that_the_user_has_taken(model, theirs, words):
     assert lmp.has_id(kind, name)
 
 
-def test_an_attachment_that_fails_leaves_nothing_behind(model):
-    lmp = make(ABOVE)
-    for n in range(31):  # with "all", as many as LAMMPS has; the attachment needs one more
-        lmp.command(f"group own{n} id 1")
-    with pytest.raises(Exception, match="Too many groups"):
-        attach(lmp, model, [flat(1e-3)])
-    assert not lmp.has_id("fix", "contactlaw")
-    lmp.command("group own0 delete")
-    attach(lmp, model, [flat(1e-3)])
-    lmp.command("run 100")
-
-
 def test_plates_serve_the_same_beads_and_law(model):
     lmp = make(ABOVE)
     steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
     for other in (cl.ImpactModel(PAIR, law="hertz"), cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")):
-        with pytest.raises(ValueError, match="differ from it in the plate alone"):
+        with pytest.raises(ValueError, match="needs a model of this law and these beads"):
             attach(lmp, model, [flat(1e-3, model=other)])
 
 

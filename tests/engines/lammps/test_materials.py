@@ -143,9 +143,9 @@ def test_a_type_without_a_model_is_named():
         (lambda: {"1": models(STEEL)[1]}, None, "got '1'; atom types are integers from 1 on"),
         (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel or None for atom type 1"),
         (lambda: models(STEEL), lambda: {4: None}, r"types of beads are 1 to 3, got \[1, 2, 3, 4\]"),
-        (lambda: {1: models(STEEL)[1], 2: None}, lambda: {2: models(STEEL)[2]}, r"attach\(\) has None for atom type 2"),
-        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "for atom type 1; a wall may differ"),
-        (lambda: models(STEEL), lambda: models(STEEL)[2], "for atom type 1; a wall may differ"),
+        (lambda: {1: models(STEEL)[1], 2: None}, lambda: {2: models(STEEL)[2]}, "for atom type 2, and has None"),
+        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "these beads for atom type 1, and has"),
+        (lambda: models(STEEL), lambda: models(STEEL)[2], "these beads for atom type 1, and has"),
     ],
 )
 def test_models_that_do_not_fit_are_refused(model, plate, message):

@@ -19,6 +19,7 @@ PARTS = [
     ("fix", "contactlaw_force"),
     ("variable", "contactlaw_error"),
     ("fix", "contactlaw_halt"),
+    ("compute", "contactlaw_group"),
 ]
 
 
@@ -125,6 +126,7 @@ def test_deleting_all_beads(scene):
         ("unfix contactlaw_force\nrun 300", "fix 'contactlaw_force'"),
         ("run 230\nunfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
         ("run 300\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),  # LAMMPS itself fails
+        ("uncompute contactlaw_group\nrun 100", "compute 'contactlaw_group'"),
         ("variable contactlaw_error delete\nrun 300", "variable 'contactlaw_error'"),
     ],
 )

@@ -233,10 +233,10 @@ def test_the_softening_may_be_chosen_from_the_speeds():
         ({"softening": 0.5}, "softening: got 0.5; must be finite and at least 1"),
         ({"softening": math.inf}, "softening: got inf; must be finite"),
         ({"softening": math.nan}, "softening: "),
-        ({"softening": "auto"}, "speeds: softening='auto' needs the slowest and the fastest"),
+        ({"softening": "auto"}, "speeds: softening='auto', and it alone, takes the slowest"),
         ({"softening": "auto", "speeds": (0.0, 1.0)}, "slowest: "),
         ({"softening": "auto", "speeds": (3.0, 0.1)}, "slowest: got 3.0; must be at most the fastest speed"),
-        ({"softening": 9.0, "speeds": (0.1, 3.0)}, "speeds: .* are for softening='auto' alone: leave them out"),
+        ({"softening": 9.0, "speeds": (0.1, 3.0)}, "speeds: .* softening='auto', and it alone"),
         ({"parcel": 0.0}, "parcel: got 0.0; must be finite and at least 1"),
     ],
 )
