@@ -182,7 +182,9 @@ def _contacts(
         raise ArgumentError("softening", "auto", reason)
     if auto:
         slow, fast = map(float, speeds)
-        contact["softening"] = min(most_softening(model, fast, radius, slow) for model in own.values() if model)
+        contact["softening"] = min(
+            most_softening(model, fast, radius, slow, contact["parcel"]) for model in own.values() if model
+        )
     with warnings.catch_warnings():
         if comm.rank > 0:
             warnings.simplefilter("ignore")  # the first rank warns of large beads, and walls that cross

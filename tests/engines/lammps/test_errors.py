@@ -230,14 +230,6 @@ def test_plates_serve_the_same_beads_and_law(model):
             attach(lmp, model, [flat(1e-3, model=other)])
 
 
-def test_one_attachment_at_a_time(model):
-    lmp, walls = scene(model)
-    with pytest.raises(RuntimeError, match="already"):
-        attach(lmp, model, [flat(1e-3)])
-    walls.detach()
-    attach(lmp, model, [flat(1e-3)])
-
-
 def test_state_is_untouched_where_nothing_is_near(model):
     _, now = dropped(model, None, (0, 0, 0.05), (0, 0, -1), steps=200)
     now["d2_contactlaw"][:, 2] = 0.0  # the number of the layout, for a restart
