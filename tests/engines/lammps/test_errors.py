@@ -50,11 +50,8 @@ def test_impacts_that_are_refused(model, position, speed, dt, commands, words):
 
 
 def test_a_density_that_is_a_little_off_is_seen_before_any_impact(model):
-    """By `attach`, and in the first step: not when such a bead comes to a wall, hours later."""
-    far = above(0.02)
-    with pytest.raises(ValueError, match="bead 1 at step 0: density: its mass is 2.69488e-06 kg"):
-        scene(model, position=far, density=1.004 * box.DENSITY)
-    lmp, _ = scene(model, position=[ABOVE, far])
+    """In the first step: not when such a bead comes to a wall, hours later."""
+    lmp, _ = scene(model, position=[ABOVE, above(0.02)])
     lmp.command(f"set atom 2 density {1.004 * box.DENSITY}")
     with pytest.raises(RuntimeError, match="bead 2 at step 0: density: its mass is 2.69488e-06 kg"):
         lmp.command("run 0")
@@ -151,16 +148,6 @@ def test_a_restart_file_written_after_an_error(model, tmp_path):
     assert lmp.extract_global("ntimestep") == 1080
 
 
-def test_a_run_that_is_halted_by_someone_elses_mark(model):
-    lmp, _ = scene(model)
-    lmp.command("run 10")
-    lmp.numpy.extract_atom("d2_contactlaw")[0, 0] = 1.0
-    with pytest.raises(RuntimeError, match=r"beads \[1\]: marked as wrong"):
-        lmp.command("run 1000")
-    lmp.command("run 1000")
-    assert lmp.extract_global("ntimestep") > 1000
-
-
 @pytest.mark.parametrize(
     ("commands", "words"),
     [
@@ -179,8 +166,8 @@ def test_another_kind_of_simulation(model, commands, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"plates": []}, "plates: at least one"),
-        ({"plates": [1.0]}, "plates: expected"),
+        ({"plates": []}, "plates: expected a list"),
+        ({"plates": [1.0]}, "plates: expected a list"),
         ({"model": 0.9}, "model: expected"),
         ({"friction": -0.1}, "friction"),
         ({"friction": math.nan}, "friction"),
@@ -188,8 +175,8 @@ def test_another_kind_of_simulation(model, commands, words):
         ({"friction": True}, "friction: expected a number"),
         ({"plates": flat(1e-3)}, "plates: expected a list"),
         ({"records": 0}, "records"),
-        ({"records": True}, "records: expected an integer"),
-        ({"records": 1e3}, "records: expected an integer"),
+        ({"records": True}, "records: got .*; must be a positive whole number"),
+        ({"records": 1e3}, "records: got .*; must be a positive whole number"),
         ({"records": 10**13}, "records: no memory for 10000000000000"),
         ({"records": 10**30}, "records: no memory"),
         ({"group": "beads"}, "group: got 'beads'; LAMMPS has none of this name, but all"),
@@ -218,10 +205,10 @@ def test_a_lammps_without_mpi(model, monkeypatch):
 @pytest.mark.parametrize(
     ("theirs", "words"),
     [
-        ("compute contactlaw_error all ke", "compute 'contactlaw_error' already"),
+        ("compute contactlaw_group all ke", "compute 'contactlaw_group' already"),
         ("fix contactlaw_halt all momentum 1 linear 1 1 1", "fix 'contactlaw_halt' already"),
         ("variable contactlaw_error equal 1", "variable 'contactlaw_error' already"),
-        ("group contactlaw id 1", "group 'contactlaw' with beads"),
+        ("group contactlaw id 1", "group 'contactlaw' already"),
     ],
 )
 def test_names_that_the_user_has_taken(model, theirs, words):
@@ -234,33 +221,13 @@ def test_names_that_the_user_has_taken(model, theirs, words):
     assert lmp.has_id(kind, name)
 
 
-def test_an_attachment_that_fails_leaves_nothing_behind(model):
-    lmp = make(ABOVE)
-    for n in range(31):  # with "all", as many as LAMMPS has; the attachment needs one more
-        lmp.command(f"group own{n} id 1")
-    with pytest.raises(Exception, match="Too many groups"):
-        attach(lmp, model, [flat(1e-3)])
-    assert not lmp.has_id("fix", "contactlaw")
-    lmp.command("group own0 delete")
-    attach(lmp, model, [flat(1e-3)])
-    lmp.command("run 100")
-
-
 def test_plates_serve_the_same_beads_and_law(model):
     lmp = make(ABOVE)
     steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
     for other in (cl.ImpactModel(PAIR, law="hertz"), cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")):
-        with pytest.raises(ValueError, match="another law or other beads"):
+        with pytest.raises(ValueError, match="needs a model of this law and these beads"):
             attach(lmp, model, [flat(1e-3, model=other)])
-
-
-def test_one_attachment_at_a_time(model):
-    lmp, walls = scene(model)
-    with pytest.raises(RuntimeError, match="already"):
-        attach(lmp, model, [flat(1e-3)])
-    walls.detach()
-    attach(lmp, model, [flat(1e-3)])
 
 
 def test_state_is_untouched_where_nothing_is_near(model):

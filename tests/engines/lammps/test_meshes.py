@@ -12,7 +12,8 @@ from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration, memory
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
+from contactlaw.stepping.step import WIDTH
 from contactlaw.walls.frame import boxes_of, framed
 from contactlaw.walls.grid import FacetGrid
 
@@ -118,7 +119,7 @@ def test_a_cylinder_of_facets_is_one_surface(model, facets):
     contacts = 0
     for _ in range(70):
         lmp.command("run 10")
-        slots = state(lmp)["d2_contactlaw"][:, PLATE :: memory.WIDTH]
+        slots = state(lmp)["d2_contactlaw"][:, PLATE::WIDTH]
         assert ((slots != 0.0).sum(axis=1) <= 1).all()
         contacts += (slots != 0.0).sum()
     rows = walls.collisions()

@@ -204,8 +204,6 @@ def test_a_wall_that_ends_at_a_periodic_boundary_holds_a_bead_that_strays_past_i
     [
         ("change_box all triclinic", "box: it is triclinic"),
         ("fix deform all deform 1 x erate 10\nrun 50", "box: a periodic side changes its length"),
-        ("run_style respa 2 2", "run_style respa: the force of the walls depends on the time steps"),
-        ("minimize 0 0 10 10", "minimize, rerun: the force of the walls depends on the time steps"),
     ],
 )
 def test_what_walls_cannot_follow_is_refused(model, commands, words):

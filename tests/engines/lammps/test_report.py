@@ -96,15 +96,6 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     assert "not the mesh of wall 0: it has no triangle 4, which the record has hits on" in capsys.readouterr().err
 
 
-def test_a_report_that_fails_on_rank_0_is_an_error(model, tmp_path):
-    lmp, walls = scene(model, None, ABOVE)
-    with pytest.raises(ValueError, match="has no impact on a wall yet"):
-        walls.report(tmp_path / "out")
-    lmp.command("run 700")
-    walls.report(tmp_path / "out")
-    assert "1 impact on 1 wall, gamma-alumina on glass" in (tmp_path / "out/index.html").read_text()
-
-
 def test_an_impact_is_recorded_without_scipy_and_matplotlib(model, tmp_path, monkeypatch):
     for name in ("scipy", "scipy.spatial", "matplotlib"):
         monkeypatch.setitem(sys.modules, name, None)

@@ -9,31 +9,26 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Ring, Sphere, memory
+from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Ring, Sphere
 from contactlaw.softsphere import time_step
+from contactlaw.stepping.step import WIDTH
 
 HERTZ, MYC = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc"))
 DRUM = 8 * R
-OWN = "granular hertz/material {} 0.0 0.2 tangential mindlin NULL 0.0 {} damping velocity"
 
 
-def loss_in_a_drum(own, friction):
-    """Most change of the energy in ten periods to and fro, over that of the fall.
+@pytest.mark.parametrize("friction", [0.0, 0.5], ids=["slides", "rolls"])
+def test_a_bead_that_moves_to_and_fro_keeps_its_energy(friction):
+    """Ten periods take 1e-4 of the energy of the fall at most; 72 facets took 28 % in two.
 
-    The wall is LAMMPS's own or a Cylinder. The bead begins where its weight presses it, since one
-    that bounces meanwhile slides now and then.
+    The bead begins where its weight presses it, since one that bounces meanwhile slides now and then.
     """
     g, steep = 1e3, math.sqrt(0.75)  # 30 degrees
     stiffness = 4 / 3 * HERTZ.pair.effective_modulus * math.sqrt(R * math.sqrt(8 / 7))
     lowest = DRUM - R + (MASS * g * steep / stiffness) ** (2 / 3)
     start = np.array([0.5 * lowest, 0.0, -steep * lowest])
     lmp = make(start, (0, 0, 0), gravity=g, dt=4e-7)
-    if own:
-        lmp.command(f"region drum cylinder y 0 0 {DRUM} -0.05 0.05 units box")
-        wall = OWN.format(PAIR.sphere.youngs_modulus, friction)
-        lmp.command(f"fix wall all wall/gran/region {wall} region drum")
-    else:
-        attach(lmp, HERTZ, [Cylinder((0, -0.05, 0), (0, 0.05, 0), DRUM, math.inf)], friction=friction)
+    attach(lmp, HERTZ, [Cylinder((0, -0.05, 0), (0, 0.05, 0), DRUM, math.inf)], friction=friction)
     period = 2 * math.pi * math.sqrt((1.4 if friction else 1.0) * lowest / g) * 1.0174
     changes, heights = [], []
     for _ in range(53):  # which are no whole parts of a period
@@ -42,14 +37,7 @@ def loss_in_a_drum(own, friction):
         changes.append(0.5 * v @ v + 0.2 * R**2 * omega @ omega + g * (x[2] - start[2]))
         heights.append(x[2])
     assert np.ptp(heights) > 0.9 * (1 - steep) * lowest
-    return np.abs(changes).max() / (g * (1 - steep) * lowest)
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.5], ids=["slides", "rolls"])
-def test_a_bead_that_moves_to_and_fro_keeps_its_energy(friction):
-    """So it does in LAMMPS's exact cylinder; 72 facets took 28 % in two periods."""
-    assert loss_in_a_drum(True, friction) < 1e-3
-    assert loss_in_a_drum(False, friction) < 1e-4
+    assert np.abs(changes).max() < 1e-4 * g * (1 - steep) * lowest
 
 
 A = 4 * R
@@ -108,17 +96,6 @@ def test_the_force_is_that_of_hertz_between_curved_bodies(name):
     assert bool(row["flags"] & cl.Validity.CURVED_WALL) == (abs(change) > 0.16)
 
 
-@pytest.mark.parametrize("thickness", [1e-3, math.inf])
-@pytest.mark.parametrize("sign", [-1, 1])
-def test_a_wide_wall_is_a_plate(sign, thickness):
-    a = 1e4 * R
-    expected = MYC.restitution(5.0, R, thickness)
-    for wall in (Cylinder((-1, 0, sign * a), (1, 0, sign * a), a, thickness), Sphere((0, 0, sign * a), a, thickness)):
-        (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5))
-        assert row["restitution"] == pytest.approx(expected, abs=5e-4)
-        assert row["flags"] == MYC.lookup(5.0, R, thickness).flags
-
-
 @pytest.mark.parametrize("a", [8 * R, 2 * R])
 def test_the_step_for_a_plate_is_allowed(a):
     """Although a contact in a hollow wall is shorter."""
@@ -127,15 +104,6 @@ def test_the_step_for_a_plate_is_allowed(a):
     (fine,), _ = dropped(MYC, [Sphere((0, 0, a), a, 1e-3)], (0, 0, R + 1e-5), dt=0.2 * dt, steps=2000)
     assert row["contact_time"] < MYC.solve(5.0, R, 1e-3).contact_time
     assert row["restitution"] == pytest.approx(fine["restitution"], abs=1e-3)
-
-
-def test_a_softened_contact_has_the_rebound_of_the_true_one():
-    wall = Cylinder((0, -0.02, A), (0, 0.02, A), A, 1e-3)
-    (true,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), dt=2e-8, steps=3000)
-    (soft,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), softening=5.0, steps=2000)
-    for name in ("restitution", "peak_force", "contact_time", "flags"):
-        assert soft[name] == pytest.approx(true[name], rel=1e-3), name
-    assert abs(true["restitution"] - MYC.restitution(5.0, R, 1e-3)) > 2e-3
 
 
 def test_a_bead_larger_than_its_drum_is_refused():
@@ -185,7 +153,7 @@ def test_an_elastic_bead_keeps_its_energy_anywhere(name):
         lmp.command("run 10000")
         now = state(lmp)
         x, v = now["x"][0], now["v"][0]
-        if not now["d2_contactlaw"][0, PLATE :: memory.WIDTH].any():
+        if not now["d2_contactlaw"][0, PLATE::WIDTH].any():
             energies.append(0.5 * v @ v + 5e3 * x[2])
     assert len(energies) > 30 and len(attached.collisions()) > 10
     assert np.ptp(energies) < (1e-3 if name == "hopper" else 1e-8) * np.mean(np.abs(energies))
