@@ -661,7 +661,7 @@ class ImpactModel:
         >>> (1e3 * found.value).round(2), (1e3 * found.low).round(2), (1e3 * found.high).round(2)
         (array([2.84]), array([2.78]), array([2.9]))
         >>> model.thickness(0.8, speed=2.0, radius=1.5e-3).remark
-        'no thickness: a half-space gives 0.6106, the largest COR; the range is 1.59e-06 to 0.6106'
+        'no thickness: a half-space gives 0.6106, the largest COR; the range is 1.592e-06 to 0.6106'
         >>> clad = [("aluminium-6061-t6", None), ("steel-s235", 1e-3)]
         >>> (1e3 * model.thickness(0.5, speed=2.0, radius=1.5e-3, layers=clad).value).round(2)
         array([1.15])

@@ -303,7 +303,7 @@ class Contacts:
             diameters=2.0 * r,  # with this overlap a sphere is in the plate altogether
             springs=np.rec.fromarrays([*springs.values()], dtype=[(name, "f8") for name in springs]),
             states=states,
-            values=states.view(np.float64).reshape(r.size, len(State._fields)),
+            values=states.view(np.float64).reshape(r.size, len(states.dtype)),
             friction=np.zeros(r.size, FRICTION),
             force=np.zeros(r.size),
             largest=np.zeros(r.size),

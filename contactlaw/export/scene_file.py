@@ -109,7 +109,7 @@ def scene(
     >>> drum = Cylinder((0, 0, 0), (0, 0.02, 0), 0.03, 0.8e-3)
     >>> file = getfixture("tmp_path") / "drum.scene"
     >>> cl.export.scene(file, {"shell": drum}, cl.ImpactModel(cl.Pair("glass", "steel-s235")), largest=2e-3)
-    >>> surface_of(file, np.zeros(1, IMPACT)).names
+    >>> surface_of(file, np.zeros(0, IMPACT)).names
     ['shell']
     """
     if not walls:

@@ -234,7 +234,7 @@ class Law:
 
     def residual(self, dm: float) -> float:
         """Compression [d_Y] left after unloading from the largest one, dm."""
-        return _force.deepest(self._law, dm).residual
+        return float(_force.deepest(self._law, dm).residual)
 
     def unloading_curve(self, dm: float) -> UnloadingCurve:
         """Find the unloading curve from dm."""
@@ -246,7 +246,7 @@ class Law:
 
     def dissipation(self, dm: float) -> float:
         """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
-        return _force.deepest(self._law, dm).loss
+        return float(_force.deepest(self._law, dm).loss)
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

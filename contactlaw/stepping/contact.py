@@ -271,13 +271,13 @@ def _begin(
     if not (contact.of_body or abs(bead.mass - solid) <= SOLID * solid):
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, solid)
     if u > 0.0:
-        _check_step(law, scene, clock, contact, spring, u)
         lam = impact(law, spring, u).inelasticity
         ratio = bead.r / scene.parcel / plate_row.thickness
         if not THINNEST * ratio <= 1.0:
             report_trouble(scene, Trouble.FOIL, wall, ratio, 1.0 / THINNEST)
         elif lam > plate_row.largest:
             report_trouble(scene, Trouble.TOO_THIN, wall, lam, plate_row.largest)
+        _check_step(law, scene, clock, contact, spring, u)
 
 
 @kernel
@@ -606,7 +606,7 @@ def _advance(
         if touch.x > deepest and not contact.touching:
             report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
     elif touch.face and side != row.facet:
-        report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
+        report_trouble(scene, Trouble.CROSSED, contact.wall, abs(u), 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     last, softened = state_of(row), scene.softening > 1.0
     moved = (dot(v, v) - u * u) * row.duration * row.duration

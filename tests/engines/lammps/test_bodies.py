@@ -226,18 +226,17 @@ lmp.commands_string('''
 square = Plate((-0.05, -0.05, 0), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
 across = Plate((0, -0.05, -0.02), (0, 0.1, 0), (0, 0, 0.015), thickness=1e-3)
 below = Plate((-0.05, -0.05, -0.01), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
-with warnings.catch_warnings(record=True) as told:
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    walls = attach(lmp, model, [square, across, below], rigid="body")
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+walls = attach(lmp, model, [square, across, below], rigid="body")
 lmp.command("run 800")
 lmp.command("unfix body")
 lmp.commands_string("fix more clump nve/sphere\\nrun 10")
-found, told = walls.gather(), MPI.COMM_WORLD.gather(len(told))
+found = walls.gather()
 if found is not None:
-    print(found["bead"].tolist(), found["kind"].tolist(), told)
+    print(found["bead"].tolist(), found["kind"].tolist())
 """
 
 
 def test_a_rank_without_bodies_and_a_free_bead(tmp_path):
     (tmp_path / "two.py").write_text(TWO_RANKS)
-    assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}] [1, 0]"
+    assert on_two_ranks(tmp_path / "two.py").strip() == f"[1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}]"
