@@ -40,6 +40,9 @@ NAMES = [one if one in QUICK else pytest.param(one, marks=pytest.mark.long) for 
 # Errors of COR, and of the sliding speed over friction times speed, by laws as the page has them.
 # Its laws are blends of fewer ones.
 BETWEEN = dict.fromkeys(("rate", "two rates", "corners"), (2e-4, 1e-3))
+# Where such spheres nearly stay, two ways to round a power are up to 4e-12 of a contact time apart,
+# and 1e-11 of a sliding speed; 1e-12 before the steps followed the energy that is left.
+BETWEEN["losses and flow"] = 2e-12, 2e-11
 COR = "document.getElementById('cor').textContent"
 
 
@@ -57,7 +60,7 @@ ABSURD = [0.0, -1.0, 1e-300, 1e300, math.inf, math.nan]
 @pytest.mark.parametrize("pair", NAMES)
 def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     model, rng = MODELS[pair], np.random.default_rng(7)
-    count = 40 if pair in BETWEEN else 200
+    count = 40 if BETWEEN.get(pair, (0.0,))[0] > 1e-9 else 200
     cl.export.page(tmp_path / "page.html", model)
     assert (tmp_path / "page.html").stat().st_size < 1e6
     speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), count))

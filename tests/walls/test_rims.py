@@ -87,13 +87,11 @@ def random_points(count):
 
 
 SCENES = {
-    "cylinder of 7": cylinder(7),
     "cylinder of 72": cylinder(72),
     "spike": Mesh.cone((0, 0, -0.02), (0, 0, 0), 0.006, 0.0, math.inf, facets=24),
     "hole of 4, 0.6 R": hole(4, 0.6 * R),
     "hole of 16, 1.2 R": hole(16, 1.2 * R),
     "cube": hull(np.array(list(itertools.product((0, 1), repeat=3))) * 3.0 * R, np.zeros(8)),
-    "hull of 12": hull(random_points(12), np.zeros(12)),
     "star of 60": hull(random_points(60), np.random.default_rng(2).uniform(-0.4, 0.4, 60)),
 }
 
