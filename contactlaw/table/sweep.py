@@ -27,8 +27,7 @@ def in_parts(function: Callable[[slice], _T], count: int, progress: Progress = n
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         # compile the function once, before the threads call it
-        first = (function(slices[0]),)
-        found = itertools.chain(first, pool.map(function, slices[1:]))
+        found = itertools.chain([function(slices[0])], pool.map(function, slices[1:]))
         return list(progress(found, len(slices)))
     finally:  # on Ctrl-C, wait for the parts that run and start no others
         pool.shutdown(cancel_futures=True)
