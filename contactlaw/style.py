@@ -16,9 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.axis import Axis
-    from matplotlib.collections import EllipseCollection
     from matplotlib.figure import Figure
 
 # Okabe and Ito (2008), Color Universal Design.
@@ -126,29 +124,6 @@ def decades(axis: Axis, steps: Sequence[float]) -> None:
     axis.set_major_locator(LogLocator(subs=steps, numticks=10))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter("{x:g}")
-
-
-def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
-    """Add circles; sizes, places (both in the axes' units) and values are set later.
-
-    Those without a value have the colour `missing`; `options` are those of the collection.
-    """
-    from matplotlib import colormaps
-    from matplotlib.collections import EllipseCollection
-
-    made = EllipseCollection(
-        [],
-        [],
-        [],
-        units="xy",
-        offsets=np.empty((0, 2)),
-        offset_transform=axes.transData,
-        cmap=colormaps["viridis"].with_extremes(bad=missing),
-        zorder=3,
-        **options,
-    )
-    axes.add_collection(made)
-    return made
 
 
 def png(figure: Figure) -> bytes:

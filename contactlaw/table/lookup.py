@@ -698,24 +698,3 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
         out.compression_ratio[n] = field(table, axes, 3, at.rung, at.between, at.row, at.column)
         out.elastic_compression[n] = at.elastic
     return outside
-
-
-@kernel(cache=True)
-def yield_speeds(table: Array, scale: float, radius: Array, thickness: Array, out: Array) -> None:
-    """Write the speeds at which chi = 1 into out; NaN where lambda leaves the table before.
-
-    `scale` is chi^(1/4) at 1 m/s over w^(1/4), of the body that yields first. d(ln chi)/d(ln V) lies
-    between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least; with losses it is up to
-    1, and a step contracts by 0.33.
-    """
-    axes, plate, w = axes_of(table), plate_of(table), series_at(table, ELASTIC)
-    thin, usual = is_thin(plate.corrections), not relaxes(plate)
-    for n in range(out.size):
-        log_speed, x = -5.0 * math.log(scale), math.nan
-        for _ in range(60):  # 0.12^30 and 0.33^60 are far below rounding
-            one = contact(plate, scale, math.exp(log_speed), radius[n], thickness[n], 1.0, 1.0, thin, usual)
-            x = one.x
-            if not 0.0 <= x <= axes.x_max:
-                break
-            log_speed -= 4.0 * math.log(one.above * powers(w, x) / one.stiff) / 0.75
-        out[n] = math.exp(log_speed) if 0.0 <= x <= axes.x_max else math.nan
