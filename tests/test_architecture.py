@@ -61,9 +61,9 @@ FILES = {
     "engines/lammps": "beads bodies memory callback attachment",
     "engines/pymunk": "friction handlers models record registry edges lookahead contacts impacts attachment",
     "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
-    "cli/constant": "records walls lines",
+    "cli/constant": "records walls",
     "cli/cor": "tables figures files",
-    "cli/fit": "printed figure",
+    "cli/fit": "printed",
     "physical": (
         "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "
         "scaling measured validity history bodies rebound oblique"

@@ -356,7 +356,7 @@ COMMANDS = [
     f"contactlaw cor {BEAD} --thickness 1mm --speed 1:5:4 --plot OUT.png",
     f"contactlaw cor {BEAD} --thickness 1mm,2mm --speed 1:5:3 --out OUT.csv",
     f"contactlaw constant --table {BEAD} --thickness 1mm --speed 1,10",
-    f"contactlaw constant {BEAD} --thickness 1mm --speed 1,5 --lammps",
+    f"contactlaw constant {BEAD} --thickness 1mm --speed 1,5",
     f"contactlaw cor {BEAD} --thickness 1mm --speed 5 --angle 30 --friction 0.2",
     f"contactlaw cor {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --plot OUT.png",
     f"contactlaw cor --history {BEAD} --thickness 1mm --speed 5",

@@ -1,6 +1,5 @@
 """What README and pages show is what the code does."""
 
-import dataclasses
 import json
 import os
 import re

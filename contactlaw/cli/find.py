@@ -10,12 +10,10 @@ import numpy as np
 
 from contactlaw import quantities
 from contactlaw._arrays import Array
-from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import bands, chosen, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
-from contactlaw.fitting.drops import rebounds_of
-from contactlaw.quantities import HEIGHT, SHARE
+from contactlaw.quantities import SHARE
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
 
@@ -30,11 +28,9 @@ def add(commands: Any) -> None:
         )
         options.add_pair(command)
         options.add_sizes(command, quantities.values, unknown=unknown)
-        goal = command.add_mutually_exclusive_group(required=True)
-        options.add_quantity(goal, "--cor", SHARE, "COR to reach, between 0 and 1", quantities.values, metavar="E")
+        what = "COR to reach, between 0 and 1"
+        options.add_quantity(command, "--cor", SHARE, what, quantities.values, required=True, metavar="E")
         if unknown == "thickness":
-            height = "height of the bounce to reach [m], in place of --cor; takes a single --speed or --drop"
-            options.add_quantity(goal, "--bounce", HEIGHT, height, quantities.values, metavar="Z")
             options.add_speed(command, quantities.values)
             options.add_layers(command)
         options.add_name_of_law(command)
@@ -44,12 +40,7 @@ def add(commands: Any) -> None:
 
 
 def _run(unknown: str, arguments: Namespace) -> None:
-    chosen.check_quantities(arguments)
-    if getattr(arguments, "bounce", None):
-        if len(arguments.speed) > 1:
-            raise ArgumentError("bounce", None, "takes a single --speed or --drop")
-        measured = {"speed": arguments.speed, "bounce": arguments.bounce, "radius": chosen.bead_radius(arguments)}
-        arguments.cor = rebounds_of(measured, chosen.density(arguments))["restitution"].tolist()
+    chosen.take_drops(arguments)
     model, known = chosen.model(arguments), _KNOWN[unknown]
     plate, layers = model.pair.given[1], {}
     if below := [chosen.layer(text, arguments.materials) for text in getattr(arguments, "on", ())]:

@@ -17,8 +17,7 @@ SPEED = ["find", "speed", *PAIR]
         ([*THICKNESS, "--cor", "0.5", "--speed", "-2"], "--speed: got '-2'; must lie between"),
         ([*THICKNESS, "--cor", "0.99", "--speed", "2"], "COR 0.99: no thickness: "),
         ([*SPEED, "--cor", "0.01", "--thickness", "inf"], "COR 0.01: no speed: "),
-        ([*THICKNESS, "--bounce", "1cm", "--speed", "1,2"], "--bounce: takes a single --speed or --drop"),
-        ([*THICKNESS, "--bounce", "1cm", "--drop", "3cm", "--radius", "1mm,2mm"], "takes one radius"),
+        ([*THICKNESS, "--cor", "0.5", "--drop", "3cm", "--radius", "1mm,2mm"], "takes one radius"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2e4"], "--speed: no thickness brings the impact into the table"),
         ([*SPEED, "--cor", "0.5", "--thickness", "10um"], "--thickness: no speed brings the impact into the table"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--on", "steel-s235"], "expected a material and a thickness"),
@@ -38,9 +37,7 @@ def test_refused_questions_are_status_1_and_one_sentence(words, message, capsys)
         (["find", "thicknes", *PAIR], "thickness"),
         ([*THICKNESS, "--speed", "2"], "--cor"),
         ([*THICKNESS, "--cor", "0.5"], "--speed"),
-        ([*THICKNESS, "--cor", "0.5", "--bounce", "1cm", "--speed", "2"], "not allowed with argument --cor"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--thickness", "1mm"], "--thickness: no such option"),
-        ([*SPEED, "--bounce", "1cm", "--thickness", "1mm"], "--bounce: no such option"),
         ([*SPEED, "--cor", "0,5", "--thickness", "1mm"], "is it a decimal comma? Write 0.5"),
         ([*SPEED, "--cor", "half", "--thickness", "1mm"], "half"),
         ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--csv", "--json"], "not allowed with argument --csv"),
@@ -68,10 +65,3 @@ def test_what_people_read_fits_a_terminal(words, capsys):
     text = " ".join(lines)
     plural = "thicknesses" if "thickness" in words else "speeds"
     assert f"68 %: {plural} whose predicted range contains the COR you asked for" in text
-
-
-def test_a_bounce_stands_for_its_cor(capsys):
-    """In a heavy gas-free limit the COR is the root of the heights; air makes it a little larger."""
-    assert main([*THICKNESS, "--bounce", "5cm", "--drop", "20cm", "--csv"]) == 0
-    head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
-    assert 0.5 < float(row[head.index("restitution")]) < 0.51

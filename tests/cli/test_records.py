@@ -434,7 +434,6 @@ GOOD = {
         ["cor", *ASKED, "--speed", "1", "--materials"],
         b"# harmless here\n[a]\nlike = 'glass'\nhardness = '60 HV'  # and here\n",
     ),
-    "a.stl": (["report", "whole.npy", "--mesh"], b"solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n"),
     "a.npy": (["report"], b""),
 }
 TOKENS = [b"", b"\0", b"nan", b"-1", b"1e999", b"[" * 3000, b"\xff", b"'", b",", b"=", b"\n", b"x"]

@@ -126,10 +126,6 @@ def test_results_are_by_material_and_wall(run, tmp_path, capsys, empty_pictures)
         weight = rows["approach_speed"][own] ** 2 * rows["radius"][own] ** 3
         best = np.sqrt(np.average(rows["restitution"][own] ** 2, weights=weight))
         assert float(row[head.index("restitution")]) == pytest.approx(best, rel=1e-6)
-    assert main(["constant", path, "--lammps"]) == 1
-    assert "--lammps is for one pair, the record has " in capsys.readouterr().err
-    chosen = ["--sphere", "glass", "--plate", "glass"]
-    assert main(["constant", path, "--lammps", *chosen]) == 0
     assert main(["constant", path, "--sphere", "PMMA"]) == 1
     assert "--sphere: got 'PMMA'; the record has gamma-alumina on glass, " in capsys.readouterr().err
 

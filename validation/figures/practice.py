@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw import style
 from contactlaw.answers.solver import solved
-from contactlaw.cli.compare.figure import curve as model_curve
+from contactlaw.cli.compare import curve as model_curve
 from contactlaw.cli.parts.figure import Curve, Points, draw_curve, draw_points
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges

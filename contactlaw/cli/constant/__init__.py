@@ -19,8 +19,6 @@ from contactlaw.quantities import SPEED
 _ERROR = 1e-3
 _FORMS = {
     "csv": "print a row for each wall in SI units, with every digit",
-    "lammps": "print pair_coeff and fix wall/gran of LAMMPS",
-    "liggghts": "print fix property/global of LIGGGHTS",
     "table": "print COR over speed as CSV, between the least and the largest --speed, for linear interpolation",
 }
 
@@ -52,7 +50,7 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: Namespace) -> None:
-    chosen.check_quantities(arguments)
+    chosen.take_drops(arguments)
     if arguments.error != _ERROR and arguments.form != "table":
         raise ArgumentError("error", arguments.error, "only --table takes it")
     if arguments.form == "table" and (arguments.files or len({*arguments.speed}) < 2):
@@ -69,10 +67,7 @@ def _run(arguments: Namespace) -> None:
         if arguments.form == "csv":
             table.write_csv(sys.stdout, head=n == 0)
             continue
-        text = [*table.text(), "", *walls.explained(found)]
-        if arguments.form != "text":
-            text = walls.lines(arguments.form, model, impacts, found, text)
-        print(*[""] * (n > 0), *text, sep="\n")
+        print(*[""] * (n > 0), *table.text(), "", *walls.explained(found), sep="\n")
 
 
 def _print_speed_table(arguments: Namespace, model: ImpactModel, impacts: records.Impacts) -> None:
@@ -96,7 +91,5 @@ def _recorded(arguments: Namespace) -> list[records.Recorded]:
     if not arguments.files:
         return [records.Recorded({"speed": np.array(arguments.speed)})]
     found = records.read(*arguments.files)
-    some, names = chosen.of_record(arguments, dict(enumerate(one.pair for one in found)))
-    if len(some) > 1 and arguments.form not in ("text", "csv"):
-        raise ValueError(f"--{arguments.form} is for one pair, the record has {names}: choose by --sphere, --plate")
+    some, _ = chosen.of_record(arguments, dict(enumerate(one.pair for one in found)))
     return [found[n] for n in some]

@@ -69,7 +69,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: Namespace) -> None:
     _check(arguments)
-    chosen.check_quantities(arguments)
+    chosen.take_drops(arguments)
     model = chosen.model(arguments)
     if arguments.plot is not None:
         with chosen.plot_file(arguments):

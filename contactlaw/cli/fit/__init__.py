@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 
 from contactlaw import quantities
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.cli.fit import figure, printed
+from contactlaw.cli.fit import printed
 from contactlaw.cli.parts import chosen, measured, options, rebounds, wording
+from contactlaw.cli.parts.figure import Figure
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.table import in_words
-from contactlaw.fitting import Measurements, fit
+from contactlaw.fitting import Fit, Measurements, fit
+from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.arguments import unknown
 from contactlaw.quantities import LENGTH
@@ -72,14 +75,14 @@ def _prior(text: str) -> tuple[str, float]:
 
 
 def _run(arguments: Namespace) -> None:
-    chosen.check_quantities(arguments)
+    chosen.take_drops(arguments)
     source = _source(arguments)
     pair, priors = source.pair, _errors(source) | dict(arguments.prior)
     bodies = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
     with chosen.plot_file(arguments):
         found = fit(pair, source.rebounds, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
-            figure.figure(found, in_words(bodies)).save(arguments.plot)
+            _figure(found, in_words(bodies)).save(arguments.plot)
         if arguments.form == "json":
             thickness = None if arguments.thickness == math.inf else arguments.thickness
             numbers = bodies | {"radius_m": arguments.radius, "thickness_m": thickness} | printed.record(found)
@@ -87,6 +90,27 @@ def _run(arguments: Namespace) -> None:
         else:
             print(in_words(bodies), *printed.text(found), "", sep="\n")
             print("Measured minus fitted values, in % of the fitted ones:", *printed.rows(found).text(), sep="\n")
+
+
+def _figure(found: Fit, about: str) -> Figure:
+    """Figure of the quantity with the most values."""
+    kind = max(found.rows, key=lambda name: found.rows[name].size)
+    rows, shift = found.rows[kind], KINDS[kind].shift
+
+    def predicted(impact: dict[str, Any]) -> tuple[Any, Array, Array, Array]:
+        speed, angle = impact["speed"], np.radians(impact.get("angle", 0.0))
+        along = {"sliding_speed": speed * np.sin(angle)} if "angle" in impact else {}
+        hit, errors = found.curve(speed * np.cos(angle), impact["radius"], impact["thickness"], **along)
+        value = np.asarray(getattr(hit, kind)) + shift
+        return hit, value, value - errors[kind], value + errors[kind]
+
+    sizes = {name: size[rows] for name, size in printed.impacts_of(found).items()}
+    error: Any = getattr(found.data, f"{kind}_error")
+    values = np.asarray(getattr(found.data, kind))[rows] + shift, None if error is None else error[rows]
+    title = f"Fit: {', '.join(printed.values_in_words(found))}".replace("+-", "±")
+    return measured.figure_of(
+        kind, sizes, *values, found.flags[rows], predicted, title, about, "Band: one standard error of the fit"
+    )
 
 
 def _source(arguments: Namespace) -> rebounds.Source:

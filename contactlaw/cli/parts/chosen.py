@@ -73,6 +73,7 @@ def of_record(arguments: Namespace, pairs: Mapping[int, Pair | None]) -> tuple[l
 def of_file(arguments: Namespace, path: str) -> rebounds.Source:
     """Read a table of rebounds; options come before what the head of the file says."""
     options = {n: size for n, size in vars(arguments).items() if n in rebounds.OF_ALL and size is not None}
+    scalars(**{name: options[name] for name in ("radius", "thickness", "friction") if name in options})
     return rebounds.read(path, arguments.materials, lambda known: pair(arguments, SimpleNamespace(**known)), **options)
 
 
@@ -133,19 +134,12 @@ def asked(arguments: Namespace, model: ImpactModel, **sizes: float | None) -> di
     return {"sphere": sphere.name, "plate": plate_in_words(arguments, plate.name), "law": name, **numbers}
 
 
-def check_quantities(arguments: Namespace) -> None:
-    """Refuse values beyond their limits one by one, so that the message can name the value.
-
-    Before, heights of drops become speeds on arrival.
-    """
+def take_drops(arguments: Namespace) -> None:
+    """Turn heights of drops into speeds on arrival, and refuse round walls that are smaller than a bead."""
     if hasattr(arguments, "speed") and getattr(arguments, "drop", None) is not None:
         drops = arguments.drop
         fallen = rebounds_of({"drop": drops, "radius": bead_radius(arguments)}, density(arguments))["speed"].tolist()
         arguments.speed = tuple(fallen) if isinstance(drops, tuple) else fallen[0]
-    for name in ("speed", "radius", "thickness", "friction", "mass"):
-        sizes = getattr(arguments, name, None)
-        for size in () if sizes is None else np.atleast_1d(sizes).tolist():
-            scalars(**{name: size})
     for name in ("cylinder", "bowl"):
         size = getattr(arguments, name, None)
         if size is not None and abs(size) <= np.max(arguments.radius):

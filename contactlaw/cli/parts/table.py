@@ -46,7 +46,6 @@ class Table:
     flags: Integers | None = None  # limits of the model that each row exceeds
     counts: Mapping[Validity, int] | None = None  # impacts that exceed each, if a row has several
     total: int = 0  # impacts of these counts
-    width: int = WIDTH  # of its sentences; less in comments of another program
 
     def __len__(self) -> int:
         """Count the rows."""
@@ -60,7 +59,7 @@ class Table:
         shown = [column for column in self.columns if column.title]
         alike = [column for column in shown if column.is_input and np.unique(self.values[column.name]).size == 1]
         named = (f"{c.title} {in_unit(self.values[c.name][0], c.unit)}".rstrip() for c in alike)
-        yield from wrapped(", ".join([*filter(None, [in_words(self.asked)]), *named]), "", self.width)
+        yield from wrapped(", ".join([*filter(None, [in_words(self.asked)]), *named]))
         cells = {c.title: [c.title, f"[{c.shown}]" * bool(c.shown), *self._cells(c)] for c in shown if c not in alike}
         letters = self._letters()
         marks = ["".join(mark for mark, flag, _ in letters if row & flag) for row in self._row_flags()]
@@ -78,7 +77,7 @@ class Table:
         """Lines with the meaning of each flag, its letter, and the number of impacts that have it."""
         for mark, flag, count in self._letters():
             (words,) = explain(flag)
-            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ", self.width)
+            yield from wrapped(f"{mark}: {flag.name}, {count} of {self.total or len(self)}: {words}", "   ")
 
     def _letters(self) -> list[tuple[str, Validity, int]]:
         """Letter of each flag, and its number of impacts."""

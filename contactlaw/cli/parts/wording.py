@@ -22,7 +22,6 @@ from contactlaw.answers.backend import OutsideTableError, UnsolvedError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _OTHER_NAMES = {
-    "meshes": "mesh",
     "path": "plot",
     "priors": "prior",
     "restitution": "cor",

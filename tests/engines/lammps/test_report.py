@@ -78,22 +78,21 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     assert capsys.readouterr().err == ""
     assert cl.read_record(tmp_path / "own/record.h5").surface.names == ["part.stl"]
     np.save(tmp_path / "rows.npy", walls.gather())  # which knows no walls
-    command = ["report", str(tmp_path / "rows.npy"), "--out", str(tmp_path / "again")]
-    stl = str(tmp_path / "part.stl")
-    assert main([*command, "--mesh", stl, "--scale", "1mm"]) == 0
+    rows = cl.read_record(tmp_path / "rows.npy")
+    cl.report(rows, tmp_path / "again", [mesh])
     own, same, again = ((tmp_path / name / "energy.vtk").read_text() for name in ("own", "same", "again"))
     assert own == same == again
-    assert main(command) == 0  # the maps of the earlier report would be those of another run
+    # The maps of the earlier report would be those of another run.
+    assert main(["report", str(tmp_path / "rows.npy"), "--out", str(tmp_path / "again")]) == 0
     assert not (tmp_path / "again/energy.vtk").exists()
     assert "lacks materials and law; the surface of the walls" in capsys.readouterr().err
-    assert main([*command, "--mesh", stl]) == 1
-    assert "--scale: the mesh is 50 m wide" in capsys.readouterr().err
-    assert main([*command, "--mesh", stl, "--mesh", stl]) == 1
-    assert "--mesh: got 2 for the 1 walls" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="scale: the mesh is 50 m wide"):
+        cl.report(rows, tmp_path / "again", [Mesh.read(tmp_path / "part.stl", 1e-3)])
+    with pytest.raises(ValueError, match="meshes: got 2 for the 1 walls"):
+        cl.report(rows, tmp_path / "again", [mesh, mesh])
     corners, triangles = square(1, 25.0)
-    trimesh.Trimesh(corners, triangles, process=False).export(tmp_path / "other.stl")
-    assert main([*command, "--mesh", str(tmp_path / "other.stl"), "--scale", "1mm"]) == 1
-    assert "not the mesh of wall 0: it has no triangle 4, which the record has hits on" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="not the mesh of wall 0: it has no triangle 4, which the record has hits on"):
+        cl.report(rows, tmp_path / "again", [Mesh(1e-3 * corners, triangles, thickness=1e-3)])
 
 
 def test_an_impact_is_recorded_without_scipy_and_matplotlib(model, tmp_path, monkeypatch):

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from contactlaw import laws
+from contactlaw._arrays import Array
 from contactlaw._readable import percent
-from contactlaw.cli.compare import figure
 from contactlaw.cli.parts import bands, chosen, impacts, measured, options
+from contactlaw.cli.parts.figure import Figure
 from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
 from contactlaw.comparison import Comparison, compare
 from contactlaw.model import ImpactModel
@@ -44,7 +45,7 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: Namespace) -> None:
-    chosen.check_quantities(arguments)
+    chosen.take_drops(arguments)
     source = chosen.of_file(arguments, arguments.data)
     pair = source.pair
     model = ImpactModel(pair, arguments.law)
@@ -53,7 +54,7 @@ def _run(arguments: Namespace) -> None:
         found = compare(pair, source.rebounds, arguments.law, **source.errors)
         if arguments.plot is not None:
             about = ": ".join(filter(None, (source.title, in_words(bodies))))
-            figure.figure(found, model, source.errors, about).save(arguments.plot)
+            _figure(found, model, source.errors, about).save(arguments.plot)
             return
     table = _rows(found, bodies)
     if arguments.form == "csv":
@@ -93,6 +94,35 @@ def _judged(found: Comparison, pair: Pair) -> Iterator[str]:
         f"are right, it is as large or larger in {percent(found.probability)} of cases: the data "
         f"{'agree with the model' if agree else 'differ from the model by more than the stated errors explain'}."
     )
+
+
+def _figure(found: Comparison, model: ImpactModel, errors: Mapping[str, float], about: str) -> Figure:
+    """Figure of a comparison with a model; the errors are those of speed and sizes."""
+    data = found.data
+    sizes = {name: np.asarray(getattr(data, name)) for name in ("speed", "thickness", "radius")}
+    values = np.asarray(data.restitution), np.asarray(data.restitution_error), found.flags
+    title = f"Measured COR beside the model: chi-squared {found.chi_squared:.3g} for {len(data)} rebounds"
+    band = f"Band: {bands.meaning(found.band, model.pair)}"
+    return measured.figure_of(
+        "restitution",
+        sizes,
+        *values,
+        lambda impact: curve(model, impact, errors),
+        title,
+        about,
+        "Nothing is fitted",
+        band,
+    )
+
+
+def curve(
+    model: ImpactModel, impact: Mapping[str, Any], errors: Mapping[str, float]
+) -> tuple[Any, Array, Array, Array]:
+    """Predict some impacts: what the model says, their COR, and the ends of its band."""
+    hit = model.solve(**impact)
+    cor, band = np.asarray(hit.restitution), model.uncertainty(**impact, **errors).restitution
+    low, high = (np.where(np.isfinite(end), end, cor) for end in (band.low, band.high))
+    return hit, cor, low, high
 
 
 def _numbers(comparison: Comparison) -> dict[str, float]:
