@@ -59,7 +59,7 @@ REFUSED = {  # status 1
     f"{FAST} --radius 1mm --thickness 9nm": "must be at least",
     f"{SIZES} --speed -1": "--speed: got '-1'; must lie between",
     f"{SIZES} --speed 1,nan": "--speed: got 'nan'; must lie between",
-    f"{SIZES} --speed 0:2:3": "--speed: got 0.0; must lie between",
+    f"{SIZES} --speed 0:2:3": "--speed: got 0.0 (element 0); must lie between",
     f"{SIZES} --drop -5cm": "--drop: got '-5cm'; must lie between",
     f"{SIZES} --drop 30": "--drop: got '30'; must lie between 1e-05 and 10 metres; in cm or mm?",
     f"cor {PAIR} --radius 1mm,2mm --thickness 1mm --drop 30cm": "--drop: takes one radius",

@@ -87,7 +87,7 @@ def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pi
     assert not (tmp_path / "again/energy.vtk").exists()
     assert "lacks materials and law; the surface of the walls" in capsys.readouterr().err
     with pytest.raises(ValueError, match="scale: the mesh is 50 m wide"):
-        cl.report(rows, tmp_path / "again", [Mesh.read(tmp_path / "part.stl", 1e-3)])
+        cl.report(rows, tmp_path / "again", [Mesh(corners, triangles, thickness=1e-3)])
     with pytest.raises(ValueError, match="meshes: got 2 for the 1 walls"):
         cl.report(rows, tmp_path / "again", [mesh, mesh])
     corners, triangles = square(1, 25.0)
