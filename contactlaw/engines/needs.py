@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from contactlaw import Pair, Rebound
-
-Array = NDArray[np.float64]
 CorBySpeed = Callable[[float], float]  # COR [-] by normal speed of approach [m/s]
 
 
 class RestitutionModel(Protocol):
     """A model of the COR of beads on plates, the least that an adapter needs.
 
+    The record is complete if all models have a ``pair``, ``lookup(speed, radius, thickness)`` and
+    ``lookup_sphere_sphere(speed, radius, other_radius)``, which answer with a `contactlaw.Rebound`.
     An adapter asks for more where it is there: ``sphere_sphere_curve(radius, other_radius)`` gives
     the COR by speed of two beads [m], for beads of two materials with that of the other bead as one
     more argument; ``oblique(speed, sliding_speed, radius, thickness, friction)``, or the faster
@@ -27,23 +22,6 @@ class RestitutionModel(Protocol):
 
     def curve(self, radius: float, thickness: float, /) -> CorBySpeed:
         """COR by speed, by radius [m] and plate thickness [m]; ``inf`` is the half-space."""
-        ...
-
-
-class ReboundModel(RestitutionModel, Protocol):
-    """A model that fills all columns of the impact record, for many impacts at a time."""
-
-    @property
-    def pair(self) -> Pair:
-        """Materials; the masses of beads follow from them."""
-        ...
-
-    def lookup(self, speed: Array, radius: Array, thickness: Array, /) -> Rebound:
-        """Everything about impacts on plates; speed [m/s], lengths [m]."""
-        ...
-
-    def lookup_sphere_sphere(self, speed: Array, radius: Array, other_radius: Array, /) -> Rebound:
-        """Everything about impacts of two beads; speed [m/s], lengths [m]."""
         ...
 
 

@@ -120,7 +120,7 @@ def _program() -> str:
 
     named = {"frames": "frame", "facets": "facet", "found": "overlap", "impacts": "impact_row", "status": "status"}
     parts = {name: rows(row) for name, row in (named | {"loads": "load"}).items()}
-    scene = struct(WallScene, plate_rows=rows("plate_row", matrix=True), pressed=Array(), **parts)
+    scene = struct(WallScene, plate_rows=rows("plate_row", matrix=True), **parts)
     vectors = dict.fromkeys(("x", "v", "omega", "force", "torque"), Array(shape=(-1, 3)))
     numbers = dict.fromkeys(("radius", "mass", "last"), Array()) | dict.fromkeys(("kind", "mask"), Array(of=INT))
     tags = Array(of=Type("contactlaw_tag"))  # of LAMMPS's atom IDs, which may have 32 or 64 bits

@@ -1,24 +1,20 @@
 """The folder of a report."""
 
-import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from contactlaw import _atomic, style
-from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
 from contactlaw.record.file import Record
 from contactlaw.reporting import figures, page, summary
 from contactlaw.reporting.meshes import with_meshes
-from contactlaw.reporting.run import Run, taken
-from contactlaw.reporting.surface import EnergyMap, areas, vtk
+from contactlaw.reporting.run import Run
+from contactlaw.reporting.surface import vtk
 from contactlaw.walls.mesh import Mesh
 
-_MAP, _SERIES = "energy.vtk", ".vtk.series"
+_MAP = "energy.vtk"
 
 
 def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()) -> Path:
@@ -82,21 +78,3 @@ def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Seque
     if run.map is None:
         (Path(out) / _MAP).unlink(missing_ok=True)  # of an earlier report
     return Path(out) / "index.html"
-
-
-def add_to_series(path: str | os.PathLike[str], times: Sequence[float], new: Record, force: Array) -> None:
-    """Write a map of new contacts and of the normal force on each facet [N], and the times [s] of all maps."""
-    if not str(path).endswith(_SERIES):
-        raise ArgumentError("path", os.fspath(path), f"must end in {_SERIES}, by which ParaView knows a list of files")
-    assert new.surface is not None  # the adapter knows the walls
-    corners, wall, triangle = new.surface[:3]
-    area, n = areas(corners), force.size
-    # Facets are the first triangles; further ones are parts of the one facet of their wall.
-    order = np.argsort(wall[:n], kind="stable")
-    facet = np.r_[:n, order[np.searchsorted(wall[:n], wall[n:], sorter=order)]]
-    impacts, energy = (np.bincount(triangle, each, len(area)).astype(float) for each in (None, taken(new.rows)))
-    found = EnergyMap(corners, impacts, energy, energy / area, (force / np.bincount(facet, area))[facet])
-    names = [f"{Path(path).name.removesuffix(_SERIES)}-{one:04}.vtk" for one in range(len(times))]
-    _atomic.write(Path(path).with_name(names[-1]), vtk(found))
-    files = [{"name": name, "time": time} for name, time in zip(names, times, strict=True)]
-    _atomic.write(path, json.dumps({"file-series-version": "1.0", "files": files}).encode())

@@ -25,7 +25,6 @@ class EnergyMap(NamedTuple):
     impacts: Array  # number of contacts on each triangle
     energy: Array  # that these took [J]
     density: Array
-    pressure: Array | None = None  # mean normal pressure [Pa], of a series of maps
 
 
 def energy_map(surface: Surface, energy: Array) -> EnergyMap:
@@ -131,7 +130,7 @@ def vtk(found: EnergyMap, colours: Array | None = None) -> bytes:
     lines += _rows(found.corners.reshape(-1, 3))
     lines += [f"CELLS {n} {4 * n}", *_faces(n), f"CELL_TYPES {n}", *["5"] * n, f"CELL_DATA {n}"]
     columns = {"impacts": found.impacts, "energy_J": found.energy, "J_per_m2": found.density}
-    for name, values in (columns if found.pressure is None else columns | {"pressure_Pa": found.pressure}).items():
+    for name, values in columns.items():
         lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *_rows(values[:, None])]
     if colours is not None:  # last, or some readers lose the others
         lines += ["COLOR_SCALARS color 3", *_rows(colours)]

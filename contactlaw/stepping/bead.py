@@ -120,7 +120,6 @@ class WallContacts:
             impacts,
             np.zeros(1, STATUS),
             np.zeros(len(walls), LOAD),
-            np.zeros(len(facets)),
             *map(float, (friction, softening, parcel)),
         )
 

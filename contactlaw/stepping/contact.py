@@ -132,7 +132,6 @@ class WallScene(NamedTuple):
     impacts: Any  # rows of the record
     status: Any
     loads: Any  # rows of LOAD, one for each wall
-    pressed: Any  # integral over time of the normal force on each facet [N s]
     friction: float  # Coulomb's coefficient [-]
     softening: float  # by which the moduli of the contacts are divided; 1: true contacts
     parcel: float  # radius of a bead over that of the true beads that it stands for
@@ -757,7 +756,6 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
         if clock.advancing:
             frame = scene.frames[scene.facets[contact.facet].frame]
             bear(scene.loads[contact.wall], frame, contact.point, both, work, clock.dt)
-            scene.pressed[contact.facet] += clock.dt * dot(both, n)
             row.wall_work += clock.dt * work
             if ended:  # the row of the record has been written without this step's work
                 scene.impacts[recorded].wall_work += clock.dt * work

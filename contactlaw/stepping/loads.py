@@ -39,12 +39,7 @@ def bear(load: Any, frame: Any, point: Point, force: Point, power: float, dt: fl
 
 def means(sums: Array, duration: float) -> Loads:
     """Means over a time [s], from the numbers of LOAD of each wall, shape (walls, NUMBERS)."""
-    rows = mean(sums, duration)
-    return Loads(duration, rows[:, :3], rows[:, 3:6], rows[:, 6])
-
-
-def mean(sums: Array, duration: float) -> Array:
-    """Mean of what was integrated over a time [s]; a ValueError if none has passed."""
     if not duration > 0.0:
         raise ArgumentError("duration", duration, "loads are means over time: simulate some steps first")
-    return sums / duration
+    rows = sums / duration
+    return Loads(duration, rows[:, :3], rows[:, 3:6], rows[:, 6])

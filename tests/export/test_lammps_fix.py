@@ -134,15 +134,18 @@ def attached(scene, **contact):
     """The same from `attach`, after steps at whose end beads touch: steps, places, record, last loads."""
     lmp = lammps_box.quiet(SCRIPT.format(beads=beads()))
     walls = attach(lmp, MODELS, SCENES[scene](), **contact)
-    loads, steps = [0.0], STEPS // 2
-    while not any(loads) and lmp.extract_global("ntimestep") < STEPS:
-        lmp.command(f"run {steps}")
-        loads, steps = [lmp.extract_fix("contactlaw_force", 0, 1, n) for n in range(7 * len(SCENES[scene]()))], 100
+    lmp.command(f"run {STEPS // 2 - 1}")  # the fix's loads are of a hundred steps before a hundredth one
+    loads = np.zeros(1)
+    while not loads.any() and lmp.extract_global("ntimestep") < STEPS:
+        walls.loads()
+        lmp.command("run 100")
+        loads = np.column_stack(walls.loads()[1:])
+    lmp.command("run 1")
     order, steps = np.argsort(lmp.numpy.extract_atom("id")), lmp.extract_global("ntimestep")
     places = [lmp.numpy.extract_atom(name)[order] for name in ("x", "v", "omega")]
     rows = np.sort(walls.collisions(), order=("bead", "time"))
     lmp.close()
-    return steps, np.hstack(places), rows, np.reshape(loads, (-1, 7))
+    return steps, np.hstack(places), rows, loads
 
 
 @pytest.fixture(scope="module")

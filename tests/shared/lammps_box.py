@@ -212,10 +212,9 @@ def rain(processors="* * *"):
     return make(place, velocity, radius, gravity=9.81, processors=processors)
 
 
-def loads_of(lmp, walls):
-    """What the walls have borne, in all steps and in the hundred before the last whole one."""
-    shown = [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(walls._contacts.scene.loads.size * 7)]
-    return np.concatenate([one.ravel() for one in walls.loads()[1:]] + [shown])
+def loads_of(walls):
+    """What the walls have borne in all steps."""
+    return np.concatenate([one.ravel() for one in walls.loads()[1:]])
 
 
 def numbers(path):
@@ -240,8 +239,7 @@ def in_chunks(path, walls_of, chunks):
         moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
         before = parts
     parts = MPI.COMM_WORLD.gather(own)
-    rows, borne = walls.gather(), loads_of(lmp, walls)
-    walls.save_series(Path(path).with_suffix(".vtk.series"))
+    rows, borne = walls.gather(), loads_of(walls)
     if MPI.COMM_WORLD.rank == 0:
         whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
         order = np.argsort(whole["id"])

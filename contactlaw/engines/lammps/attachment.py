@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +25,9 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import number, warn_of_metres
 from contactlaw.record.columns import IMPACT
 from contactlaw.record.file import Record
-from contactlaw.reporting.files import add_to_series, report
-from contactlaw.softsphere import most_softening
+from contactlaw.reporting.files import report
 from contactlaw.stepping import Trouble, WallContacts
-from contactlaw.stepping.loads import NUMBERS, Loads, mean, means
+from contactlaw.stepping.loads import NUMBERS, Loads, means
 from contactlaw.stepping.step import FIRST, HEAD, LAYOUT, ROWS, RUN, SLIDING, WIDTH
 from contactlaw.stepping.trouble import explain
 from contactlaw.walls.frame import Wall
@@ -47,12 +46,12 @@ _ROUNDED = 6  # decimals of the time steps by which LAMMPS's clock differs from 
 _HALT_EVERY = 100  # steps between looks at errors, in the steps in which the C function shows them
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 # Parts of an attachment in LAMMPS, in the order in which they are made: kind, name, settings. The
-# last number of the force's vector is above 0 once a rank has an error.
+# number of the force's vector is above 0 once a rank has an error.
 _PARTS = (
     ("fix", HISTORY, f"all property/atom d2_{HISTORY} {{columns}} d_{_LAST} ghost no"),
     ("group", HISTORY, "empty"),
     ("fix", _FORCE, f"{HISTORY} external pf/callback 1 1"),
-    ("variable", f"{HISTORY}_error", f"equal f_{_FORCE}[{{shown}}]"),
+    ("variable", f"{HISTORY}_error", f"equal f_{_FORCE}[1]"),
     ("fix", f"{HISTORY}_halt", f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
     ("compute", f"{HISTORY}_group", "{group} ke"),  # because LAMMPS refuses to delete a group that a compute has
 )
@@ -67,8 +66,7 @@ def attach(
     *,
     friction: float = 0.0,
     records: int = 1_000_000,
-    softening: float | Literal["auto"] = 1.0,
-    speeds: tuple[float, float] | None = None,
+    softening: float = 1.0,
     parcel: float = 1.0,
     group: str = "all",
     rigid: str | None = None,
@@ -91,12 +89,10 @@ def attach(
         Coulomb's coefficient of friction between beads and plates [-].
     records : int, optional
         Most impacts that a rank can record within one command.
-    softening : float or "auto", optional
+    softening : float, optional
         Number by which the modulus of the contacts is divided, for time steps that are longer by
-        its power of 0.4; beads leave as from the true contact. ``"auto"`` takes
-        `contactlaw.softsphere.most_softening`. See docs/softening.md.
-    speeds : tuple of 2 floats, optional
-        Slowest and fastest approach that matter [m/s], for ``"auto"``.
+        its power of 0.4; beads leave as from the true contact.
+        `contactlaw.softsphere.most_softening` gives the largest one. See docs/softening.md.
     parcel : float, optional
         Radius of the simulated beads over that of the true beads for which they stand: each stands
         for ``parcel**3`` beads, and rebounds as one of them.
@@ -162,29 +158,17 @@ def attach(
     if group not in groups:
         raise ArgumentError("group", group, f"LAMMPS has none of this name, but {', '.join(groups)}")
     contact = {"friction": friction, "softening": softening, "parcel": parcel}
-    contacts = _contacts(lmp, model, plates, _record_memory(records), speeds, _bit_of(lmp, group), contact)
+    contacts = _contacts(lmp, model, plates, _record_memory(records), _bit_of(lmp, group), contact)
     return LammpsPlates(lmp, contacts, group, rigid, start)
 
 
 def _contacts(
-    lmp: lammps, models: Any, plates: Any, records: NDArray[np.void], speeds: Any, bit: int, contact: dict[str, Any]
+    lmp: lammps, models: Any, plates: Any, records: NDArray[np.void], bit: int, contact: dict[str, Any]
 ) -> WallContacts:
-    """Contacts of the beads that LAMMPS has, after a look at walls and softening."""
+    """Contacts of the beads that LAMMPS has, after a look at the walls."""
     types, comm = lmp.extract_setting("ntypes"), lmp.get_mpi_comm()
     own, largest = _checked(plates, models, types), float(_beads(lmp, "radius", bit).max(initial=0.0))
     radius = max(comm.allgather(largest)) * _UNITS[lmp.extract_global("units")][0]
-    auto = isinstance(contact["softening"], str) and contact["softening"] == "auto"
-    if np.shape(speeds) != (2,) if auto else speeds is not None:
-        reason = "softening='auto', and it alone, takes the slowest and fastest approach, as in speeds=(0.1, 3.0)"
-        raise ArgumentError("speeds", speeds, reason)
-    if auto and radius == 0.0:
-        reason = "needs the largest bead in the box; or give what contactlaw.softsphere.most_softening says"
-        raise ArgumentError("softening", "auto", reason)
-    if auto:
-        slow, fast = map(float, speeds)
-        contact["softening"] = min(
-            most_softening(model, fast, radius, slow, contact["parcel"]) for model in own.values() if model
-        )
     with warnings.catch_warnings():
         if comm.rank > 0:
             warnings.simplefilter("ignore")  # the first rank warns of large beads, and walls that cross
@@ -232,13 +216,9 @@ def _beads_of(model: ImpactModel) -> tuple[Any, Any]:
 
 def _record_memory(records: Any) -> NDArray[np.void]:
     """Empty rows for a number of impacts, which take memory only when they are written."""
-    if not isinstance(records, Integral) or isinstance(records, bool) or records < 1:
-        raise ArgumentError("records", records, "must be a positive whole number")
-    try:
-        return np.empty(int(records) + ROWS, IMPACT)
-    except (MemoryError, OverflowError, ValueError) as error:
-        reason = f"no memory for {records!r} impacts; ask for fewer"
-        raise ArgumentError("records", None, reason) from error
+    if not isinstance(records, Integral) or isinstance(records, bool) or not 1 <= records <= 10**9:
+        raise ArgumentError("records", records, "must be a whole number from 1 to 1e9")
+    return np.empty(int(records) + ROWS, IMPACT)
 
 
 def _check_simulation(lmp: lammps) -> None:
@@ -296,7 +276,7 @@ class LammpsPlates:
     Attributes
     ----------
     softening, parcel : float
-        As given to `attach`; for ``"auto"`` what it took.
+        As given to `attach`.
     start : float
         Time at which walls that move are where they were given, by `time` [s].
     """
@@ -321,13 +301,11 @@ class LammpsPlates:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
-        self._shown = np.zeros((3, scene.loads.size * NUMBERS + 1))
-        shown = self._shown.shape[1]
+        self._shown = np.zeros(2)  # the error code of this rank, and the sum over all ranks
         for kind, name, settings in _PARTS:
-            self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=group, shown=shown)}")
-        self._lmp.fix_external_set_vector_length(_FORCE, shown)
-        for n in range(shown):  # until there is a mean; LAMMPS leaves what was in memory
-            self._lmp.fix_external_set_vector(_FORCE, n + 1, 0.0)
+            self._lmp.command(f"{kind} {name} {settings.format(columns=columns, group=group)}")
+        self._lmp.fix_external_set_vector_length(_FORCE, 1)
+        self._lmp.fix_external_set_vector(_FORCE, 1, 0.0)  # LAMMPS leaves what was in memory
         before = self._check_memory(columns)
         self._start_clock(_bit_of(self._lmp, group))
         self._shared = self._share(columns)
@@ -335,10 +313,9 @@ class LammpsPlates:
         fix, function = _FORCE.encode(), self._callback.address
         _called(self._lmp, "lammps_set_fix_external_callback", fix, function, self._shared.ctypes.data)
         self.start = float(start if start is not None else self.time if before is None else before)
-        self._lasting["start"], self._shared["since"] = self.start, self.time
+        self._lasting["start"] = self.start
         self._run = self._comm.bcast(time.time_ns() // 1000), self.time
         self._borne: tuple[float, Any] = self.time, 0.0
-        self._saved: tuple[list[float], Any, int, str] = [self.time], 0.0, 0, ""
 
     def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
@@ -493,25 +470,23 @@ class LammpsPlates:
     def loads(self) -> Loads:
         """Average what each wall has borne since the last call, or since the walls were attached.
 
-        Every rank has to call it. While LAMMPS runs, the vector of ``fix contactlaw_force`` has 7
-        numbers for each wall, in LAMMPS's units: means over the steps between the last two whose
-        numbers are multiples of 100; 0 before.
+        Every rank has to call it.
 
         Raises
         ------
         ValueError, RuntimeError
             If no step was simulated; the walls were detached.
         """
-        self._together(self._check_attached, "loads")
+        self._together(self._check_attached, self._attached)
         now, (then, before) = self.time, self._borne
         sums = self._comm.allreduce(self._contacts.scene.loads.view(np.float64).reshape(-1, NUMBERS))
         found = means(sums - before, now - then)
         self._borne = now, sums
         return found
 
-    def _check_attached(self, asked: str) -> None:
-        if not self._attached:
-            raise RuntimeError(f"{asked}: the walls were detached, and bear nothing; ask before detach()")
+    def _check_attached(self, attached: bool) -> None:
+        if not attached:
+            raise RuntimeError("loads: the walls were detached, and bear nothing; ask before detach()")
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.
@@ -524,21 +499,14 @@ class LammpsPlates:
             is hit before that, the approach speed is the largest one. The time is LAMMPS's at first
             touch.
         """
-        return self._since(0)
-
-    def _since(self, part: int) -> NDArray[np.void]:
-        return np.concatenate([np.empty(0, IMPACT), *self._parts[part:]])
+        return np.concatenate([np.empty(0, IMPACT), *self._parts])
 
     def gather(self) -> NDArray[np.void] | None:
         """Impacts of all ranks, sorted by time: on rank 0, None on the others.
 
         Every rank has to call it. The columns are those of `collisions`.
         """
-        return self._gathered(0)
-
-    def _gathered(self, part: int) -> NDArray[np.void] | None:
-        own = self._together(self._since, part)
-        if (parts := self._comm.gather(own)) is None:
+        if (parts := self._comm.gather(self._together(lambda _: self.collisions(), ()))) is None:
             return None
         whole: NDArray[np.void] = np.concatenate(parts)
         return whole[np.lexsort((whole["bead"], whole["time"]))]
@@ -557,27 +525,6 @@ class LammpsPlates:
         Every rank has to call it; rank 0 writes.
         """
         self._together(lambda record: record.save(path), self.record())
-
-    def save_series(self, path: str | os.PathLike[str]) -> None:
-        """Add a map of what the walls bore since the last call to a series that ParaView plays.
-
-        Every rank has to call it; rank 0 writes the path, NAME.vtk.series, and NAME-0000.vtk and so
-        on beside it: for each triangle, in its place at the start, the mean pressure [Pa], one for a
-        rectangle or a round wall, and number and energy [J] of the contacts that have ended. Another
-        name begins another series.
-        """
-        (times, before, part, name), now = self._saved, self.time
-        self._together(self._check_attached, "save_series")
-        times = times if name in ("", os.fspath(path)) else times[-1:]
-        rows = self._gathered(part)
-        pressed = self._comm.allreduce(self._contacts.scene.pressed)
-
-        def add(rows: NDArray[np.void]) -> None:
-            force = mean(pressed - before, now - times[-1])
-            add_to_series(path, [*times[1:], now], self._contacts.record(rows), force)
-
-        self._together(add, rows)
-        self._saved = [*times, now], pressed, len(self._parts), os.fspath(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.

@@ -71,14 +71,13 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.impacts[0], shared.impacts[1], IMPACT),
         array_at(shared.status[0], 1, STATUS),
         array_at(shared.loads[0], shared.loads[1], LOAD),
-        array_at(shared.pressed[0], shared.pressed[1], np.float64),
         shared.friction,
         shared.softening,
         shared.parcel,
     )
     looks = step % _EVERY == 0 or not advancing
     if advancing and looks:  # on all ranks, also without beads
-        show(shared, run, scene.loads)
+        show(shared, run)
     if shared.look != 0 and looks:  # on all ranks, too
         call(shared.look, np.int32(0), ())
     history = extract(shared, shared.history)

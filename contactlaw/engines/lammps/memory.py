@@ -8,7 +8,6 @@ from numba import types
 from numba.extending import intrinsic
 
 from contactlaw._jit import kernel
-from contactlaw.stepping.loads import NUMBERS
 from contactlaw.walls.memory import array_at
 
 # LAMMPS's C functions by their symbols, and the names of the global numbers to which it gives addresses
@@ -22,9 +21,8 @@ SHARED = np.dtype(
     + [(name, "i8") for name in "x v f radius rmass type mask omega torque history last body elapsed force_fix".split()]
     + [(name, "i8") for name in "double sum comm types places columns calls step error_step".split()]
     # addresses of arrays and their sizes
-    + [(name, "i8", 2) for name in "plate_rows frames facets found impacts status loads pressed run shown".split()]
-    + [(name, "f8") for name in "friction softening parcel".split()]
-    + [("since", "f8")],  # time from which on `shown` has the walls' loads
+    + [(name, "i8", 2) for name in "plate_rows frames facets found impacts status loads run shown".split()]
+    + [(name, "f8") for name in "friction softening parcel".split()],
     align=True,
 )
 
@@ -55,25 +53,13 @@ def matrix(shared: Any, name: int, n: int) -> Any:
 
 
 @kernel
-def show(shared: Any, run: Any, loads: Any) -> None:
-    """Put the means of what walls bear since the last call, and errors, on all ranks, in the fix's vector."""
-    now = run.base + run.ticks * run.tick
-    n, size, duration = loads.size * NUMBERS, shared.shown[1] // 3, max(now - shared.since, run.tick)
-    before = array_at(shared.shown[0], (3, size), np.float64)
-    sums = array_at(shared.loads[0], n, np.float64)
-    for i in range(n):
-        before[1, i], before[0, i] = (sums[i] - before[0, i]) / duration, sums[i]
-    before[1, n] = run.error
-    send = shared.shown[0] + 8 * size
-    given = send, send + 8 * size, np.int32(size), shared.double, shared.sum, shared.comm
+def show(shared: Any, run: Any) -> None:
+    """Put the sum of all ranks' error codes into the fix's vector."""
+    codes = array_at(shared.shown[0], 2, np.float64)
+    codes[0] = run.error
+    given = shared.shown[0], shared.shown[0] + 8, np.int32(1), shared.double, shared.sum, shared.comm
     call(shared.MPI_Allreduce, np.int32(0), given)  # type: ignore[call-arg]
-    force = run.mass * run.length / run.time**2
-    for i in range(size):
-        unit = force * run.length if i % NUMBERS > 2 else force
-        unit /= run.time if i % NUMBERS == NUMBERS - 1 else 1.0
-        one = shared.lammps, shared.force_fix, np.int32(i + 1), before[2, i] / unit
-        call(shared.lammps_fix_external_set_vector, np.int32(0), one)
-    shared.since = now
+    call(shared.lammps_fix_external_set_vector, np.int32(0), (shared.lammps, shared.force_fix, np.int32(1), codes[1]))
 
 
 @kernel

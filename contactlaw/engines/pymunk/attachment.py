@@ -24,7 +24,7 @@ def attach(space: pymunk.Space, model: RestitutionModel | Sequence[RestitutionMo
     model : RestitutionModel, or list of them
         An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
         speed; where beads meet, also with ``sphere_sphere_curve(radius, other_radius)``. With a
-        model that is no `contactlaw.engines.needs.ReboundModel`, the record has no contact times,
+        model without a ``pair`` and ``lookup``, the record has no contact times,
         forces, energies and flags. For beads or plates of several materials, a list with one model
         for each pair that meets; beads and plates without a material have those of the first.
 

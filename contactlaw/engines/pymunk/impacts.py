@@ -18,7 +18,7 @@ from contactlaw.engines.needs import knows
 from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.edges import join
 from contactlaw.engines.pymunk.handlers import Handlers
-from contactlaw.engines.pymunk.lookahead import check
+from contactlaw.engines.pymunk.lookahead import Motion, check
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.registry import (
     MARK,
@@ -74,7 +74,7 @@ class PymunkImpacts:
         self._kinds: WeakValueDictionary[tuple[float, int], BeadKind] = WeakValueDictionary()
         self._least = math.inf  # radius of the smallest bead [m]
         self._joined = True  # whether the plates know which ends they share
-        self._slop = space.collision_slop
+        self._slop, self._motion = space.collision_slop, Motion(space)
         self._engine_step = space.step
         self._handlers = Handlers(space, self._contacts, self.bead_type, self.plate_type)
         self._own = {"step": self._step, "on_collision": self._handlers.on_collision}
@@ -217,21 +217,14 @@ class PymunkImpacts:
         if edge is not None:
             check_kind(edge)
         bare = sheet_of(wall) is wall
-        needed = (
-            ("thickness", not bare, "pair"),
-            ("friction", friction is not None, "oblique"),
-            ("edge", edge, "edge_kernel"),
-        )
+        needed = {"pair": not bare, "oblique": friction is not None, "edge_kernel": edge}
         for one in models:
             check_wall(wall, one, edge)
-            for name, value, what in needed:
-                if value and not knows(one, what):
-                    raise TypeError(
-                        f"{name}: {one!r} has no {what}, which this takes; leave {name}=None or a length, "
-                        "or give an ImpactModel"
-                    )
-            if not bare and not swing_of(one.pair.plate, wall)[1]:
-                wall, bare = sheet_of(wall), True
+            if not bare and knows(one, "pair"):
+                swing_of(one.pair.plate, wall)  # refuses a stiffness or a radius that cannot be
+            for method, is_needed in needed.items():
+                if is_needed and not knows(one, method):
+                    raise TypeError(f"{one!r} has no {method}, which this thickness, friction or edge takes")
         mount = self._mounts.setdefault(body, Mount())
         mount.extent = max(mount.extent, *((end - body.center_of_gravity).length for end in corners))
         index = self._contacts.record.add_plate(number, wall)
@@ -296,8 +289,8 @@ class PymunkImpacts:
         structured array
             A copy with columns of `contactlaw.engines.record.COLUMNS`, where their units are: time,
             bead, plate, other, x, y, z (0), approach_speed, restitution, sliding_speed and kind (an
-            impact, or 3 if the bead was struck while it touched); if every model is a
-            `ReboundModel`, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
+            impact, or 3 if the bead was struck while it touched); if every model has a pair and
+            ``lookup``, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
             peak_force, plastic_energy, wave_energy, other_energy, scheme_energy (0),
             friction_energy, wall_work (0, unknown to the engine), radius, mass, parcel (1),
             material, thickness, triangle (-1), wall_start, run, run_start (0) and flags.
@@ -336,20 +329,10 @@ class PymunkImpacts:
         return report(self.record(), out)
 
     def detach(self) -> None:
-        """Restore the space as it was; the record stays readable. A second call has no effect.
-
-        Raises
-        ------
-        RuntimeError
-            If ``space.step`` or ``space.on_collision`` has been replaced since; detaching would
-            undo that too.
-        """
+        """Restore the space as it was at `attach`; the record stays readable. A second call has no effect."""
         state = vars(self._space)
         if not self._attached:
             return
-        for name, own in self._own.items():
-            if state.get(name) != own:
-                raise RuntimeError(f"space.{name} has been replaced since attach(); undo that first")
         for name, replaced in self._replaced.items():
             del state[name]
             if replaced:
@@ -392,7 +375,7 @@ class PymunkImpacts:
         """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
             raise ArgumentError("dt", dt, "must be positive and finite [s]")
-        check(self._space, self._mounts, self._least, dt, self._contacts.time)
+        check(self._space, self._motion, self._mounts, self._least, dt, self._contacts.time)
         if not self._joined:
             plates = registered(shape for body in self._mounts for shape in body.shapes)
             join(plate for _, plate in plates if isinstance(plate, PlateShape))

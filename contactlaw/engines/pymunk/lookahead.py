@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -30,12 +31,6 @@ class TunnellingError(RuntimeError):
         bit by bit, because of overlaps or too few iterations.
     """
 
-    bead: int
-    plate: int
-    time: float
-    speed: float
-    safe_step: float | None
-
     def __init__(self, *numbers: Any) -> None:
         super().__init__(*numbers)  # as given, for pickle
         self.bead, self.plate, self.time, self.speed, self.safe_step = numbers
@@ -51,16 +46,28 @@ class TunnellingError(RuntimeError):
         )
 
 
-def check(space: pymunk.Space, mounts: Any, least: float, dt: float, time: float) -> None:
-    """Raise if the step from `time` on would lose an impact, or starts from a NaN; `least`: smallest radius [m]."""
-    from pymunk.batch import BodyFields, Buffer, get_space_bodies
+class Motion:
+    """Positions and velocities of all bodies, read into one buffer, whose memory pymunk never frees."""
 
+    def __init__(self, space: pymunk.Space) -> None:
+        from pymunk.batch import BodyFields, Buffer, get_space_bodies
+
+        self._buffer = Buffer()
+        self._read = functools.partial(get_space_bodies, space, BodyFields.POSITION | BodyFields.VELOCITY, self._buffer)
+
+    def is_slow(self, limit: float) -> bool:
+        """Whether all numbers are finite and all speeds below a limit [m/s]."""
+        self._buffer.clear()
+        self._read()
+        motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
+        fastest = math.sqrt(np.square(motion[:, 2:]).sum(axis=1).max(initial=0.0))
+        return fastest < limit and math.isfinite(motion.sum())
+
+
+def check(space: pymunk.Space, motion: Motion, mounts: Any, least: float, dt: float, time: float) -> None:
+    """Raise if the step from `time` on would lose an impact, or starts from a NaN; `least`: smallest radius [m]."""
     fastest = max((mount.watch(body, dt) for body, mount in mounts.items()), default=0.0)
-    buffer = Buffer()
-    get_space_bodies(space, BodyFields.POSITION | BodyFields.VELOCITY, buffer)
-    motion = np.frombuffer(buffer.float_buf()).reshape(-1, 4)
-    fast = np.hypot(motion[:, 2], motion[:, 3]).max(initial=0.0)
-    if np.isfinite(motion).all() and fast < least / dt - fastest:
+    if motion.is_slow(least / dt - fastest):
         return
     errors: list[TunnellingError] = []
     for shape, owner in registered(space.shapes):

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from contactlaw import Material, edge_distance
-from contactlaw import material as catalogued
 from contactlaw._errors import ArgumentError
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows
 from contactlaw.equation.tangential import POINT
@@ -44,7 +43,7 @@ class Answers:
 
     def _reach_of(self, octave: int) -> float:
         # Slower impacts last longer, so the slowest of these speeds has the longest reach.
-        time = self._model.solve(math.ldexp(0.5, octave), self._radius, self._wall).contact_time
+        time = self._model.lookup(math.ldexp(0.5, octave), self._radius, self._wall).contact_time
         return float(edge_distance(self._model.pair.plate, self._wall, time))
 
     def near(self, speed: float, kind: str, distance: float) -> float:
@@ -94,14 +93,7 @@ class Models:
         for model in models:
             if not callable(getattr(model, "curve", None)):
                 raise TypeError(f"model: expected an ImpactModel or an object with curve(), got {model!r}")
-            sphere, plate = pair = materials_of(model)
-            if len(models) > 1 and None in pair:
-                raise ArgumentError(
-                    "model",
-                    None,
-                    f"several are told apart by their pairs, but {model!r} has none; give it one "
-                    "(an attribute `pair`, a contactlaw.Pair), or attach it alone",
-                )
+            sphere, plate = materials_of(model)
             key = _number(sphere, self.spheres), _number(plate, self.plates)
             if key in self.by_pair:
                 reason = f"two are for {name_of(sphere)} on {name_of(plate)}; give one for each pair"
@@ -112,7 +104,7 @@ class Models:
         """Return the number of a material of `spheres` or `plates`, by default that of the first model."""
         known = getattr(self, kind)
         for number, one in enumerate(known):
-            if material is None or _is(material, one):
+            if material in (None, one, name_of(one)):
                 return number
         names = ", ".join(repr(name_of(one)) for one in known)
         raise ArgumentError(
@@ -158,15 +150,6 @@ def _number(material: Any, known: list[Any]) -> int:
     if material not in known:
         known.append(material)
     return known.index(material)
-
-
-def _is(material: Material | str, known: Any) -> bool:
-    if not isinstance(material, str):
-        return bool(material == known)
-    try:
-        return material == name_of(known) or catalogued(material) == known
-    except ValueError:  # not in the catalogue
-        return False
 
 
 def name_of(material: Any) -> str:

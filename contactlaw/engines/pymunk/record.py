@@ -67,7 +67,7 @@ class Record:
     def read(self) -> Rows:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 
-        Unless every model is a `ReboundModel`, there are only the columns of OBSERVED.
+        Unless every model can complete the record, there are only the columns of OBSERVED.
         """
         seen = np.array(self._seen[len(self._rows) * WIDTH :]).reshape(-1, WIDTH)
         if len(seen):
@@ -110,7 +110,7 @@ class Record:
             yield model, more, which.ravel() == n, bead, other, plate, EDGES[near]
 
     def _complete(self, rows: Rows, edge: NDArray[np.int64], distance: NDArray[np.float64]) -> None:
-        """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
+        """Look impacts up, each with the model of its materials; every model can complete the record."""
         models, radius, material = self._models, np.array(self._radii), np.array(self._materials)
         mass = sphere_mass(np.array([sphere.density for sphere in models.spheres])[material], radius)
         bead = rows["bead"]

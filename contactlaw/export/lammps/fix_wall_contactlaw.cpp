@@ -75,7 +75,7 @@ struct FixWallContactlaw::Scene {
     std::map<std::string, std::string> head;
     std::vector<std::string> walls;
     std::vector<contactlaw_load> loads;
-    std::vector<double> pressed, shown, before;
+    std::vector<double> shown, before;
     contactlaw_overlap found[CONTACTLAW_ROOM];
     contactlaw_impact_row impacts[CONTACTLAW_IMPACT_ROWS];
     contactlaw_status status = {};
@@ -97,7 +97,7 @@ struct FixWallContactlaw::Scene {
                  { at<contactlaw_frame>("frames"), count("frames") },
                  { at<contactlaw_facet>("facets"), count("facets") },
                  { found, CONTACTLAW_ROOM }, { impacts, CONTACTLAW_IMPACT_ROWS }, { &status, 1 },
-                 { loads.data(), int(loads.size()) }, pressed.data(),
+                 { loads.data(), int(loads.size()) },
                  number("friction"), number("softening"), number("parcel") };
     }
     contactlaw_wall_scene made; /* once, because reading numbers of texts takes time */
@@ -146,7 +146,7 @@ void FixWallContactlaw::read(const std::string &path)
     const long long *const moved = s.at<long long>("moved");
     for (int n = 0; n < s.count("moves"); ++n)
         s.blob[size_t(moved[n]) / sizeof(long long)] += (long long)(size_t) s.blob.data();
-    s.loads.resize(s.walls.size()), s.pressed.resize(size_t(s.count("facets")));
+    s.loads.resize(s.walls.size());
     s.shown.assign(NUMBERS * s.walls.size(), 0.0), s.before = s.shown;
     s.places = s.count("contacts");
     s.made = s.kernels();

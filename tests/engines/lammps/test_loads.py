@@ -15,29 +15,21 @@ MODEL = cl.ImpactModel(box.PAIR)
 
 
 @pytest.mark.parametrize("motion", [None, Translation((10.0, 0, 0))])
-def test_a_plate_bears_the_weight_of_the_beads_on_it(motion, tmp_path):
+def test_a_plate_bears_the_weight_of_the_beads_on_it(motion):
     """Also one that moves: its torque is about the origin, and without friction it gives no power."""
     dt = time_step(MODEL, 0.3, R, 1e-3, softening=1000.0)
-    place, path = [(0.01, 0.02, R), (-0.03, 0.01, R)], tmp_path / "walls.vtk.series"
+    place = [(0.01, 0.02, R), (-0.03, 0.01, R)]
     wall = Plate((-10, -0.05, 0), (20, 0, 0), (0, 0.1, 0), 1e-3, motion=motion)
     lmp, walls = box.scene(MODEL, [wall], place, (0, 0, 0), gravity=G, dt=dt, softening=1000.0)
-    assert [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(7)] == [0.0] * 7
     with pytest.raises(ValueError, match="duration: got 0.0; loads are means over time: simulate some steps first"):
         walls.loads()
     lmp.command(f"run {math.ceil(0.5 / dt / 100) * 100}")
     walls.loads()
-    walls.save_series(path)
     lmp.command("run 2001")
-    walls.save_series(path)
     loads, weight = walls.loads(), box.MASS * G
     assert loads.duration == pytest.approx(2001 * dt)
     np.testing.assert_allclose(loads.force, [(0, 0, -2 * weight)], rtol=1e-6, atol=1e-6 * weight)
     np.testing.assert_allclose(loads.torque, [(-0.03 * weight, -0.02 * weight, 0)], rtol=1e-6, atol=1e-9 * weight)
-    shown = [lmp.extract_fix("contactlaw_force", 0, 1, i) for i in range(7)]
-    np.testing.assert_allclose(shown, [*loads.force[0], *loads.torque[0], 0.0], rtol=1e-6, atol=1e-6 * weight)
-    assert box.numbers(tmp_path / "walls-0001.vtk")[1]["pressure_Pa"] == pytest.approx(
-        2 * weight / (20 * 0.1), rel=1e-6
-    )
     walls.detach()
     with pytest.raises(RuntimeError, match="loads: the walls were detached"):
         walls.loads()

@@ -1,6 +1,5 @@
 """The energy map of a run in LAMMPS, as other programs read it."""
 
-import json
 import sys
 
 import numpy as np
@@ -10,7 +9,6 @@ from lammps_box import ABOVE, above, flat, numbers, scene, square
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.lammps import Disc, Mesh, Vibration
-from contactlaw.reporting.surface import areas
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -20,10 +18,7 @@ def lost(rows):
 
 
 def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path, empty_pictures):
-    """Also on a wall that moves: energy is where the bead hit it, not where it was then.
-
-    A series of maps has the same energies, and the momentum that each wall takes.
-    """
+    """Also on a wall that moves: energy is where the bead hit it, not where it was then."""
     rng = np.random.default_rng(4)
     place = [above(x=x, y=y) for x, y in rng.uniform(-0.02, 0.0, (6, 2))]
     place += [above(2e-3, x=0.03), above(x=-0.03, y=0.045)]
@@ -33,22 +28,10 @@ def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path, empty
     disc = Disc((-0.03, 0.045, 0), (0, 0, 1), 0.01, 1e-3, **moving)
     walls = {"belt": flat(1e-3, x=0.01, width=0.04, **moving), "sheet": mesh, "end": disc}
     lmp, found = scene(model, walls, place, (1.0, 0.5, -5.0), friction=0.1)
-    for steps in (2000, 2000, 1500):
-        lmp.command(f"run {steps}")
-        found.save_series(tmp_path / "walls.vtk.series")
+    lmp.command("run 5500")
     rows, on = found.gather(), found.record().surface
     assert on.names == ["belt", "sheet", "end"]
     assert rows.size == 8 and set(rows["plate"]) == {0, 1, 2}
-    files = json.loads((tmp_path / "walls.vtk.series").read_text())["files"]
-    assert [file["time"] for file in files] == pytest.approx([2e-4, 4e-4, 5.5e-4])
-    energy, impulse = 0.0, 0.0
-    for file, time in zip(files, (2e-4, 2e-4, 1.5e-4), strict=True):
-        corners, columns = numbers(tmp_path / file["name"])
-        energy, impulse = energy + columns["energy_J"], impulse + time * columns["pressure_Pa"] * areas(corners)
-    assert energy == pytest.approx(np.bincount(on.triangle, lost(rows), len(energy)), rel=1e-6)
-    stopped = np.bincount(rows["plate"], rows["mass"] * (1.0 + rows["restitution"]) * rows["approach_speed"])
-    assert np.bincount(on.wall, impulse) == pytest.approx(stopped, rel=1e-3)
-    assert np.ptp((impulse / areas(corners))[on.wall == 2]) == pytest.approx(0.0, abs=1e-6)
     found.report(tmp_path / "out")
     corners, columns = numbers(tmp_path / "out/energy.vtk")
     side = np.diff(corners, axis=1)

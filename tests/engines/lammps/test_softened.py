@@ -211,27 +211,12 @@ def test_a_contact_that_is_too_soft_is_told():
     assert walls.softening == SOFT
 
 
-def test_the_softening_may_be_chosen_from_the_speeds():
-    lmp = box.make(box.ABOVE, (0, 0, -3), dt=5e-7)
-    walls = box.attach(lmp, MODEL, [box.flat(1e-3)], softening="auto", speeds=(0.1, 3.0))
-    assert walls.softening == most_softening(MODEL, 3.0, R, slowest=0.1) > 10.0
-    auto = {"softening": "auto", "speeds": (0.1, 3.0), "parcel": 2.0}
-    parcels = box.attach(box.make(box.ABOVE), MODEL, [box.flat(1e-3)], **auto)
-    assert parcels.softening == most_softening(MODEL, 3.0, R, slowest=0.1, parcel=2.0)
-    lmp.command("run 200")
-    assert walls.collisions()["restitution"] == pytest.approx(MODEL.solve(3.0, R, 1e-3).restitution, abs=3e-5)
-
-
 @pytest.mark.parametrize(
     ("given", "says"),
     [
         ({"softening": 0.5}, "softening: got 0.5; must be finite and at least 1"),
         ({"softening": math.inf}, "softening: got inf; must be finite"),
         ({"softening": math.nan}, "softening: "),
-        ({"softening": "auto"}, "speeds: softening='auto', and it alone, takes the slowest"),
-        ({"softening": "auto", "speeds": (0.0, 1.0)}, "slowest: "),
-        ({"softening": "auto", "speeds": (3.0, 0.1)}, "slowest: got 3.0; must be at most the fastest speed"),
-        ({"softening": 9.0, "speeds": (0.1, 3.0)}, "speeds: .* softening='auto', and it alone"),
         ({"parcel": 0.0}, "parcel: got 0.0; must be finite and at least 1"),
     ],
 )

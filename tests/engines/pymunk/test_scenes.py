@@ -308,7 +308,7 @@ def test_a_pair_without_a_model_says_which(models):
     some = [models[pair] for pair in pairs if pair != (STEEL, STEEL)]
     space = make_space(0.0)
     impacts = attach(space, some)
-    impacts.add_plate(make_plate(space), 1e-3, material="carbon-steel")
+    impacts.add_plate(make_plate(space), 1e-3, material="carbon-steel-1020")
     rho = cl.material("carbon-steel").density
     circle = make_bead(space, (0, 1.01 * R), (0, -2), density=rho)
     impacts.add_bead(circle, material=cl.material("carbon-steel"))
@@ -327,8 +327,6 @@ def test_what_is_no_material(models):
     one = models["gamma-alumina", "glass"]
     with pytest.raises(ValueError, match="two are for gamma-alumina on glass"):
         attach(make_space(), [one, one])
-    with pytest.raises(ValueError, match="told apart by their pairs"):
-        attach(make_space(), [one, Stub()])
     with pytest.raises(ValueError, match="empty"):
         attach(make_space(), [])
 

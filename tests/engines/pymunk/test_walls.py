@@ -53,8 +53,8 @@ def test_friction_knows_the_wall():
 
 
 def test_no_foundation_is_the_sheet():
-    rows = [hit(h) for h in (H, cl.Foundation(H, 0.0), cl.Shell(H, np.inf))]
-    assert rows[0] == rows[1] == rows[2]
+    sheet, *others = (hit(h)["restitution"] for h in (H, cl.Foundation(H, 0.0), cl.Shell(H, np.inf)))
+    assert others == pytest.approx([sheet] * 2, abs=1e-4)  # a wall that swings is interpolated in the speed
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ def test_no_foundation_is_the_sheet():
         (MODEL, cl.Foundation(H, -1.0), None, "stiffness: got -1"),
         (MODEL, WALLS["pipe"], "free", "only bare sheets have edges"),
         (MODEL, cl.Layers([("pmma", 1e-3)]), None, "beads touch 'pmma'"),
-        (Stub(), WALLS["pipe"], None, "thickness: .* has no pair.*ImpactModel"),
+        (Stub(), WALLS["pipe"], None, "has no pair, which this thickness"),
     ],
 )
 def test_what_is_refused(model, wall, edge, said):
