@@ -15,7 +15,7 @@ from contactlaw.stepping import Clock, WallContacts
 from contactlaw.stepping.step import FIRST, ROWS, RUN, SLIDING, WIDTH, Beads, begin, step
 from contactlaw.walls import Cone, Cylinder, Disc, Mesh, Plate, Rotation, Sphere, Tabulated, Translation, Vibration
 
-PAIR = cl.Pair("gamma-alumina", "glass")
+PAIR, FIRST_ID = cl.Pair("gamma-alumina", "glass"), 2**40 + 1  # IDs that need more than 32 bits
 DT, GRAVITY = 1e-7, -9.81
 
 
@@ -150,7 +150,7 @@ def by_loop(scene):
     history, last = np.zeros((n, width)), np.zeros(n)
     mass = 4.0 / 3.0 * math.pi * mine.pair.sphere.density * scene.radius**3
     x, v, (omega, force, torque) = scene.place.copy(), scene.velocity.copy(), np.zeros((3, n, 3))
-    ints = np.arange(1, n + 1, dtype=np.int32), np.ones(n, np.int32), np.ones(n, np.int32)
+    ints = np.arange(FIRST_ID, FIRST_ID + n), np.ones(n, np.int32), np.ones(n, np.int32)
     at = history.ctypes.data
     _fly(
         contacts.scene,
@@ -172,4 +172,5 @@ def by_loop(scene):
     )
     assert runs["error"][0] == 0.0, runs
     rows = np.sort(contacts.scene.impacts[: contacts.scene.status["impacts"][0]], order=["bead", "time"])
+    rows["bead"] -= FIRST_ID - 1
     return Outcome(rows, x, v, omega)
