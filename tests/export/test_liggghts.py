@@ -196,6 +196,28 @@ def test_drops_have_the_restitution_of_the_table(scene):
     assert expected.restitution.min() < 0.6 < 0.84 < expected.restitution.max()
 
 
+@pytest.mark.parametrize("soft", [1.0, 5.0])
+def test_a_scene_is_that_of_lammps(soft, scene):
+    """The scene of all engines whose only wall is a plate, with friction and beads of two sizes."""
+    scenes = pytest.importorskip("scenes")
+    shared = scenes.SCENES["softened"]._replace(softening=soft)
+    start = scene.beads(shared.place, shared.velocity)
+    path = scene.folder / "beads.data"
+    lines = path.read_text().splitlines()
+    for n, radius in enumerate(shared.radius.tolist(), lines.index("Atoms") + 2):
+        lines[n] = lines[n].replace(f" {2 * RADIUS} ", f" {2 * radius} ")
+    path.write_text("\n".join([*lines, ""]))
+    weight = f"fix weight all gravity {-scenes.GRAVITY} vector 0 0 -1\n"
+    options = {"friction": " ".join(["0.3"] * 25), "step": scenes.DT, "every": shared.steps}
+    script = scene.script(start, softening(soft) + weight + zplane(), **options)
+    last = {name: values[-1] for name, values in scene.run(f"{script}run {shared.steps}").items()}
+    wanted = scenes.by_attach(shared, MODEL)
+    assert len(wanted.rows) >= 15
+    assert np.column_stack([last[f"v{axis}"] for axis in "xyz"]) == pytest.approx(wanted.v, abs=2e-3)
+    assert np.column_stack([last[axis] for axis in "xyz"]) == pytest.approx(wanted.x, abs=1e-6)
+    assert np.column_stack([last[f"omega{axis}"] for axis in "xy"]) == pytest.approx(wanted.omega[:, :2], abs=10.0)
+
+
 def softening(value):
     """Line of a script."""
     return f"fix softening all property/global softening scalar {value}\n"

@@ -97,12 +97,12 @@ def model():
     return cl.ImpactModel(PAIR, law="myc")
 
 
-def by_attach(scene, **lammps):
+def by_attach(scene, mine=None, **lammps):
     """By LAMMPS."""
     import lammps_box as box
 
     lmp = box.make(scene.place, scene.velocity, scene.radius, gravity=-GRAVITY, dt=DT, **lammps)
-    walls = box.attach(lmp, model(), scene.walls, friction=scene.friction, softening=scene.softening)
+    walls = box.attach(lmp, mine or model(), scene.walls, friction=scene.friction, softening=scene.softening)
     lmp.command(f"run {scene.steps}")
     now, rows = box.state(lmp), np.sort(walls.collisions(), order=["bead", "time"])
     lmp.close()
