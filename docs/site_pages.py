@@ -21,6 +21,7 @@ from contactlaw import cli
 ROOT = Path(__file__).resolve().parents[1]
 HOME = "README.md"  # the page of the repository that is the first one of the site
 LINK = re.compile(r"(\]\()([^)#\s]+)([^)]*\))")
+FIRST = ["ImpactModel", "Pair", "Material"]  # names with which a reference begins
 DESCRIBED = (FunctionType, property, classmethod, staticmethod)
 MODULES = [
     "contactlaw",
@@ -135,7 +136,8 @@ def methods(name, one):
 
 def module(name):
     """Write the page of a module, which mkdocstrings fills from its docstrings."""
-    members = "".join(f"        - {one}\n" for one in public(name))
+    names = sorted(public(name), key=lambda one: FIRST.index(one) if one in FIRST else len(FIRST))
+    members = "".join(f"        - {one}\n" for one in names)
     return f"# {name}\n\n::: {name}\n    options:\n      members:\n{members}"
 
 

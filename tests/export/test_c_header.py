@@ -203,7 +203,7 @@ def from_package(model, rows):
     return out
 
 
-# Largest errors as docs/c.md has them, and those of pairs with a rate, whose law is made for steps.
+# Largest errors as docs/how_sure.md has them, and those of pairs with a rate, whose law is made for steps.
 # Times are within 1e-7, as neither integration controls their error.
 BOUNDS = {
     "shares": 1e-9,

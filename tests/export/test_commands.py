@@ -96,7 +96,7 @@ def test_a_scene_as_text_is_what_python_writes(drum, tmp_path, capsys):
 
 
 def test_the_scene_of_the_page_is_one(tmp_path):
-    text = (ROOT / "docs/lammps.md").read_text().partition("```toml\n")[2].partition("```")[0]
+    text = (ROOT / "docs/lammps_walls.md").read_text().partition("```toml\n")[2].partition("```")[0]
     (tmp_path / "page.toml").write_text(text)
     assert cli.main(["export", "lammps", str(tmp_path / "page.toml"), "--out", str(tmp_path / "out")]) == 0
 

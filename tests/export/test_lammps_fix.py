@@ -407,3 +407,15 @@ def test_the_examples_run(name, built, tmp_path):
         assert subprocess.run(report, cwd=tmp_path).returncode == 0
         assert "shell, 0.8 mm" in (tmp_path / "report/index.html").read_text()
         assert (tmp_path / "report/energy.vtk").exists()
+
+
+def test_the_first_lines_of_the_page_run_in_an_empty_folder(tmp_path):
+    block = re.search(r"```sh\n(cat .*?)```", (ROOT / "docs/lammps.md").read_text(), re.DOTALL)[1]
+    search = os.environ | {"PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
+    done = subprocess.run(["bash", "-ec", block], cwd=tmp_path, env=search, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "thick, 3 mm" in (tmp_path / "report/index.html").read_text()
+    rows = cl.read_record(*tmp_path.glob("hits.*.npy")).rows
+    fast = rows[rows["approach_speed"] > 1.9]
+    thin, thick = (fast["restitution"][fast["plate"] == wall].mean() for wall in (0, 1))
+    assert thin < 0.5 * thick

@@ -20,7 +20,7 @@ from validation.fem.impact import impact
 from validation.fem.studies import STUDIES
 from validation.paper import setting
 
-SAID = " ".join((ROOT / "docs/laws.md").read_text().split())
+SAID = " ".join((ROOT / "docs/how_sure.md").read_text().split())
 
 
 @pytest.fixture(scope="module")

@@ -71,7 +71,7 @@ def test_the_mesh_is_fine_enough(rows):
 
 
 def test_the_docs_have_the_table(rows):
-    page = (Path(cl.__file__).parents[1] / "docs/laws.md").read_text()
+    page = (Path(cl.__file__).parents[1] / "docs/how_sure.md").read_text()
     for core in dict.fromkeys(one.case.core for one in rows):
         found = [one for one in rows[:-1] if one.case.core == core]
         errors = [f"{one.fem:.3f} ({100.0 * (one.law / one.fem - 1.0):+.1f} %)" for one in found]
