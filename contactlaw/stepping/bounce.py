@@ -64,7 +64,8 @@ def bounce(
     h = CONTACT_TIME * expected.time / STEPS
     state, x, v, wave, steps = PARTED, 0.0, came, 0.0, 0
     pushed, dragged = 0.0, (0.0, 0.0, 0.0)
-    for steps in range(1, LONGEST * STEPS):
+    while steps < LONGEST * STEPS:
+        steps += 1
         u = -dot(v, n)
         x += h * u
         last = state
