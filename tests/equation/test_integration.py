@@ -167,7 +167,7 @@ def test_a_level_next_to_a_turn_is_sought_within_the_step():
     before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0)
     beyond = motion.ScaledState(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0)
     step = 0.002250933219558533
-    guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
+    guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0)
     assert 0.0 < guess < step
 
 
