@@ -99,17 +99,17 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
     top = state = motion.start(contact, leg, 0.0, scale.u, 0.0, 0.0)
     total, noted, marks, going = 0, 0, notes.at.shape[1], True
     while going:
-        before, loading = state, legs.is_loading(leg)
-        state, event, h, steps = integrator.follow(contact, leg, state, h, scale, goal >= AT_TIMES)
+        loading = legs.is_loading(leg)
+        reached, event, h, steps = integrator.follow(contact, leg, state, h, scale, goal >= AT_TIMES)
         total += steps
-        turns = loading and event != NONE and (event == TURN or state.dq <= 0.0)
+        turns = loading and event != NONE and (event == TURN or reached.dq <= 0.0)
         # absurd impacts overflow: no event comes after a time that is infinite or no number
-        going = total < MAX_STEPS and not (event == LEVEL and not loading) and state.t < math.inf
+        going = total < MAX_STEPS and not (event == LEVEL and not loading) and reached.t < math.inf
         if goal >= AT_TIMES:
             most = marks // 2 if goal == AT_COMPRESSIONS and loading else marks
             ends = not going or (turns and goal == AT_COMPRESSIONS)
-            noted = note(goal, notes, n, noted, most, law, curve, y, before, state, ends)
-            going = going and noted < marks
+            noted = note(goal, notes, n, noted, most, law, curve, y, state, reached, ends)
+        going, state = going and (noted < marks or marks == 0), reached
         if turns:
             top, going = state, going and goal != TO_THE_TOP
         if going and event != NONE:
