@@ -408,7 +408,10 @@ def check(law: Array) -> None:
     for values in (starts, family_starts):
         if not (np.diff(values) > 0.0).all() or starts[-1] != math.inf:
             raise ValueError("the pieces of its law do not follow each other")
-    curve, functions = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :].reshape(-1, FUNCTION)
+    curve, functions = (
+        curve.reshape(-1, PIECE),
+        family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :].reshape(-1, FUNCTION),
+    )
     degree, at = _whole(np.vstack((curve[:, DEGREE:FIRST], functions[:, FUNCTION_DEGREE:])).T, law.size)
     if (degree // 4 * 4 + 4 + at > law.size).any():
         raise ValueError("its law has coefficients beyond its end")

@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import legs, losses, motion
+from contactlaw.equation import legs, motion
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
 from contactlaw.equation.notes import share_at
@@ -86,12 +86,9 @@ def _step(
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
     a7, b7, f7 = motion.rates(contact, leg, kind, q7, u7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
-    work = state.work + (
-        w1 * losses.power(q, f1)
-        + w3 * losses.power(q3, f3)
-        + w4 * losses.power(q4, f4)
-        + w5 * losses.power(q5, f5)
-        + w6 * losses.power(q6, f6)
+    # of the waves, over the plate's mobility: it takes the power f v
+    work = state.work + 2.0 * (
+        w1 * q * f1 * f1 + w3 * q3 * f3 * f3 + w4 * q4 * f4 * f4 + w5 * q5 * f5 * f5 + w6 * q6 * f6 * f6
     )
     error_q = (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6) - 1 / 40 * a7
     error_u = (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6) - 1 / 40 * b7
@@ -167,10 +164,10 @@ def follow(
 
 
 @kernel
-def after(contact: ScaledContact, leg: Leg, event: int, state: ScaledState) -> tuple[Leg, ScaledState]:
-    """Next leg, and the state on it, after a leg that ended at its level or with loading."""
+def after(contact: ScaledContact, leg: Leg, turns: bool, state: ScaledState) -> tuple[Leg, ScaledState]:
+    """Next leg, and the state on it, after a leg that ended where the motion turns, or at its level."""
     residual, q = leg.residual, state.q
-    if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
+    if turns:
         leg = legs.down(contact.law, q * q)
     else:
         leg = legs.up(contact.law, leg.last + 1)

@@ -37,7 +37,6 @@ class Contact(NamedTuple):
     """A contact that has ended, in the law's scale."""
 
     ended: bool  # whether steps have got to its end
-    steps: int
     stays: bool  # whether the sphere still presses when it is not followed any more
     speed: float  # of the sphere
     duration: float
@@ -126,7 +125,7 @@ def follow(
         h *= min(2.0, 0.8 / np.cbrt(max(off, 1e-3)))
     if loading and q * q > dm:  # a sphere that stays may press harder than ever
         dm, top = q * q, t
-    return Contact(ended or stays, steps, stays, u, t, top, dm, memory)
+    return Contact(ended or stays, stays, u, t, top, dm, memory)
 
 
 @kernel

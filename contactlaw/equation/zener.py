@@ -40,7 +40,6 @@ class Solution(NamedTuple):
     """Impacts in Hertz's scale, numbers or arrays; energies as shares of the initial one."""
 
     status: Any
-    steps: Any
     restitution: Any
     loading_time: Any  # until the largest compression
     contact_time: Any
@@ -113,13 +112,12 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         if turns:
             top, going = state, going and goal != TO_THE_TOP
         if going and event != NONE:
-            leg, state = integrator.after(contact, leg, event, state)
+            leg, state = integrator.after(contact, leg, turns, state)
             curve = force.unloading(law, top.q * top.q) if turns else curve
     return _solution(
         law,
         y,
         float(OK if total < MAX_STEPS else TOO_MANY_STEPS),
-        float(total),
         min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
@@ -143,7 +141,6 @@ def _solution(
     law: BlendedLaw,
     y: float,
     status: float,
-    steps: float,
     restitution: float,
     loading_time: float,
     contact_time: float,
@@ -155,7 +152,6 @@ def _solution(
     peak, residual, plastic, other = _extremes(law, y, dm)
     return Solution(
         status,
-        steps,
         restitution,
         loading_time,
         contact_time,
@@ -190,7 +186,6 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
         law,
         y,
         float(OK if contact.ended else TOO_MANY_STEPS),
-        float(contact.steps),
         rebound,
         contact.loading_time / unit,
         contact.duration / unit,

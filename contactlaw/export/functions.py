@@ -13,7 +13,6 @@ from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import force, zener
-from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import at_strength
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
@@ -31,7 +30,7 @@ from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, keep_drag, tangential_push
-from contactlaw.stepping.spring import Spring, State, advance, impact, resized, unit_spring
+from contactlaw.stepping.spring import Spring, State, advance, resized, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
 
