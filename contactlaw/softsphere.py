@@ -161,7 +161,10 @@ def _slide_all(
 
 @kernel(cache=True)
 def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
-    """`advance_softened` for arrays, as `_advance_all`; each impact has its COR from its second step on, a struck bead anew."""
+    """`advance_softened` for arrays, as `_advance_all`.
+
+    The COR of an impact is known from its second step on; a bead that was struck gets a new one.
+    """
     for n in range(overlap.size):
         if not -math.inf < overlap[n] <= batch.diameters[n]:
             return n

@@ -58,7 +58,8 @@ class Function:
     def __init__(self, program: Program, python: Callable[..., Any], given: Sequence[Type]) -> None:
         self._program, self._language, self._python = program, program.language, python
         lines, self._first = inspect.getsourcelines(python)
-        self._tree: Any = ast.parse(textwrap.dedent("".join(lines)))
+        tree: Any = ast.parse(textwrap.dedent("".join(lines)))
+        self._tree = tree.body[0]
         found = inspect.getclosurevars(python)
         self._scope = {**python.__globals__, **found.builtins, **found.nonlocals}
         given_types = self._bound(python, *(Value(one, "") for one in given))
@@ -67,7 +68,7 @@ class Function:
         self.result, before = types.VOID, None
         while before != (self.types, self.result):  # until no type is wider than before
             before = dict(self.types), self.result
-            self.body = self._block(self._tree.body[0].body)
+            self.body = self._block(self._tree.body)
 
     def refuse(self, node: Any, remedy: str) -> NoReturn:
         """Say where a kernel leaves the subset of Python, and what to write instead."""

@@ -15,6 +15,7 @@ from contactlaw.answers.solver import RTOL
 from contactlaw.equation import force, zener
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import at_strength
+from contactlaw.equation.notes import AT_TIMES, TO_THE_END, Notes
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
@@ -280,7 +281,7 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
     """Integrate an impact to a goal."""
     none = np.empty((0, 0))
     own = at_strength(pair.law, units.strength)
-    notes = zener.Notes(none, none, none, none, none)
+    notes = Notes(none, none, none, none, none)
     return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0)
 
 
@@ -320,7 +321,7 @@ def followed(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
 @kernel
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
-    return followed(pair, solid(speed, radius, thickness), zener.TO_THE_END, RTOL)
+    return followed(pair, solid(speed, radius, thickness), TO_THE_END, RTOL)
 
 
 @kernel
@@ -330,7 +331,7 @@ def rebound_with_mass(pair: Bodies, speed: float, radius: float, thickness: floa
     Flags take it as it is; near an edge, and in steps, set the mass of a spring.
     """
     impact = of_mass(pair, speed, radius, thickness, mass)
-    return followed(pair, impact, zener.TO_THE_END, RTOL)
+    return followed(pair, impact, TO_THE_END, RTOL)
 
 
 @kernel
@@ -471,13 +472,13 @@ def rub_softened(
 
 
 @kernel
-def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> History:
+def history(pair: Bodies, units: Numbers, end: float, notes: Notes) -> History:
     """Contact at even times from touch to an end, on Hertz's scale, in the arrays of the notes."""
     samples = notes.at.shape[1]
     own = at_strength(pair.law, units.strength)
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
-    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
+    zener.follow_impact(AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
     return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])
@@ -493,8 +494,8 @@ def rubbed(pair: Bodies, impact: Impact, size: float, friction: float, samples: 
     force, compression = np.empty((1, samples)), np.empty((1, samples))
     after, stretch = np.empty(1), np.empty((springs, 1))
     units, psi = numbers_of(pair, impact), min(size / friction / speed, FASTEST)
-    end = solved(pair, units, zener.TO_THE_END, RTOL).contact_time
-    path = history(pair, units, end, zener.Notes(at, time, velocity, force, compression))
+    end = solved(pair, units, TO_THE_END, RTOL).contact_time
+    path = history(pair, units, end, Notes(at, time, velocity, force, compression))
     path.force[samples - 1] = 0.0
     after[0] = psi
     own = at_strength(pair.law, units.strength)
@@ -511,7 +512,7 @@ def collided(
     if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:
         return Collision(0, v, omega)
     impact = solid(came.speed, radius, thickness)
-    hit = followed(pair, impact, zener.TO_THE_END, RTOL)
+    hit = followed(pair, impact, TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
         return Collision(-1, (nan, nan, nan), (nan, nan, nan))
     changed = rubbed(pair, impact, came.size, friction, SAMPLES, SPRINGS)
