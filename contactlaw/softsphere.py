@@ -37,6 +37,7 @@ from contactlaw.stepping.softened import (
     advance_softened,
     check_softening,
     keep_drag,
+    must_ask,
     tangential_push,
 )
 from contactlaw.stepping.spring import (
@@ -160,7 +161,10 @@ def _slide_all(
 
 @kernel(cache=True)
 def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
-    """`advance_softened` for arrays, as `_advance_all`; each impact has its COR from its second step on."""
+    """`advance_softened` for arrays, as `_advance_all`.
+
+    The COR of an impact is known from its second step on; a bead that was struck gets a new one.
+    """
     for n in range(overlap.size):
         if not -math.inf < overlap[n] <= batch.diameters[n]:
             return n
@@ -169,7 +173,7 @@ def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
         u = (overlap[n] - last.overlap) / step + last.force * step / spring.mass  # before the first force
         if last.force == 0.0:
             batch.approach[n] = 0.0
-        elif batch.approach[n] == 0.0 and u > 0.0:
+        elif u > 0.0 and must_ask(batch.approach[n] == 0.0, overlap[n] > last.largest, u, batch.approach[n]):
             batch.approach[n] = u
             near, rows = _near_at(batch.near, n), batch.friction[0:0]
             e = bounce(batch.law, spring, (0.0, 0.0, -u), _UP, near, 0.0, 1.0, rows).restitution

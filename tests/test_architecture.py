@@ -43,7 +43,7 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": (
-        "force outcome elastic tangential corrections edge recall numbers plate legs losses motion integrator "
+        "force outcome elastic tangential corrections edge recall numbers legs losses motion notes integrator "
         "near_edge zener"
     ),
     "table": "lookup grid sweep shapes certificate table slides file cache",

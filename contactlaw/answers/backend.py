@@ -107,7 +107,7 @@ class Backend:
         integral of its speed, between samples that are close, by the cubic through speeds and forces.
         """
         every = 1 if part.edges is None else -(-_CLOSE // (samples - 1))
-        out = history(part.impacts.speed.size, every * (samples - 1) + 1)
+        out = history(part.outcome.contact_time, every * (samples - 1) + 1)
         zener.histories(self.bodies.data, part.outcome, _RTOL, out, part.edges)
         if part.edges is None:
             return out, None

@@ -10,8 +10,9 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._jit import in_memory, kernel
-from contactlaw.equation import near_edge, zener
+from contactlaw.equation import near_edge
 from contactlaw.equation.force import at_strength
+from contactlaw.equation.notes import Notes
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes, share_of_solid
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import check_kind
@@ -58,6 +59,6 @@ def _cor_near(
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     own = at_strength(law, known.strength)
     none = np.empty((0, 0))
-    notes = zener.Notes(none, none, none, none, none)
+    notes = Notes(none, none, none, none, none)
     one = near_edge.follow(own, response, known.inelasticity, y, min(thin, 1.0), rate, near_edge.QUICK, notes, 0)
     return near_edge.restitution(one, y) if one.ended else math.nan

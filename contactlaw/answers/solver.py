@@ -19,7 +19,7 @@ from contactlaw.answers.backend import (
     too_fast,
     too_thin,
 )
-from contactlaw.equation import edge, force, outcome, zener
+from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Outcome
@@ -135,7 +135,7 @@ def solved_within(
         return solved(law, lam, y, rtol, few=few, edges=edges, strength=s)
     thin = extent.largest_inelasticity
     beyond = int(np.argmax(np.append(lam > thin, True)))
-    inner = edge.part(edges, slice(beyond))
+    inner = None if edges is None else outcome.part(edges, slice(beyond))
     found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner, strength=s[:beyond])
     chi = found.elastic_compression / found.yield_ratio
     for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():

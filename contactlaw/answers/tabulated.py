@@ -181,7 +181,7 @@ class TableLookup(Backend):
         """Contacts over time on Hertz's scale."""
         if not part.interpolated:
             return super().contacts(part, samples)
-        out = outcome.history(part.impacts.speed.size, samples)
+        out = outcome.history(part.outcome.contact_time, samples)
         shapes.sample(self.bodies.data, self.shapes, part.outcome, out)
         return out, None
 

@@ -18,10 +18,7 @@ of a complex one, p + i p'.
 Legend: f contact force, beta mobility, z memory, h step, as in `contactlaw.equation.motion`.
 """
 
-import math
 from typing import Any, Literal, NamedTuple, get_args
-
-import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
@@ -64,11 +61,6 @@ class Edges(NamedTuple):
     again: Array  # set to 1 where the plate comes back to the sphere after the contact, else to 0
 
 
-def part(edges: Edges | None, some: Any) -> Edges | None:
-    """Edges of some of the impacts."""
-    return None if edges is None else Edges(*(values[some] for values in edges))
-
-
 @kernel(inline=True)
 def weighted(r: Array, m: Memories) -> float:
     """Sum over the memory with the weights of the response."""
@@ -79,39 +71,3 @@ def weighted(r: Array, m: Memories) -> float:
 def _half(r: Array, at: int, m: Memory) -> float:
     first = r[at + 12] * m.x1 + r[at + 13] * m.y1 + r[at + 14] * m.x2
     return float(first + r[at + 15] * m.y2 + r[at + 16] * m.x3 + r[at + 17] * m.y3)
-
-
-@kernel
-def _path(r: Array, at: int, memory: Memory, t: float) -> float:
-    """Displacement of the plate over its mobility, at a time after the contact has ended."""
-    z = memory.x1, memory.y1, memory.x2, memory.y2, memory.x3, memory.y3
-    path = 0.0
-    for k in range(3):
-        x, y, w, v = z[2 * k], z[2 * k + 1], r[at + 12 + 2 * k], r[at + 13 + 2 * k]
-        a, second, turn = r[at + 4 * k], r[at + 4 * k + 1], r[at + 4 * k + 2]
-        if turn == 0.0 and a > 0.0:
-            path -= w * x * math.expm1(-a * t) / a + v * y * math.expm1(-second * t) / second
-        elif turn > 0.0:
-            rate = complex(a, turn)
-            gone = complex(x, y) * (1.0 - np.exp(-rate * t)) / rate
-            path += w * gone.real + v * gone.imag
-    return path
-
-
-@kernel
-def comes_back(
-    response: Array, memory: Memories, coupling: float, pace: float, u: float, mobility: float, duration: float
-) -> bool:
-    """Whether the plate comes back to a sphere that has left it with the speed -u.
-
-    It is looked for within 300 durations of the contact; `pace` is 1/tau in the units of u.
-    """
-    if pace == 0.0:
-        return False
-    t = 0.01 * duration
-    while t < 300.0 * duration:
-        path = _path(response, 0, memory.first, pace * t) + _path(response, SIZE, memory.second, pace * t)
-        if mobility * coupling * path < u * t * pace:
-            return True
-        t *= 1.2
-    return False

@@ -47,7 +47,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array
+from contactlaw._arrays import Array, Places
 from contactlaw._jit import kernel
 
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, HEADER = range(7)
@@ -400,38 +400,39 @@ def check(law: Array) -> None:
     ValueError
         If the array is not a law; the message says what is wrong.
     """
-    pieces, rows = (_whole(law, n, law.size) for n in (PIECES, UNLOADINGS))
-    places = np.cumsum([HEADER, pieces + 1, pieces * PIECE, rows + 1, rows * UNLOADING_ROW])
-    if pieces < 1 or places[-1] > law.size or (law[STARTS:HEADER] != places[:-1]).any():
+    pieces, rows, *addresses = _whole(law[:HEADER], law.size).tolist()
+    places = np.cumsum([HEADER, pieces + 1, pieces * PIECE, rows + 1, rows * UNLOADING_ROW]).tolist()
+    if pieces < 1 or places[-1] > law.size or addresses != places[:-1]:
         raise ValueError("its law ends within its pieces")
-    starts, curve, family_starts, family = np.split(law[HEADER : places[-1]], places[1:-1] - HEADER)
+    starts, curve, family_starts, family = np.split(law[HEADER : places[-1]], np.subtract(places[1:-1], HEADER))
     for values in (starts, family_starts):
         if not (np.diff(values) > 0.0).all() or starts[-1] != math.inf:
             raise ValueError("the pieces of its law do not follow each other")
-    curve, functions = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :]
-    for entry in (*curve[:, DEGREE:], *functions.reshape(-1, FUNCTION)[:, FUNCTION_DEGREE:]):
-        degree, start = (_whole(entry, n, law.size) for n in range(2))
-        if not start + degree // 4 * 4 + 4 <= law.size:
-            raise ValueError("its law has coefficients beyond its end")
-    for n, row in enumerate(curve):
-        if not _whole(row, FIRST, law.size) <= n < _whole(row, NEXT, law.size) <= pieces:
-            raise ValueError("the pieces of its law belong to no kink")
+    curve, functions = (
+        curve.reshape(-1, PIECE),
+        family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :].reshape(-1, FUNCTION),
+    )
+    degree, at = _whole(np.vstack((curve[:, DEGREE:FIRST], functions[:, FUNCTION_DEGREE:])).T, law.size)
+    if (degree // 4 * 4 + 4 + at > law.size).any():
+        raise ValueError("its law has coefficients beyond its end")
+    first, following = _whole(curve[:, FIRST:].T, pieces)
+    if (first > np.arange(pieces)).any() or (following <= np.arange(pieces)).any():
+        raise ValueError("the pieces of its law belong to no kink")
 
 
 def check_strengths(laws: Array) -> None:
     """Refuse an array that is not a ladder of laws, as `check` does for one."""
     if not 0 < -laws[PIECES] * RUNG < laws.size:
         raise ValueError("its laws of several strengths have no rungs")
-    for row in rungs(laws):
-        begins, size = (_whole(row, n, laws.size) for n in (BEGINS, SIZE))
-        if not begins + size <= laws.size:
+    for begins, size in _whole(rungs(laws)[:, BEGINS : SIZE + 1], laws.size).tolist():
+        if begins + size > laws.size:
             raise ValueError("its laws of several strengths end within one of them")
         check(laws[begins : begins + size])
 
 
-def _whole(row: Array, column: int, most: int) -> int:
-    """Read a number that has to be whole, from 0 to a limit."""
-    number = float(row[column]) if column < row.size else math.nan
-    if not (0.0 <= number <= most and number == int(number)):
-        raise ValueError(f"its law has {number} where there is a whole number up to {most}")
-    return int(number)
+def _whole(numbers: Array, most: int) -> Places:
+    """Read numbers that have to be whole, from 0 to a limit."""
+    wrong = numbers[~((numbers >= 0.0) & (numbers <= most) & (numbers == np.floor(numbers)))]
+    if wrong.size:
+        raise ValueError(f"its law has {wrong[0]} where there is a whole number up to {most}")
+    return numbers.astype(np.int64)

@@ -15,9 +15,10 @@ import math
 from typing import NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import legs, losses, motion
+from contactlaw.equation import legs, motion
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
+from contactlaw.equation.notes import share_at
 
 MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at
@@ -27,8 +28,7 @@ _LANDED = 1e-9
 LEAST_RESTITUTION = 1e-7
 # Steps get finer in proportion to the largest restitution that is still possible, from this one on.
 _FINER_FROM = 1e-2
-# no event; end of loading; a root compression is reached; a time is reached
-NONE, TURN, LEVEL, TIME = range(4)
+NONE, TURN, LEVEL = range(3)  # no event; end of loading; the level at which a leg ends is reached
 
 
 class Scale(NamedTuple):
@@ -42,28 +42,20 @@ class Scale(NamedTuple):
 
 
 @kernel
-def _gap(event: int, state: ScaledState, level: float, until: float, scale: Scale) -> float:
+def _gap(event: int, state: ScaledState, level: float, scale: Scale) -> float:
     """Distance to an event in units of its scale; its sign changes at the event."""
-    if event == TURN:
-        return state.dq / scale.u
-    return (until - state.t) / scale.t if event == TIME else (level - state.q) / scale.q
+    return state.dq / scale.u if event == TURN else (level - state.q) / scale.q
 
 
 @kernel
-def _guess(event: int, state: ScaledState, trial: ScaledState, h: float, level: float, until: float) -> float:
-    """Step to an event between two points, from the cubic through q or t and its rates there."""
-    value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
-    if event == TIME:  # dt/ds = 2 q
-        value, rise, rate, last = state.t, trial.t - state.t, 2.0 * state.q, 2.0 * trial.q
-        level = until
-    c1, c2 = h * rate, 3.0 * rise - h * (2.0 * rate + last)
-    c3 = h * (rate + last) - 2.0 * rise
-    if event == TURN:  # root of c1 + 2 c2 x + 3 c3 x^2, without cancellation
-        return h * c1 / (math.sqrt(max(0.0, c2 * c2 - 3.0 * c1 * c3)) - c2)
-    secant = x = (level - value) / rise
-    for _ in range(3):
-        x -= (((c3 * x + c2) * x + c1) * x - (level - value)) / ((3 * c3 * x + 2 * c2) * x + c1)
-    return h * (x if 0.0 < x < 1.0 else secant)  # near a turn Newton's method may leave the step
+def _guess(event: int, state: ScaledState, trial: ScaledState, h: float, level: float) -> float:
+    """Step to an event between two points, from the cubic through q and its rates there."""
+    rise, rate, last = trial.q - state.q, h * state.dq, h * trial.dq
+    if event == LEVEL:
+        return h * share_at(rise, rate, last, level - state.q)
+    # root of the cubic's derivative, without cancellation
+    c2, c3 = 3.0 * rise - 2.0 * rate - last, rate + last - 2.0 * rise
+    return h * rate / (math.sqrt(max(0.0, c2 * c2 - 3.0 * rate * c3)) - c2)
 
 
 @kernel(inline=True)
@@ -94,12 +86,9 @@ def _step(
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
     a7, b7, f7 = motion.rates(contact, leg, kind, q7, u7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
-    work = state.work + (
-        w1 * losses.power(q, f1)
-        + w3 * losses.power(q3, f3)
-        + w4 * losses.power(q4, f4)
-        + w5 * losses.power(q5, f5)
-        + w6 * losses.power(q6, f6)
+    # of the waves, over the plate's mobility: it takes the power f v
+    work = state.work + 2.0 * (
+        w1 * q * f1 * f1 + w3 * q3 * f3 * f3 + w4 * q4 * f4 * f4 + w5 * q5 * f5 * f5 + w6 * q6 * f6 * f6
     )
     error_q = (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6) - 1 / 40 * a7
     error_u = (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6) - 1 / 40 * b7
@@ -109,13 +98,13 @@ def _step(
 
 @kernel(inline=True)
 def _follow(
-    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale, level: float, until: float
+    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale, once: bool
 ) -> tuple[ScaledState, int, float, int]:
     """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
     Choosing the kind within the step would make a step 50 % slower.
     """
-    loading = legs.is_loading(leg)
+    loading, level = legs.is_loading(leg), leg.level
     event, following = NONE, h
     a = b = gap_a = gap_b = 0.0  # step lengths on either side of the event, and their gaps
     for steps in range(1, MAX_STEPS):
@@ -131,15 +120,15 @@ def _follow(
                 event = TURN
             elif (trial.q > level) if loading else (trial.q < level):
                 event = LEVEL
-            elif trial.t > until:
-                event = TIME
             else:
                 state = trial
                 h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
+                if once:
+                    return state, NONE, h, steps
                 continue
             following = h
         else:
-            gap = _gap(event, trial, level, until, scale)
+            gap = _gap(event, trial, level, scale)
             if abs(gap) > _LANDED:
                 if gap * gap_b < 0.0:
                     a, gap_a = b, gap_b
@@ -150,37 +139,35 @@ def _follow(
                 continue
             if event == TURN and trial.q > level:
                 event = LEVEL  # loading ends beyond the kink: land on the kink first
-            elif event != TIME and trial.t > until:
-                event = TIME
             else:
                 return trial, event, following, steps
-        a, gap_a = 0.0, _gap(event, state, level, until, scale)
-        b, gap_b = h, _gap(event, trial, level, until, scale)
-        h = _guess(event, state, trial, h, level, until)
+        a, gap_a = 0.0, _gap(event, state, level, scale)
+        b, gap_b = h, _gap(event, trial, level, scale)
+        h = _guess(event, state, trial, h, level)
     return state, event, h, MAX_STEPS
 
 
 @kernel
 def follow(
-    contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, level: float, until: float
+    contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, once: bool
 ) -> tuple[ScaledState, int, float, int]:
-    """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
+    """Integrate a leg to its level or the end of loading, whichever comes first; if `once`, by one step.
 
     Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
     if leg.kind == CUBIC:
-        return _follow(contact, leg, CUBIC, state, h, scale, level, until)
+        return _follow(contact, leg, CUBIC, state, h, scale, once)
     if leg.kind == POWER:
-        return _follow(contact, leg, POWER, state, h, scale, level, until)
-    return _follow(contact, leg, PIECES, state, h, scale, level, until)
+        return _follow(contact, leg, POWER, state, h, scale, once)
+    return _follow(contact, leg, PIECES, state, h, scale, once)
 
 
 @kernel
-def after(contact: ScaledContact, leg: Leg, event: int, state: ScaledState) -> tuple[Leg, ScaledState]:
-    """Next leg, and the state on it, after a leg that ended at its level or with loading."""
+def after(contact: ScaledContact, leg: Leg, turns: bool, state: ScaledState) -> tuple[Leg, ScaledState]:
+    """Next leg, and the state on it, after a leg that ended where the motion turns, or at its level."""
     residual, q = leg.residual, state.q
-    if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
+    if turns:
         leg = legs.down(contact.law, q * q)
     else:
         leg = legs.up(contact.law, leg.last + 1)

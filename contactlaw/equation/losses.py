@@ -10,8 +10,6 @@ Legend: q root compression, f contact force, in the law's scale; ds = dt/(2 q).
 
 from typing import Any, NamedTuple
 
-from contactlaw._jit import kernel
-
 
 class Losses(NamedTuple):
     """Shares of the initial kinetic energy that an impact loses."""
@@ -27,9 +25,3 @@ DESCRIPTIONS = Losses(
     other="that the normal impact leaves in vibration and locked-in stress (law fem)",
 )
 """How records of impacts describe the energy of each channel."""
-
-
-@kernel(inline=True)
-def power(q: float, f: float) -> float:
-    """Work that the waves take per ds, over the plate's mobility."""
-    return 2.0 * q * f * f

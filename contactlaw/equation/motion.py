@@ -4,7 +4,9 @@ It is Eq. 1 of Peng et al. 2021 in its first-order form,
 
     du/dt = -f,    dd/dt = u - v(f),    d(0) = 0,  u(0) = u0 = y^(-5/4),
 
-where v is the speed of the plate at the contact (`contactlaw.equation.plate`). A force that starts
+where v is the speed of the plate at the contact. The plate is a dashpot, as in the paper: v = beta f.
+Real plates differ from it by a factor on the mobility beta (`contactlaw.equation.corrections`) and by
+the memory of what a near edge sends back (`contactlaw.equation.near_edge`). A force that starts
 like d^1.5 has no second derivative at d = 0, where a Runge-Kutta method would lose its order. So q
 replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. This is exact, and for Hertz's law,
 f = q^3, the equation becomes polynomial:
@@ -24,7 +26,7 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
 from typing import NamedTuple
 
 from contactlaw._jit import kernel
-from contactlaw.equation import legs, plate
+from contactlaw.equation import legs
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import Leg
 
@@ -64,7 +66,7 @@ def left(leg: Leg, q: float, u: float, f: float) -> float:
 def rates(contact: ScaledContact, leg: Leg, kind: int, q: float, u: float) -> tuple[float, float, float]:
     """dq/ds, du/ds and the force."""
     f = legs.force_on(leg, kind, contact.law, q)
-    v = plate.speed(contact.mobility, f)
+    v = contact.mobility * f
     if kind == legs.POWER and u * u < _SLOW * contact.least:  # its exponent is not Hertz's: it may stay
         square = left(leg, q, u, f)
         v *= square / (square + contact.least)

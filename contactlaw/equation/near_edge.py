@@ -10,7 +10,7 @@ t time, h step in s, beta mobility, y yield compression; z memory.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from contactlaw.equation import force
 from contactlaw.equation.edge import LONGEST, NO_MEMORY, Memories
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.motion import ScaledState
+from contactlaw.equation.notes import AT_TIMES, Notes, note
 from contactlaw.equation.recall import recalled, remembered
 
 # Errors of q in a step over its scale, with which the restitution is within 5e-4 and 3e-5.
@@ -35,13 +37,11 @@ class Contact(NamedTuple):
     """A contact that has ended, in the law's scale."""
 
     ended: bool  # whether steps have got to its end
-    steps: int
     stays: bool  # whether the sphere still presses when it is not followed any more
     speed: float  # of the sphere
     duration: float
     loading_time: float  # until the largest compression
     largest: float  # compression
-    peak_force: float
     memory: Memories
 
 
@@ -54,7 +54,7 @@ def follow(
     coupling: float,
     rate: float,
     error: float,
-    notes: Any,
+    notes: Notes,
     n: int,
 ) -> Contact:
     """Follow one impact to its end, see `Edges`, and note points of its path in row n."""
@@ -63,8 +63,8 @@ def follow(
     beta, pace, until, least = lam * unit, 0.5 * rate / unit, LONGEST * unit, error * q_scale
     q, u, f, t, dq, du = 0.0, speed, 0.0, 0.0, speed, 0.0
     ddq = ddu = last = 0.0  # second derivatives, and the step over which they are differences
-    memory, noted, marks = NO_MEMORY, 0, notes.at.shape[1]
-    loading, curve, dm, top, peak = True, NO_CURVE, 0.0, 0.0, 0.0
+    memory, noted = NO_MEMORY, 0
+    loading, curve, dm, top = True, NO_CURVE, 0.0, 0.0
     h, ended, stays, steps = _FIRST * q_scale / speed, False, False, 0
     while steps < _MOST and not (ended or stays):
         steps += 1
@@ -103,17 +103,8 @@ def follow(
             continue
         if ended:  # q is 0 before the end of the step
             time = h * q * q / (q - x)
-        while noted < marks and (ended or notes.at[n, noted] * unit <= t + time):
-            # d and u between the ends of the step: cubics in t, with their slopes dq/ds and -f
-            z = min((notes.at[n, noted] * unit - t) / time, 1.0)
-            rise, turn = z * z * (3.0 - 2.0 * z), z * (1.0 - z)
-            d = q * q + rise * (x * x - q * q) + turn * time * ((1.0 - z) * dq - z * dq_new)
-            d = 0.0 if ended and z == 1.0 else max(d, 0.0)
-            notes.speed[n, noted] = (u + rise * (u_new - u) + turn * time * (z * f_new - (1.0 - z) * f)) / speed
-            notes.force[n, noted] = force.unloading_force(law, curve, math.sqrt(d)) * y * math.sqrt(y)
-            notes.compression[n, noted] = (d + curve.residual) * y
-            notes.time[n, noted] = (t + z * time) / unit
-            noted += 1
+        a, b = ScaledState(q, u, t, 0.0, dq, du, f), ScaledState(max(x, 0.0), u_new, t + time, 0.0, dq_new, 0.0, f_new)
+        noted = note(AT_TIMES, notes, n, noted, notes.at.shape[1], law, curve, y, a, b, ended or b.t > until)
         turned = t + time * dq / (dq - dq_new) if turns else 0.0
         memory = remembered(later, f_new)
         du_new = -2.0 * x * f_new
@@ -122,7 +113,7 @@ def follow(
         t += time
         stays = t > until
         if turns:
-            dm, top, peak = q * q, turned, f
+            dm, top = q * q, turned
             curve, loading = force.unloading(law, dm), False
             q = math.sqrt(dm - curve.residual)
             du = -2.0 * q * f
@@ -133,8 +124,8 @@ def follow(
             du = -2.0 * q * f
         h *= min(2.0, 0.8 / np.cbrt(max(off, 1e-3)))
     if loading and q * q > dm:  # a sphere that stays may press harder than ever
-        dm, top, peak = q * q, t, f
-    return Contact(ended or stays, steps, stays, u, t, top, dm, peak, memory)
+        dm, top = q * q, t
+    return Contact(ended or stays, stays, u, t, top, dm, memory)
 
 
 @kernel

@@ -96,9 +96,9 @@ def at(inelasticity: Array, yield_ratio: Array, strength: Array | float = 0.0) -
     return out
 
 
-def part(outcome: Outcome, chosen: Any) -> Outcome:
-    """Outcomes of the impacts that an index selects."""
-    return Outcome(*(values[chosen] for values in outcome))
+def part(arrays: Any, chosen: Any) -> Any:
+    """Impacts that an index selects, of a NamedTuple of arrays with one entry for each impact."""
+    return type(arrays)(*(values[chosen] for values in arrays))
 
 
 def extremes(count: int) -> Extremes:
@@ -106,6 +106,7 @@ def extremes(count: int) -> Extremes:
     return Extremes(*np.empty((len(Extremes._fields), count)))
 
 
-def history(count: int, samples: int) -> History:
-    """Allocate contacts over time."""
-    return History(*np.empty((len(History._fields), count, samples)))
+def history(contact_time: Array, samples: int) -> History:
+    """Allocate contacts at even times from touch to separation."""
+    time = contact_time[:, None] * np.linspace(0.0, 1.0, samples)
+    return History(time, *np.empty((len(History._fields) - 1, *time.shape)))

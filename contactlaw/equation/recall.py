@@ -68,3 +68,23 @@ def _after(z: Memory, q: Memory, force: float) -> Memory:
         z.x3 + q.x3 * force,
         z.y3 + q.y3 * force,
     )
+
+
+@kernel
+def comes_back(
+    response: Array, memory: Memories, coupling: float, pace: float, u: float, mobility: float, duration: float
+) -> bool:
+    """Whether the plate comes back to a sphere that has left it with the speed -u.
+
+    It is looked for within 300 durations of the contact; `pace` is 1/tau in the units of u. Steps
+    grow with the time, as fast as what the plate remembers slows down.
+    """
+    t, step, path, speed = 0.0, 1e-3 * duration, 0.0, weighted(response, memory)
+    while pace > 0.0 and t < 300.0 * duration:
+        later = recalled(response, memory, 0.0, 0.5 * pace * step)
+        path += 0.5 * step * (speed + later.known)
+        memory, speed, t = later.memory, later.known, t + step
+        if mobility * coupling * path < u * t:
+            return True
+        step = max(step, 0.2 * t)
+    return False

@@ -20,11 +20,12 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import edge, elastic, force, integrator, legs, motion, near_edge
+from contactlaw.equation import elastic, force, integrator, legs, motion, near_edge, recall
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
-from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
+from contactlaw.equation.integrator import LEVEL, MAX_STEPS, NONE, TURN
 from contactlaw.equation.motion import ScaledContact
+from contactlaw.equation.notes import AT_COMPRESSIONS, AT_TIMES, TO_THE_END, TO_THE_TOP, Notes, note
 from contactlaw.equation.outcome import Extremes, History, Outcome
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
@@ -33,15 +34,12 @@ MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
     BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
 }
-# How far `_integrate` goes, and where it notes points.
-TO_THE_TOP, TO_THE_END, AT_TIMES, _AT_COMPRESSIONS = range(4)
 
 
 class Solution(NamedTuple):
     """Impacts in Hertz's scale, numbers or arrays; energies as shares of the initial one."""
 
     status: Any
-    steps: Any
     restitution: Any
     loading_time: Any  # until the largest compression
     contact_time: Any
@@ -52,18 +50,6 @@ class Solution(NamedTuple):
     wave_fraction: Any
     other_fraction: Any
     wave_rate: Any  # wave_fraction / lam, which has a limit at lam = 0
-
-
-class Notes(NamedTuple):
-    """Points on the paths of contacts, a row for each contact."""
-
-    # Where they are: rising times [T_H], or compressions, first rising ones, the last of which is
-    # infinity for the largest compression, then as many falling ones, the last 0 for separation.
-    at: Any
-    time: Any
-    speed: Any  # of the sphere
-    force: Any
-    compression: Any
 
 
 _NO_NOTES = Notes(*np.empty((5, 0, 0)))
@@ -108,48 +94,33 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
     y = _shallow(law, y)
     scale, h = integrator.scale_of(y, rtol)
     contact = ScaledContact(law, lam * scale.t, (integrator.LEAST_RESTITUTION * scale.u) ** 2)
-    leg = legs.up(law, legs.FIRST)
+    leg, curve = legs.up(law, legs.FIRST), legs.NO_CURVE
     top = state = motion.start(contact, leg, 0.0, scale.u, 0.0, 0.0)
-    total = longest = 0
-    marks, noted, going = notes.at.shape[1], 0, True
+    total, noted, marks, going = 0, 0, notes.at.shape[1], True
     while going:
-        level, until, loading = leg.level, math.inf, legs.is_loading(leg)
-        if goal == AT_TIMES:
-            until = notes.at[n, noted] * scale.t
-        elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
-            mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
-            level = min(mark, level) if loading else max(mark, level)
-        event, turns, reached = TIME, False, noted + (goal >= AT_TIMES)
-        if until > state.t:
-            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
-            total, longest = total + steps, max(longest, steps)
-        # the leg ends unless the event was only a time or a compression to note
-        ends = event != TIME and (event != LEVEL or level == leg.level)
-        if ends:
-            turns = loading and (event == integrator.TURN or state.dq <= 0.0)
-            going = longest < MAX_STEPS and not (event == LEVEL and not loading)
-            reached = noted if going else marks
+        loading = legs.is_loading(leg)
+        reached, event, h, steps = integrator.follow(contact, leg, state, h, scale, goal >= AT_TIMES)
+        total += steps
+        turns = loading and event != NONE and (event == TURN or reached.dq <= 0.0)
+        # absurd impacts overflow: no event comes after a time that is infinite or no number
+        going = total < MAX_STEPS and not (event == LEVEL and not loading) and reached.t < math.inf
+        if goal >= AT_TIMES:
+            most = marks // 2 if goal == AT_COMPRESSIONS and loading else marks
+            ends = not going or (turns and goal == AT_COMPRESSIONS)
+            noted = note(goal, notes, n, noted, most, law, curve, y, state, reached, ends)
+        going, state = going and (noted < marks or marks == 0), reached
         if turns:
             top, going = state, going and goal != TO_THE_TOP
-            reached = marks // 2 if goal == _AT_COMPRESSIONS else noted
-        for k in range(noted, reached):
-            notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
-            notes.force[n, k] = state.f * y * math.sqrt(y)
-            notes.compression[n, k] = (leg.residual + state.q * state.q) * y
-        noted = reached
-        # absurd impacts overflow: no event comes after a time that is infinite or no number
-        going = going and (goal < AT_TIMES or noted < marks) and state.t < math.inf
-        if going and ends:
-            leg, state = integrator.after(contact, leg, event, state)
+        if going and event != NONE:
+            leg, state = integrator.after(contact, leg, turns, state)
+            curve = force.unloading(law, top.q * top.q) if turns else curve
     return _solution(
         law,
         y,
-        float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
-        float(total),
+        float(OK if total < MAX_STEPS else TOO_MANY_STEPS),
         min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
-        top.f,
         top.q * top.q,
         lam,
         2.0 * scale.t * state.work / scale.u**2,
@@ -157,34 +128,39 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
 
 
 @kernel
+def _extremes(law: BlendedLaw, y: float, dm: float) -> Extremes:
+    """Find what follows from the largest compression, in the law's scale."""
+    turned, unit = force.deepest(law, dm), y * math.sqrt(y)  # F_Y
+    per_energy = 2.0 * y * unit
+    lost = per_energy * (turned.loss - turned.other)
+    return Extremes(turned.force * unit, turned.residual * y, lost, per_energy * turned.other)
+
+
+@kernel
 def _solution(
     law: BlendedLaw,
     y: float,
     status: float,
-    steps: float,
     restitution: float,
     loading_time: float,
     contact_time: float,
-    f: float,
     dm: float,
     lam: float,
     wave_rate: float,
 ) -> Solution:
-    """Solution of a contact that has ended, from its peak force and compression in the law's scale."""
-    turned, unit = force.deepest(law, dm), y * math.sqrt(y)
-    per_energy = 2.0 * y * unit
+    """Solution of a contact that has ended, from its largest compression in the law's scale."""
+    peak, residual, plastic, other = _extremes(law, y, dm)
     return Solution(
         status,
-        steps,
         restitution,
         loading_time,
         contact_time,
-        f * unit,
+        peak,
         dm * y,
-        turned.residual * y,
-        per_energy * (turned.loss - turned.other),
+        residual,
+        plastic,
         lam * wave_rate,
-        per_energy * turned.other,
+        other,
         wave_rate,
     )
 
@@ -202,7 +178,7 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, contact.largest).loss, 0.0)
     rebound = min(near_edge.restitution(contact, y), math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
-    again = contact.stays or edge.comes_back(
+    again = contact.stays or recall.comes_back(
         response, contact.memory, coupling, rate / unit, contact.speed, lam * unit, contact.duration
     )
     edges.again[n] = 1.0 if again else 0.0
@@ -210,11 +186,9 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
         law,
         y,
         float(OK if contact.ended else TOO_MANY_STEPS),
-        float(contact.steps),
         rebound,
         contact.loading_time / unit,
         contact.duration / unit,
-        contact.peak_force,
         contact.largest,
         lam,
         wave / lam if lam > 0.0 else 0.0,
@@ -257,35 +231,14 @@ def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) 
     return Solution(*(each.item() for each in solutions))
 
 
-def history(
-    law: Array,
-    lam: ArrayLike,
-    y: ArrayLike,
-    rtol: float,
-    time: Array,
-    edges: Edges | None = None,
-    strength: ArrayLike = 0.0,
-) -> tuple[Array, Array, Array]:
-    """Force, compression and speed of the sphere at rising times [T_H] since first touch.
-
-    There is one lam and one y, which `solve` solves, for each row of times. After separation the
-    values stay as they were there.
-    """
-    at = np.ascontiguousarray(np.atleast_2d(time))
-    notes = Notes(at, *np.empty((4, *at.shape)))
-    status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=strength).status)
+def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None) -> None:
+    """Contacts at the times of `out`, which rise to that of separation; beyond it the values stay."""
+    notes = Notes(out.time, np.empty_like(out.time), out.impulse, out.force, out.compression)
+    lam, y, s = outcome.inelasticity, _scale(outcome.yield_ratio), outcome.strength
+    status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=s).status)
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
-    f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
-    return f, w, u
-
-
-def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None) -> None:
-    """Contacts at even times from touch to separation."""
-    out.time[:] = outcome.contact_time[:, None] * np.linspace(0.0, 1.0, out.time.shape[1])
-    lam, y, s = outcome.inelasticity, _scale(outcome.yield_ratio), outcome.strength
-    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time, edges, s)
-    out.impulse[:] = 1.0 - speed
+    out.impulse[:] = 1.0 - out.impulse
     out.force[:, -1] = 0.0
 
 
@@ -303,7 +256,7 @@ def shape(
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    solutions = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    solutions = _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
     return solutions.status, notes.time, notes.speed
 
 
@@ -328,13 +281,11 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: E
     y = _scale(out.yield_ratio)
     lam, s = out.inelasticity, out.strength
     solutions = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
-    if solutions.status.any():
-        return failure(solutions.status)
     out.restitution[:], out.contact_time[:] = solutions.restitution, solutions.contact_time
     out.wave_rate[:] = solutions.wave_rate
     out.elastic_compression[:] = elastic_compression(law, lam, s)  # of an endless plate, near edges, too
     out.compression_ratio[:] = solutions.peak_compression / out.elastic_compression
-    return OK, 0
+    return failure(solutions.status)
 
 
 def overload_at(
@@ -373,11 +324,8 @@ def extremes(laws: Array, outcome: Outcome, out: Extremes) -> None:
     leaves = force.leaves_hertz(force.at_strength(laws, 0.0))
     for n in range(out.peak_force.size):
         w, y = outcome.compression_ratio[n] * outcome.elastic_compression[n], outcome.yield_ratio[n]
-        out.peak_force[n] = w * math.sqrt(w)
-        out.residual_compression[n] = out.plastic_fraction[n] = out.other_fraction[n] = 0.0
+        found = Extremes(w * math.sqrt(w), 0.0, 0.0, 0.0)
         if w > y * leaves:
-            turned = force.deepest(force.at_strength(laws, outcome.strength[n]), w / y)
-            unit = y * math.sqrt(y)  # F_Y
-            out.peak_force[n], out.residual_compression[n] = turned.force * unit, turned.residual * y
-            out.plastic_fraction[n] = 2.0 * (turned.loss - turned.other) * y * unit
-            out.other_fraction[n] = 2.0 * turned.other * y * unit
+            found = _extremes(force.at_strength(laws, outcome.strength[n]), y, w / y)
+        for k in range(len(found)):
+            out[k][n] = found[k]

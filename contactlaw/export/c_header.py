@@ -26,7 +26,7 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.oblique import Sliding
 from contactlaw.physical.validity import Validity, explain
-from contactlaw.stepping.softened import SoftState
+from contactlaw.stepping.softened import SoftState, must_ask
 from contactlaw.stepping.spring import Spring, State
 from contactlaw.table import Table, certify
 from contactlaw.table.lookup import V_MAX
@@ -141,7 +141,9 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
     add(program, functions.flags_for, pair, impact, *_VECTOR)
     add(program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE)
-    add(program, functions.rub_softened, pair, bead, DOUBLE, softened, sliding, DOUBLE, point, point, DOUBLE)
+    add(program, must_ask, INT, INT, DOUBLE, DOUBLE)
+    one = program.rows(sliding)
+    add(program, functions.rub_softened, pair, bead, DOUBLE, softened, one, DOUBLE, point, point, DOUBLE)
     add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
 

@@ -13,9 +13,9 @@ from contactlaw._arrays import Array
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import force, zener
-from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import at_strength
+from contactlaw.equation.notes import AT_TIMES, TO_THE_END, Notes
 from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
@@ -25,18 +25,17 @@ from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import constants_of, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
-from contactlaw.physical.vectors import dot
+from contactlaw.physical.vectors import dot, plus
+from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho
 from contactlaw.stepping.energy import Point
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
-from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, tangential_push
-from contactlaw.stepping.spring import Spring, State, advance, impact, resized, unit_spring
+from contactlaw.stepping.softened import DAMPED, SoftState, advance_softened, keep_drag, tangential_push
+from contactlaw.stepping.spring import Spring, State, advance, resized, unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
 
 EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
-BOUNCE_STEPS = 50  # of a contact; the COR errs by 1e-4, the sliding speed by 0.012 mu V
-BOUNCE_CONTACTS = 100  # a sphere that has not left after so many contact times stays on the plate
 SAMPLES, SPRINGS = 401, 32  # of an oblique impact: times, springs across the contact
 
 
@@ -223,18 +222,13 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
         and overlap <= 2.0 * bead.radius + moved
         and overlap <= moved + largest + V_MAX * dt
         and 0.0 < dt <= bead.relaxation
-        and bead.mass > 0.0
-        and bead.stiffness > 0.0
-        and bead.scale > 0.0
-        and bead.mobility >= 0.0
-        and bead.edge_rate >= 0.0
+        and is_bead(bead)
         and largest >= 0.0
         and state.force >= 0.0
         and state.strength >= 0.0
     ):
         return BLOWN_UP
-    near = EdgeEcho(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
-    new = advance(pair.law, contact_spring(pair, bead), state, overlap, dt, near)
+    new = advance(pair.law, contact_spring(pair, bead), state, overlap, dt, edge_of(pair, bead))
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
 
 
@@ -248,8 +242,7 @@ def after_softened(
         and 0.0 <= restitution <= 1.0
         and -math.inf < overlap <= 2.0 * bead.radius
         and 0.0 < dt <= bead.relaxation
-        and bead.mass > 0.0
-        and bead.stiffness > 0.0
+        and is_bead(bead)
     ):
         return SOFT_BLOWN_UP
     new = advance_softened(bead.stiffness / softening, bead.mass, restitution, state, overlap, dt)
@@ -288,7 +281,7 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
     """Integrate an impact to a goal."""
     none = np.empty((0, 0))
     own = at_strength(pair.law, units.strength)
-    notes = zener.Notes(none, none, none, none, none)
+    notes = Notes(none, none, none, none, none)
     return zener.follow_impact(goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0)
 
 
@@ -328,7 +321,7 @@ def followed(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
 @kernel
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
-    return followed(pair, solid(speed, radius, thickness), zener.TO_THE_END, RTOL)
+    return followed(pair, solid(speed, radius, thickness), TO_THE_END, RTOL)
 
 
 @kernel
@@ -338,7 +331,7 @@ def rebound_with_mass(pair: Bodies, speed: float, radius: float, thickness: floa
     Flags take it as it is; near an edge, and in steps, set the mass of a spring.
     """
     impact = of_mass(pair, speed, radius, thickness, mass)
-    return followed(pair, impact, zener.TO_THE_END, RTOL)
+    return followed(pair, impact, TO_THE_END, RTOL)
 
 
 @kernel
@@ -353,7 +346,7 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
 
 @kernel
 def restitution_near(pair: Bodies, speed: float, radius: float, thickness: float, edge: int, distance: float) -> float:
-    """COR at this distance [m] from an edge, by some 50 steps.
+    """COR at this distance [m] from an edge, by some 40 steps.
 
     It errs by up to 1.3e-3 up to lambda 2, from half of a thickness on. Without an edge it is that
     of `rebound`.
@@ -366,33 +359,30 @@ def restitution_near(pair: Bodies, speed: float, radius: float, thickness: float
 
 @kernel
 def restitution_of(pair: Bodies, bead: BeadSpring, speed: float) -> float:
-    """COR of the bead of a spring, by some 50 steps: of its mass, and near its edge."""
-    return bounced(pair, bead, speed, 0.0, 0.0, None)[0]
+    """COR of the bead of a spring, by some 40 steps: of its mass, and near its edge."""
+    if not (V_MIN <= speed <= V_MAX and is_bead(bead)):
+        return math.nan
+    down, up = (0.0, 0.0, -speed), (0.0, 0.0, 1.0)
+    return bounce(pair.law, contact_spring(pair, bead), down, up, edge_of(pair, bead), 0.0, 1.0).restitution
 
 
 @kernel
-def bounced(
-    pair: Bodies, bead: BeadSpring, speed: float, sliding: float, friction: float, row: Any
-) -> tuple[float, float]:
-    """COR and sliding speed after an impact.
+def is_bead(bead: BeadSpring) -> bool:
+    """Whether a bead has numbers that steps can take."""
+    return (
+        bead.relaxation > 0.0
+        and bead.mass > 0.0
+        and bead.stiffness > 0.0
+        and bead.scale > 0.0
+        and bead.mobility >= 0.0
+        and bead.edge_rate >= 0.0
+    )
 
-    `row` is a cleared row of FRICTION; without one there is no friction.
-    """
-    if not V_MIN <= speed <= V_MAX:
-        return math.nan, math.nan
-    dt = CONTACT_TIME / BOUNCE_STEPS * impact(pair.law, contact_spring(pair, bead), speed).time
-    state, x, u, s = State(0.0, 0.0, 0.0), -0.5 * dt * speed, speed, sliding
-    for _ in range(BOUNCE_STEPS * BOUNCE_CONTACTS):
-        u -= 0.5 * dt * state.force / bead.mass
-        x += dt * u
-        state = after_step(pair, bead, state, x, dt)
-        if row is not None:
-            drag = rub(pair, bead, state, row, x, dt, (0.0, 0.0, 1.0), (s, 0.0, -u), friction)
-            s += POINT * dt / bead.mass * drag[0]
-        u -= 0.5 * dt * state.force / bead.mass
-        if not state.force > 0.0:
-            break
-    return min(max(-u / speed, 0.0), 1.0) if state.force >= 0.0 else math.nan, s
+
+@kernel
+def edge_of(pair: Bodies, bead: BeadSpring) -> EdgeEcho:
+    """Edge of a bead, as steps take it."""
+    return EdgeEcho(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
 
 
 @kernel
@@ -449,24 +439,22 @@ def rub_softened(
     bead: BeadSpring,
     restitution: float,
     state: SoftState,
-    row: Any,
+    rows: Any,
     dt: float,
     n: Point,
     velocity: Point,
     friction: float,
 ) -> None:
-    """Friction of a softened contact in the step that has just been taken."""
-    up, push = dot(velocity, n), state.force + state.kick
+    """Friction of a softened contact in the step that has just been taken, in the first of some rows."""
+    row, up, push = rows[0], dot(velocity, n), state.force + state.kick
     if push == 0.0:
         clear_friction(row)
         return
     if row.normal == 0.0 and up <= -V_MIN:  # the impact begins: it will end as the true one
-        size = math.sqrt(max(dot(velocity, velocity) - up * up, 0.0))
-        e, left = bounced(pair, bead, -up, size, friction, row)
-        clear_friction(row)
+        spring, near = contact_spring(pair, bead), edge_of(pair, bead)
+        true = bounce(pair.law, spring, velocity, n, near, friction, pair.tangential_ratio, rows)
+        keep_drag(row, true.drag, plus(velocity, -up, n))
         row.normal = -up
-        row.stretch[3], row.stretch[4], row.stretch[5] = velocity
-        row.width = (left - size) / (POINT * (1.0 + e) * up * size) if size > 0.0 else 0.0
     tangential_push(
         row,
         state.damped * DAMPED,
@@ -484,13 +472,13 @@ def rub_softened(
 
 
 @kernel
-def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> History:
+def history(pair: Bodies, units: Numbers, end: float, notes: Notes) -> History:
     """Contact at even times from touch to an end, on Hertz's scale, in the arrays of the notes."""
     samples = notes.at.shape[1]
     own = at_strength(pair.law, units.strength)
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
-    zener.follow_impact(zener.AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
+    zener.follow_impact(AT_TIMES, own, units.inelasticity, units.yield_ratio, RTOL, notes, 0)
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
     return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])
@@ -506,8 +494,8 @@ def rubbed(pair: Bodies, impact: Impact, size: float, friction: float, samples: 
     force, compression = np.empty((1, samples)), np.empty((1, samples))
     after, stretch = np.empty(1), np.empty((springs, 1))
     units, psi = numbers_of(pair, impact), min(size / friction / speed, FASTEST)
-    end = solved(pair, units, zener.TO_THE_END, RTOL).contact_time
-    path = history(pair, units, end, zener.Notes(at, time, velocity, force, compression))
+    end = solved(pair, units, TO_THE_END, RTOL).contact_time
+    path = history(pair, units, end, Notes(at, time, velocity, force, compression))
     path.force[samples - 1] = 0.0
     after[0] = psi
     own = at_strength(pair.law, units.strength)
@@ -524,7 +512,7 @@ def collided(
     if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:
         return Collision(0, v, omega)
     impact = solid(came.speed, radius, thickness)
-    hit = followed(pair, impact, zener.TO_THE_END, RTOL)
+    hit = followed(pair, impact, TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
         return Collision(-1, (nan, nan, nan), (nan, nan, nan))
     changed = rubbed(pair, impact, came.size, friction, SAMPLES, SPRINGS)

@@ -14,7 +14,6 @@ from contactlaw.equation.edge import KINDS
 from contactlaw.export import c_header
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
-from contactlaw.stepping.softened import FASTER
 from contactlaw.stepping.spring import FEWEST_STEPS
 from contactlaw.table import lookup
 
@@ -89,7 +88,6 @@ def _values(model: ImpactModel, beads: Pair) -> dict[str, str]:
         "tangential_beads": repr(8.0 * beads.effective_shear_modulus),
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),
-        "faster": repr(FASTER),
         "R_MIN": repr(lookup.R_MIN),
         "R_MAX": repr(lookup.R_MAX),
         "THINNEST": repr(lookup.THINNEST),

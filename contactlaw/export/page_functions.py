@@ -7,7 +7,7 @@ import numpy as np
 
 from contactlaw._jit import kernel
 from contactlaw.answers.solver import RTOL
-from contactlaw.equation import zener
+from contactlaw.equation.notes import TO_THE_END, TO_THE_TOP, Notes
 from contactlaw.equation.numbers import Impact
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, SPRINGS
@@ -55,8 +55,8 @@ def for_curve(pair: Bodies, impact: Impact) -> Answer:
     if not is_valid(impact):
         return NOTHING
     if numbers_of(pair, impact).inelasticity <= DEAD:
-        return followed(pair, impact, zener.TO_THE_END, FOR_CURVES)
-    return followed(pair, impact, zener.TO_THE_TOP, FOR_CURVES)
+        return followed(pair, impact, TO_THE_END, FOR_CURVES)
+    return followed(pair, impact, TO_THE_TOP, FOR_CURVES)
 
 
 @kernel
@@ -66,7 +66,7 @@ def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
     units = numbers_of(pair, impact)
     end = min(hit.contact_time / units.time, LONGEST)
-    notes = zener.Notes(at, time, velocity, force, compression)
+    notes = Notes(at, time, velocity, force, compression)
     path = functions.history(pair, units, end, notes)
     for n in range(SHOWN):
         path.time[n] *= units.time
@@ -83,7 +83,7 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
     tilt = angle * math.pi / 180.0
     speed, size = given.speed * math.cos(tilt), given.speed * math.sin(tilt)
     impact = Impact(speed, given.radius, given.thickness, given.mass)
-    hit = followed(pair, impact, zener.TO_THE_END, RTOL)
+    hit = followed(pair, impact, TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and 0.0 <= friction <= ROUGHEST):
         return REFUSED
     change = functions.rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)

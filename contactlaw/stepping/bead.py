@@ -227,12 +227,6 @@ def _contact_with(scene: WallScene, bead: Bead, body: Any, n: int, touching: boo
 
 
 @kernel
-def _path(clock: Clock, bead: Bead) -> float:
-    """Largest path of a bead in a step, plus the overlap of one put down at rest [m]."""
-    return norm(bead.v) * clock.dt + AT_REST * bead.r
-
-
-@kernel
 def _continuing_facet(scene: WallScene, bead: Bead, row: Any, count: int, path: float) -> int:
     """Position in the list of the facet on which a contact goes on, else -1.
 
@@ -262,7 +256,8 @@ def _continuing_facet(scene: WallScene, bead: Bead, row: Any, count: int, path: 
 @kernel
 def _move_contacts(scene: WallScene, clock: Clock, bead: Bead, count: int) -> None:
     """Move the contacts of a bead to the facets that it has crossed to."""
-    found, path = scene.found, _path(clock, bead)
+    found = scene.found
+    path = norm(bead.v) * clock.dt + AT_REST * bead.r  # at most, with the overlap of one put down at rest
     for k in range(len(bead.contacts)):
         row = bead.contacts[k]
         if row.facet == 0.0:

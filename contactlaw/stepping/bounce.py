@@ -50,21 +50,22 @@ def bounce(
     near: EdgeEcho | None,
     friction: float,
     kappa: float,
-    rows: Any,
+    rows: Any = None,
     body: Any = None,
     s: float = 0.0,
 ) -> Bounce:
     """Impact of a point with this velocity [m/s] at the distance s [m] from the bead's centre.
 
-    `rows` are the FRICTION rows to use, none without friction. The bead is a part of `body` or a
-    solid sphere.
+    `rows` are the FRICTION rows to use, None or no rows without friction. The bead is a part of `body`
+    or a solid sphere.
     """
     speed = -dot(came, n)
     m, expected = spring.mass, impact(law, spring, speed)
     h = CONTACT_TIME * expected.time / STEPS
     state, x, v, wave, steps = PARTED, 0.0, came, 0.0, 0
     pushed, dragged = 0.0, (0.0, 0.0, 0.0)
-    for steps in range(1, LONGEST * STEPS):
+    while steps < LONGEST * STEPS:
+        steps += 1
         u = -dot(v, n)
         x += h * u
         last = state
@@ -74,7 +75,7 @@ def bounce(
             state = last
             break
         drag = 0.0, 0.0, 0.0
-        if len(rows) > 0:
+        if rows is not None and len(rows) > 0:
             slip = plus(v, u, n)
             drag = tangential_force(
                 rows[0], friction, kappa, law, spring, state, last.largest_compression, x, speed, n, slip, h, extra
@@ -83,14 +84,14 @@ def bounce(
         dragged = plus(dragged, h, drag)
         v = plus(v, h, point_answer(body, m, plus(drag, force, n), n, s))
         pushed += h * force
-    if len(rows) > 0:
+    if rows is not None and len(rows) > 0:
         clear_friction(rows[0])
     ended, put, u = at_largest(law, spring, state), 0.5 * m * speed * speed, -dot(v, n)
     gone, other = ended.lost * ended.unit * ended.scale, ended.other * ended.unit * ended.scale
     # The steps' energies are more precise where little is lost, the speed where nearly all is.
     # Friction on a body changes its normal motion, so that these energies do not say the speed.
     lost, restitution = gone + wave, min(max(-u / speed, 0.0), 1.0)
-    if not (known(body) and len(rows) > 0):
+    if rows is None or body is None or not (known(body) and len(rows) > 0):
         left = max(1.0 - lost / put, 0.0) if u < 0.0 else 0.0
         restitution += left * (math.sqrt(left) - restitution)
     gap = ended.residual * ended.scale + state.plate_displacement - x

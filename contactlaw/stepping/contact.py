@@ -32,11 +32,11 @@ from contactlaw.stepping.softened import (
     BOUNCING,
     DAMPED,
     HELD,
+    MOST_SETTLED,
     SOFTENED,
     keep_drag,
     must_ask,
     push,
-    settling_kick,
     stored_work,
     tangential_push,
 )
@@ -224,7 +224,7 @@ def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, 
 @kernel
 def _stretched(scene: WallScene) -> float:
     """Contact time over that of a true contact."""
-    return math.pow(scene.softening, 0.4) if scene.softening > 1.0 else 1.0
+    return math.pow(scene.softening, 0.4)
 
 
 @kernel
@@ -401,15 +401,13 @@ def _end(
         size = more * bead.mass / clock.dt
         extra, leaves = scaled(size, v), -u * (1.0 + more)
     else:
-        if softened:
-            if body is not None and row.lasting == BOUNCING and contact.of_body:
-                # A body turns further than in the true impact, which throws its point up by this at most.
-                up, reach = row.restitution * row.approach_speed, norm(vector(body[0].arm)) + bead.r
-                if abs(up + u) <= dot(bead.omega, bead.omega) * reach * row.duration:
-                    due = 0.5 * contact.mass * (up * up - u * u)
-            size = settling_kick(due, contact.mass, u, row.approach_speed, clock.dt)
-        else:
-            size = energy.settling_force(missing, contact.mass, u, row.approach_speed, clock.dt, steps)
+        if softened and body is not None and row.lasting == BOUNCING and contact.of_body:
+            # A body turns further than in the true impact, which throws its point up by this at most.
+            up, reach = row.restitution * row.approach_speed, norm(vector(body[0].arm)) + bead.r
+            if abs(up + u) <= dot(bead.omega, bead.omega) * reach * row.duration:
+                due = 0.5 * contact.mass * (up * up - u * u)
+        most = MOST_SETTLED if softened else energy.largest_correction(steps)
+        size = energy.settling_force(due, contact.mass, u, row.approach_speed, clock.dt, most)
         extra = scaled(size, contact.n)
         leaves = size * clock.dt / contact.mass - u
     if put_down:
@@ -484,12 +482,6 @@ def clear_contact(bead: Bead, k: int) -> None:
 
 
 @kernel
-def state_of(row: Any) -> State:
-    """State of the normal force in the row of a contact."""
-    return tuple_of(State, row)
-
-
-@kernel
 def _flags(
     row: Any, r: float, scale: float, time: float, deepest: float, force: float, distance: float, recedes: float
 ) -> Any:
@@ -526,18 +518,6 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, spring: Spring, s
         return NearestEdge(place, swing, distance)
     away = from_rim(path, thickness, distance, hole, lasting / CONTACT_TIME)
     return NearestEdge(place_of(kind, away, hole, thickness), wave_rate(path, thickness, away), distance)
-
-
-@kernel
-def _softened_step(scene: WallScene, clock: Clock, spring: Spring, bead: Bead, k: int, x: float, u: float) -> State:
-    """Largest overlap and force of a softened contact after a step."""
-    row, stiffness = bead.contacts[k], spring.stiffness / scene.softening
-    now = push(stiffness, spring.mass, row.largest_compression, row.restitution, x, u, clock.dt)
-    if now.damped:
-        row.lasting = DAMPED
-    elif row.disturbance != ALONE or _presses_elsewhere(bead, k):  # at a right angle only friction is shared
-        row.lasting = max(row.lasting, HELD)
-    return tuple_of(State, PARTED, largest_compression=now.largest, force=now.force)
 
 
 @kernel
@@ -607,20 +587,26 @@ def _advance(
     elif touch.face and side != row.facet:
         report_trouble(scene, Trouble.CROSSED, contact.wall, abs(u), 0.0)
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    last, softened = state_of(row), scene.softening > 1.0
+    last, softened = tuple_of(State, row), scene.softening > 1.0
     moved = (dot(v, v) - u * u) * row.duration * row.duration
     if last.force == 0.0 and not softened and moved > 2.0 * bead.r * last.largest_compression > 0.0:
         # The bead has hopped off its dent: it meets a new surface, at the depth of the dent.
         dent = at_largest(law, spring, last)
         row.plate_displacement += dent.residual * dent.scale
         row.largest_compression = row.mobility = row.stiffening = row.strength = row.reported_loss = 0.0
-        last = state_of(row)
+        last = tuple_of(State, row)
     edge = NearestEdge(0, 0.0, math.inf)
     if not softened:
         edge = _near_edge(scene, bead, contact, spring, max(row.approach_speed, u))
     near = EdgeEcho(plate_row.responses[edge.place], edge.rate)
+    k_soft, extra = spring.stiffness / scene.softening, 0.0
     if softened:
-        state, extra = _softened_step(scene, clock, spring, bead, k, touch.x, u), 0.0
+        now = push(k_soft, spring.mass, row.largest_compression, row.restitution, touch.x, u, clock.dt)
+        if now.damped:
+            row.lasting = DAMPED
+        elif row.disturbance != ALONE or _presses_elsewhere(bead, k):  # at a right angle only friction is shared
+            row.lasting = max(row.lasting, HELD)
+        state = tuple_of(State, PARTED, largest_compression=now.largest, force=now.force)
     else:
         state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
@@ -658,7 +644,7 @@ def _advance(
     row.work += energy.work(spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before)
     if softened and state.largest_compression > last.largest_compression:
         undisturbed = row.lasting != DAMPED and row.disturbance == ALONE
-        k_soft, most, left = spring.stiffness / scene.softening, state.largest_compression, row.reported_loss - row.work
+        most, left = state.largest_compression, row.reported_loss - row.work
         row.stored = stored_work(k_soft, most, undisturbed, left, spring.mass, u, state.force, clock.dt)
     if state.force == 0.0 and last.force > 0.0:
         pushes = _end(law, scene, clock, bead, body, contact, k, spring, last, u, edge)
@@ -736,7 +722,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, body: Any, contact
                 f, lasting, e = row.force + row.extra_force, row.lasting, row.restitution
                 drag = tangential_push(slid, lasting, e, scene.friction, kappa, x, most, f, bead.mass, n, slip, h)
             else:
-                state, speed, extra = state_of(row), row.approach_speed, row.extra_force
+                state, speed, extra = tuple_of(State, row), row.approach_speed, row.extra_force
                 drag = tangential_force(
                     slid, scene.friction, kappa, law, spring, state, before, x, speed, n, slip, h, extra
                 )

@@ -41,14 +41,9 @@ def edge_echo(
         return None
     distance = from_rim(wave_path(plate), thickness, distance, hole_radius, time)
     share = share_of(distance, hole_radius, thickness)
-    return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance))
-
-
-def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
-    """1/tau [1/s] of contacts at these distances from edges [m]; 0 without an edge."""
     with np.errstate(invalid="ignore", over="ignore"):  # of an endless half-space
-        rate = wave_rate(wave_path(plate), thickness, distance)
-    return np.where(distance < math.inf, rate, 0.0)
+        rate = np.where(distance < math.inf, wave_rate(wave_path(plate), thickness, distance), 0.0)
+    return EdgeEcho(response_of(kind, plate.poissons_ratio, share, "steps"), rate)
 
 
 @kernel

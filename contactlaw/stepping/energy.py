@@ -103,16 +103,20 @@ def work(mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: f
 
 
 @kernel
-def settling_force(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
-    """Force in the last step that gives a rebounding bead its missing energy [N]."""
-    square = u * u + 2.0 * missing / m
-    if not (u < 0.0 and square > 0.0):
-        return 0.0
-    change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
-    largest = max(-u, approach) * _LARGEST_CORRECTION / (steps * steps * math.sqrt(steps))
-    if not abs(change) <= largest:
-        return 0.0
-    return m * change / h
+def largest_correction(steps: float) -> float:
+    """Largest correction of the rebound speed, over the larger of rebound and approach speed."""
+    steps = max(steps, FEWEST_STEPS)
+    return _LARGEST_CORRECTION / (steps * steps * math.sqrt(steps))
+
+
+@kernel
+def settling_force(missing: float, m: float, u: float, approach: float, h: float, most: float) -> float:
+    """Force in the last step that gives a rebounding bead its missing energy [N].
+
+    `most` is the largest change of the speed, over the larger of rebound and approach speed.
+    """
+    change = math.sqrt(max(u * u + 2.0 * missing / m, 0.0)) + u
+    return m * change / h if u < 0.0 and abs(change) <= most * max(approach, -u) else 0.0
 
 
 @kernel

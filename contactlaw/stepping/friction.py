@@ -23,6 +23,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import BlendedLaw, at_strength, growth_at
 from contactlaw.equation.tangential import Stiffness, kept, part_of, share_within, stiffness_at
+from contactlaw.physical.arguments import number
 from contactlaw.physical.vectors import cross, divided, dot, norm, plus, put, scaled, vector
 from contactlaw.stepping.spring import Spring, State, impact
 from contactlaw.walls.facet import Point
@@ -48,9 +49,7 @@ DEEPEST = 1.25**0.4  # largest compression of Hertz's impact [V0 T_H]
 
 def check_friction(friction: Any) -> None:
     """Refuse a coefficient of friction that is no finite number of 0 or more."""
-    if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
-        raise TypeError(f"friction: expected a number, got {friction!r}")
-    if not 0.0 <= friction < math.inf:
+    if not 0.0 <= number("friction", friction) < math.inf:
         raise ArgumentError("friction", friction, "must be finite and not negative")
 
 

@@ -69,7 +69,7 @@ def answer(body: Any, force: Point, n: Point, s: float) -> Point:
 @kernel
 def point_answer(body: Any, mass: float, force: Point, n: Point, s: float) -> Point:
     """As `answer`, or of a solid sphere of this mass [kg] that is no part of a body."""
-    if known(body):
+    if body is not None and known(body):
         return answer(body, force, n, s)
     return scaled(1.0 / mass, plus(scaled(POINT, force), (1.0 - POINT) * dot(force, n), n))
 

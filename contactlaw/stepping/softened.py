@@ -8,7 +8,7 @@ time steps. The spring knows no speed: it loads as K x^1.5 with K lower by s, an
 so that of the work that was put into it the share e^2 comes back, whatever the masses and speeds. e
 is the COR of the true impact, which `contactlaw.stepping.bounce` carries out at the first touch.
 There is no plate in this motion: what the waves take is in e. In the last step the bead is given
-exactly the energy that is left (`settling_kick`).
+exactly the energy that is left (`contactlaw.stepping.energy.settling_force`).
 
 A bead that comes down again before it has left its dent loads along the last unloading curve, and
 has the COR of its new speed. On this curve the contact is damped, because the bead would otherwise
@@ -32,6 +32,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import number
 from contactlaw.physical.vectors import dot, norm, plus, put, scaled, vector
+from contactlaw.stepping.energy import settling_force
 from contactlaw.walls.facet import Point
 
 # Least share of the work that the spring gives back: unloading curves that are steeper would need
@@ -40,7 +41,7 @@ _LEAST_SHARE = 0.02
 DEEPEST_OVERLAP = 0.02  # [radius] of softened contacts; ten times that of steel at 1 m/s
 # Largest change of the speed in the last step, over the larger of approach and rebound speed. A
 # spring that gives back at least 2 % of its work lets no bead leave at less than 0.14 of its speed.
-_MOST_SETTLED = 0.2
+MOST_SETTLED = 0.2
 _DAMPING = 0.5  # ratio of damping in a dent
 _MOST_DAMPING = 0.5  # [m/h] beyond which it would make a step unstable
 FASTER = 1.25  # [speed at which the COR was asked for] from which a struck bead asks again
@@ -100,13 +101,6 @@ def stored_work(
     if undisturbed:
         return left + 0.5 * mass * u * (u - h * force / mass)
     return 0.4 * stiffness * largest * largest * math.sqrt(largest)
-
-
-@kernel
-def settling_kick(missing: float, mass: float, u: float, approach: float, h: float) -> float:
-    """Force in the last step that leaves a bead the energy that its COR leaves it [N]."""
-    change = math.sqrt(max(u * u + 2.0 * missing / mass, 0.0)) + u
-    return mass * change / h if u < 0.0 and abs(change) <= _MOST_SETTLED * max(approach, -u) else 0.0
 
 
 @kernel
@@ -171,7 +165,8 @@ def advance_softened(
         stored = stored_work(stiffness, now.largest, damped == 0.0, lost - work, mass, u, now.force, step)
     if now.force == 0.0 and state.force > 0.0 and damped == 0.0:
         missing = lost - (1.0 - restitution * restitution) * stored - work
-        kick = settling_kick(missing, mass, u, math.sqrt(2.0 * max(stored - lost, 0.0) / mass), step)
+        approach = math.sqrt(2.0 * max(stored - lost, 0.0) / mass)
+        kick = settling_force(missing, mass, u, approach, step, MOST_SETTLED)
     if not overlap > 0.0:
         return SoftState(0.0, kick, 0.0, overlap, 0.0, 0.0, 0.0, 0.0)
     return SoftState(now.force, kick, now.largest, overlap, work, stored, lost, damped)

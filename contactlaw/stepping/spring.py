@@ -143,15 +143,10 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         stiffness=stiffness,
         mobility=float(plate_mobility(model.pair.plate, np.array(thickness))),
         scale=scale if scale < math.inf else 1.0,
-        relaxation=relaxation(known.mass, stiffness),
+        relaxation=RELAXATION * CONTACT_TIME * (known.mass / stiffness) ** 0.4,  # at 1 m/s
         ratio=np.float64(1.0) / thickness,  # whose reciprocal may be inf without the compiler
         plate=known.plate,
     )
-
-
-def relaxation(mass: Any, stiffness: Any) -> Any:
-    """Time in which the plate's displacement relaxes [s], from the contact time at 1 m/s."""
-    return RELAXATION * CONTACT_TIME * (mass / stiffness) ** 0.4
 
 
 @kernel
@@ -252,13 +247,6 @@ def _first_known(law: Array, spring: Spring, state: State, overlap: float, step:
 
 
 @kernel
-def _force(law: BlendedLaw, q: float, curve: UnloadingCurve) -> float:
-    if curve.stiffness == 0.0:
-        return forces.loading(law, q)
-    return forces.unloading_force(law, curve, q)
-
-
-@kernel
 def _balance(law: BlendedLaw, curve: UnloadingCurve, b: float, r: float) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
@@ -268,7 +256,7 @@ def _balance(law: BlendedLaw, curve: UnloadingCurve, b: float, r: float) -> tupl
     if not r > 0.0:
         return 0.0, 0.0
     q = math.sqrt(r)
-    f = _force(law, q, curve)
+    f = forces.unloading_force(law, curve, q)
     if b == 0.0:
         return q, f
     gap = b * f
@@ -276,7 +264,7 @@ def _balance(law: BlendedLaw, curve: UnloadingCurve, b: float, r: float) -> tupl
     for _ in range(MOST_ITERATIONS):
         change = gap / slope
         q = max(q - change, 0.0)
-        f = _force(law, q, curve)
+        f = forces.unloading_force(law, curve, q)
         if not abs(change) > CONVERGED * q:
             break
         last, gap = gap, q * q + b * f - r

@@ -16,8 +16,8 @@ from contactlaw._jit import kernel
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.vectors import divided, norm, scaled, vector
 from contactlaw.stepping.bead import MOST_CONTACTS, interact, touches
-from contactlaw.stepping.contact import CONTACT, NO_CONTACT, Bead, Clock, WallScene
-from contactlaw.stepping.friction import FRICTION, clear_friction
+from contactlaw.stepping.contact import CONTACT, Bead, Clock, WallScene, clear_contact
+from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.plate_rows import SOLID, solid_mass
 from contactlaw.stepping.rigid import BODY
 from contactlaw.stepping.trouble import Trouble
@@ -110,9 +110,7 @@ def _forget(head: Any, bead: Bead) -> None:
     for k in range(3):
         head.force[k] = head.torque[k] = 0.0
     for k in range(len(bead.contacts)):
-        bead.contacts[k] = NO_CONTACT[0]
-    for k in range(len(bead.friction)):
-        clear_friction(bead.friction[k])
+        clear_contact(bead, k)
 
 
 @kernel

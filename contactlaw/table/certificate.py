@@ -113,14 +113,13 @@ def compare_outcomes(
 def compare_histories(law: Law, rtol: float, packed: Array, looked: Outcome) -> Array:
     """Errors of the force histories of outcomes that were looked up."""
     looked = outcome.part(looked, slice(None, None, -(-looked.restitution.size // _HISTORIES)))
-    ours, exact = (outcome.history(looked.restitution.size, _SAMPLES) for _ in range(2))
+    ours, exact = (outcome.history(looked.contact_time, _SAMPLES) for _ in range(2))
     data = law.at_any_strength
     shapes.sample(data, packed, looked, ours)
 
     def solve(part: slice) -> None:
-        some = outcome.part(looked, part)
-        known = some.inelasticity, some.yield_ratio, _FINER * rtol, ours.time[part]
-        exact.force[part], _, _ = zener.history(data, *known, strength=some.strength)
+        found = outcome.part(exact, part)
+        zener.histories(data, outcome.part(looked, part), _FINER * rtol, found)
 
     sweep.in_parts(solve, looked.restitution.size)
     return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))

@@ -78,7 +78,7 @@ def after(
     edges: Edges | None = None,
 ) -> Array:
     """Speeds of the contact points after impacts (impacts, speeds) [mu V0], by integration."""
-    path = outcome.history(found.inelasticity.size, samples)
+    path = outcome.history(found.contact_time, samples)
     zener.histories(law, found, _RTOL, path, edges)
     speed = np.array(psi)
     tangential.slide_all(law, found.yield_ratio, found.strength, kappa, path, speed, springs)

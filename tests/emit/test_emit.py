@@ -223,11 +223,26 @@ def unbounded(way, n):
     return total
 
 
-def test_a_tuple_is_not_read_at_a_place_that_is_first_known_in_a_call():
+def last(way, n):
+    k = 0
+    for k in range(n):
+        if k > 2:
+            break
+    return k
+
+
+@pytest.mark.parametrize(
+    ("kernel", "message"),
+    [
+        (unbounded, r"range\(n\).* a loop over the members of a tuple has known ends"),
+        (last, "count in a while loop, or keep the variable's value under another name"),
+    ],
+)
+def test_loops_that_other_languages_have_otherwise_are_refused(kernel, message):
     program = Program(C())
     way = program.struct(tuple, dict.fromkeys(("f0", "f1"), DOUBLE))
-    with pytest.raises(SyntaxError, match=r"range\(n\).* a loop over the members of a tuple has known ends"):
-        add(program, unbounded, way, INT)
+    with pytest.raises(SyntaxError, match=message):
+        add(program, kernel, way, INT)
 
 
 def test_rows_from_one_on_end_with_the_rows():

@@ -77,7 +77,7 @@ def attempt(data):
     many[:8, :, 0] = 0.4  # an ordinary impact beside three others
     edges, notes = edge.Edges(np.tile(EDGE, (4, 1)), *many[2]), zener.Notes(*many[3:8, :2].mT)
     for goal, near in ((0, None), (1, None), (1, edges), (2, edges), (3, None)):
-        zener._integrate(goal, law, *many[0, :2], np.zeros(4), 1e-3, notes, np.empty((12, 4)), near)
+        zener._integrate(goal, law, *many[0, :2], np.zeros(4), 1e-3, notes, np.empty((11, 4)), near)
     tangential.slide_all(law, many[0, 0], np.zeros(4), many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3)
 
 

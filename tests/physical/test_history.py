@@ -9,7 +9,8 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.equation import zener
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import History
 
 R = 0.9e-3
 MYC = laws.law("myc").data
@@ -35,9 +36,10 @@ def test_solver_against_scipy(lam, chi_over):
     share = np.linspace(0.01, 0.99, 23)
     force, speed = oracle.force_history(lam, y, share)
     solution = zener.solve(MYC, lam, y, 1e-11)
-    f, _, u = zener.history(MYC, lam, y, 1e-11, share * solution.contact_time)
-    assert f == pytest.approx(force, abs=1e-7 * solution.peak_force)
-    assert u == pytest.approx(speed, abs=1e-7)
+    path = History(solution.contact_time * np.append(share, 1.0)[None], *np.empty((3, 1, share.size + 1)))
+    zener.histories(MYC, outcome.at(np.array([lam]), np.array([y])), 1e-11, path)
+    assert path.force[0, :-1] == pytest.approx(force, abs=1e-7 * solution.peak_force)
+    assert 1.0 - path.impulse[0, :-1] == pytest.approx(speed, abs=1e-7)
 
 
 def test_solver_follows_its_own_rebound(model):
