@@ -30,28 +30,25 @@ def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
     assert names(tmp_path) == set()
 
 
+REAL = cl.ImpactModel.restitution
+
+
 class Failing:
     """A model that raises an error after some impacts."""
 
     def __init__(self, error):
         self.error, self.left = error, 20
 
-    def curve(self, model, radius, thickness):
-        real = type(model)._real_curve(model, radius, thickness)
-
-        def restitution(speed):
-            self.left -= 1
-            if self.left < 0:
-                raise self.error
-            return real(speed)
-
-        return restitution
+    def restitution(self, *impact):
+        self.left -= 1
+        if self.left < 0:
+            raise self.error
+        return REAL(*impact)
 
 
 def test_a_failing_impact_keeps_those_before_it(monkeypatch, tmp_path, capsys):
     failing = Failing(ValueError("in the middle"))
-    monkeypatch.setattr(cl.ImpactModel, "_real_curve", cl.ImpactModel.curve, raising=False)
-    monkeypatch.setattr(cl.ImpactModel, "curve", lambda *arguments: failing.curve(*arguments))
+    monkeypatch.setattr(cl.ImpactModel, "restitution", lambda *impact: failing.restitution(*impact))
     assert cli.main([*RAIN, "--out", str(tmp_path / "out")]) == 1
     errors = capsys.readouterr().err
     assert "Traceback" not in errors

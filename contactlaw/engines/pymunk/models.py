@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import cache, cached_property, lru_cache
 from typing import Any
 
@@ -22,15 +23,16 @@ class Answers:
 
     def __init__(self, model: Any, radius: float, wall: Any, friction: float | None) -> None:
         self._model, self._radius, self._wall, self._friction = model, radius, wall, friction
-        # COR by speed far from edges
-        self.cor: CorBySpeed = model.curve(radius, wall) if sheet_of(wall) is wall else self._swinging
+        self._swings = sheet_of(wall) is not wall
+        # COR by speed far from edges; a curve takes half a millisecond to make.
+        self.cor = self._far if knows(model, "restitution") else model.curve(radius, wall)
         self._reach, self._kernel, self._octave = cache(self._reach_of), cache(self._kernel_of), cache(self._corners)
 
-    def _swinging(self, speed: float) -> float:
-        try:
-            return float(np.interp(speed, *self._octave(math.frexp(speed)[1])))
-        except ValueError:  # some of the speeds are refused, perhaps this one
-            return float(self._model.restitution(speed, self._radius, self._wall))
+    def _far(self, speed: float) -> float:
+        with suppress(ValueError):  # some of the speeds are refused, perhaps this one
+            if self._swings:
+                return float(np.interp(speed, *self._octave(math.frexp(speed)[1])))
+        return float(self._model.restitution(speed, self._radius, self._wall))
 
     def _corners(self, octave: int) -> Any:
         """Compute 33 CORs in a doubling of the speed [m/s]."""
@@ -73,7 +75,7 @@ class Answers:
     @cached_property
     def _collide(self) -> Any:
         try:
-            return getattr(self._model, "collide_kernel", None) if sheet_of(self._wall) is self._wall else None
+            return None if self._swings else getattr(self._model, "collide_kernel", None)
         except RuntimeError:  # numba is switched off
             return None
 
