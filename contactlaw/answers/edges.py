@@ -61,4 +61,4 @@ def _cor_near(
     none = np.empty((0, 0))
     notes = Notes(none, none, none, none, none)
     one = near_edge.follow(own, response, known.inelasticity, y, min(thin, 1.0), rate, near_edge.QUICK, notes, 0)
-    return near_edge.restitution(one, y) if one.ended else math.nan
+    return one.restitution if one.ended else math.nan

@@ -408,15 +408,13 @@ def check(law: Array) -> None:
     for values in (starts, family_starts):
         if not (np.diff(values) > 0.0).all() or starts[-1] != math.inf:
             raise ValueError("the pieces of its law do not follow each other")
-    curve, functions = (
-        curve.reshape(-1, PIECE),
-        family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :].reshape(-1, FUNCTION),
-    )
-    degree, at = _whole(np.vstack((curve[:, DEGREE:FIRST], functions[:, FUNCTION_DEGREE:])).T, law.size)
+    curve, functions = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)[:, OFFSET + 1 :]
+    entries = functions.reshape(-1, FUNCTION)[:, FUNCTION_DEGREE:]
+    degree, at = _whole(np.vstack((curve[:, DEGREE:FIRST], entries)).T, law.size)
     if (degree // 4 * 4 + 4 + at > law.size).any():
         raise ValueError("its law has coefficients beyond its end")
-    first, following = _whole(curve[:, FIRST:].T, pieces)
-    if (first > np.arange(pieces)).any() or (following <= np.arange(pieces)).any():
+    (first, following), n = _whole(curve[:, FIRST:].T, pieces), np.arange(pieces)
+    if ((first > n) | (following <= n)).any():
         raise ValueError("the pieces of its law belong to no kink")
 
 

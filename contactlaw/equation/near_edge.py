@@ -39,6 +39,7 @@ class Contact(NamedTuple):
     ended: bool  # whether steps have got to its end
     stays: bool  # whether the sphere still presses when it is not followed any more
     speed: float  # of the sphere
+    restitution: float
     duration: float
     loading_time: float  # until the largest compression
     largest: float  # compression
@@ -125,10 +126,5 @@ def follow(
         h *= min(2.0, 0.8 / np.cbrt(max(off, 1e-3)))
     if loading and q * q > dm:  # a sphere that stays may press harder than ever
         dm, top = q * q, t
-    return Contact(ended or stays, stays, u, t, top, dm, memory)
-
-
-@kernel
-def restitution(contact: Contact, y: float) -> float:
-    """Restitution of a contact."""
-    return 0.0 if contact.stays else min(max(-contact.speed * math.pow(y, 1.25), 0.0), 1.0)
+    restitution = 0.0 if stays else min(max(-u / speed, 0.0), 1.0)
+    return Contact(ended or stays, stays, u, restitution, t, top, dm, memory)

@@ -83,4 +83,4 @@ def note(
         notes.speed[n, k] = (a.u + cubic(b.u - a.u, -span * a.f, -span * b.f, x)) * y * y4
         notes.force[n, k] = force.unloading_force(law, curve, math.sqrt(d)) * y * math.sqrt(y)
         notes.compression[n, k] = (d + curve.residual) * y
-    return max(first, most)
+    return most

@@ -176,7 +176,7 @@ def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edg
     contact = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
     unit = math.sqrt(math.sqrt(y))
     left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, contact.largest).loss, 0.0)
-    rebound = min(near_edge.restitution(contact, y), math.sqrt(left))
+    rebound = min(contact.restitution, math.sqrt(left))
     wave = max(left - rebound * rebound, 0.0)
     again = contact.stays or recall.comes_back(
         response, contact.memory, coupling, rate / unit, contact.speed, lam * unit, contact.duration
@@ -221,8 +221,9 @@ def _run(
 
 def failure(status: Array) -> tuple[int, int]:
     """Status and index of the first impact that has not solved; OK and 0 if all have."""
-    failed = np.flatnonzero(status != OK)
-    return (int(status[failed[0]]), int(failed[0])) if failed.size else (OK, 0)
+    status = np.append(status, OK)  # there may be no impacts
+    n = int(np.argmax(status != OK))
+    return int(status[n]), n
 
 
 def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) -> Solution:
@@ -310,7 +311,7 @@ def overload_at(
         if not step.any():
             break
         at, before, gap_at = at + step, gap_at, gap(at + step)
-        slope = np.where(gap_at == before, 1.0, (gap_at - before) / np.where(step == 0.0, 1.0, step))
+        np.divide(gap_at - before, step, out=slope, where=(step != 0.0) & (gap_at != before))
     overload = np.where(abs(gap_at) <= _CLOSE, np.exp(at), math.nan)
     return overload if overload.shape else overload.item()
 

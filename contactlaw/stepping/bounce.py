@@ -92,7 +92,7 @@ def bounce(
     # Friction on a body changes its normal motion, so that these energies do not say the speed.
     lost, restitution = gone + wave, min(max(-u / speed, 0.0), 1.0)
     if rows is None or body is None or not (known(body) and len(rows) > 0):
-        left = max(1.0 - lost / put, 0.0) if u < 0.0 else 0.0
+        left = min(max(1.0 - lost / put, 0.0), 1.0) if u < 0.0 else 0.0
         restitution += left * (math.sqrt(left) - restitution)
     gap = ended.residual * ended.scale + state.plate_displacement - x
     since = min(max(gap / -u, 0.0), h) if u < 0.0 else 0.0  # since the end of the contact

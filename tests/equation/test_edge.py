@@ -173,7 +173,7 @@ def followed(error, lam, y, edges):
     for n, one in enumerate(lam):
         law, response = force.alone(MYC), edges.response[n]
         contact = near_edge.follow(law, response, one, y, 1.0, edges.rate[n], error, none, 0)
-        found.append((near_edge.restitution(contact, y), contact.duration, force.deepest(law, contact.largest).force))
+        found.append((contact.restitution, contact.duration, force.deepest(law, contact.largest).force))
     return np.array(found).T
 
 
