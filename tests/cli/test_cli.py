@@ -92,10 +92,9 @@ def test_several_values_are_every_combination(model, capsys):
     assert main([*MANY, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     asked = [(row["thickness"], row["speed"]) for row in rows]
-    assert asked == [(0.5e-3, 1), (0.5e-3, 5), (1e-3, 1), (1e-3, 5), (None, 1), (None, 5)]
+    assert asked == [(0.5e-3, 1), (0.5e-3, 5), (1e-3, 1), (1e-3, 5), ("inf", 1), ("inf", 5)]
     for row in rows:
-        h = np.inf if row["thickness"] is None else row["thickness"]
-        hit = model.lookup(row["speed"], row["radius"], h)
+        hit = model.lookup(row["speed"], row["radius"], float(row["thickness"]))
         assert row["restitution"] == hit.restitution
     assert rows[0]["flags"] == []
     assert set(rows[0]) == {"speed", "radius", "thickness", *cl.Rebound.__dataclass_fields__, *ENDS, *ASKED}

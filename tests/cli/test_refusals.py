@@ -1,6 +1,9 @@
 """Command lines with mistakes: each ends with a status and a sentence, none with a traceback."""
 
+import contextlib
+import io
 import shlex
+import sys
 
 import pytest
 
@@ -147,3 +150,18 @@ def test_a_mistake_is_answered_in_words(line, words, capsys, tmp_path, monkeypat
     *_, sentence = message.splitlines()
     assert sentence.startswith("contactlaw") and ("usage:" in message) == (line in MISUSED)
     assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.parametrize("line", [f"{HIT} --sphere steel", f"{HIT} --quantity 1", "speed-table"])
+def test_a_message_fits_a_terminal_and_is_one_line_elsewhere(line, monkeypatch):
+    texts = []
+    for is_terminal in (True, False):
+        err = io.StringIO()
+        err.isatty = lambda is_terminal=is_terminal: is_terminal
+        monkeypatch.setattr(sys, "stderr", err)
+        with contextlib.suppress(SystemExit):
+            main(shlex.split(line))
+        texts.append(err.getvalue())
+    wrapped, whole = texts
+    assert max(map(len, wrapped.splitlines())) <= 80 < len(whole.splitlines()[-1])
+    assert wrapped.split() == whole.split()
