@@ -59,6 +59,8 @@ REFUSED = {  # status 1
     f"{FAST} --thickness 1mm --diameter -1mm": "--radius: got '-1mm/2'; must lie between",
     f"{FAST} --thickness 1mm --radius 0": "--radius: got '0'; must lie between",
     f"{FAST} --radius 1mm --thickness 1mm,-2mm": "--thickness: got '-2mm'; must lie between",
+    f"{FAST} --radius 1mm --thickness -.5mm": "--thickness: got '-.5mm'; must lie between",
+    f"{FAST} --radius 1mm --thickness -inf": "--thickness: got '-inf'; must lie between",
     f"{FAST} --radius 1mm --thickness 9nm": "must be at least",
     f"{SIZES} --speed -1": "--speed: got '-1'; must lie between",
     f"{SIZES} --speed 1,nan": "--speed: got 'nan'; must lie between",

@@ -25,16 +25,15 @@ def with_bands(table: Table, bands: Uncertainty | None) -> Table:
     impact, has none.
     """
     columns, values = [], dict(table.values)
-    clamped = 0 if table.flags is None else table.flags & Validity.CLAMPED
+    inside = table.values["flags"] & Validity.CLAMPED == 0
     for column in table.columns:
         columns.append(column)
-        band: Band | None = getattr(bands, column.name, None)
-        if band:
+        if band := getattr(bands, column.name, None):
             low, high = f"{column.name}_low", f"{column.name}_high"
             shown = "68 %" if column.name == "restitution" else ""
             columns += [Column(low, column.unit, shown, to=high, digits=".3f"), Column(high, column.unit)]
             values |= {
-                end: np.where(np.isfinite(size) & (clamped == 0), size, np.nan)
+                end: np.where(np.isfinite(size) & inside, size, np.nan)
                 for end, size in ((low, band.low), (high, band.high))
             }
     return dataclasses.replace(table, columns=columns, values=values)
