@@ -1,11 +1,14 @@
-"""The parser of a command line, of ``contactlaw`` and of ``dem-demo``; no slow imports."""
+"""The parser of ``contactlaw`` and of ``dem-demo``, and lines that fit a terminal; no slow imports."""
 
 import argparse
 import difflib
 import itertools
 import re
 import sys
-from typing import Any
+import textwrap
+from typing import Any, NoReturn
+
+WIDTH = 80  # of a line on a terminal
 
 
 class Parser(argparse.ArgumentParser):
@@ -28,6 +31,11 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"{name}: no such option{self._hint(name)}")
         return super().parse_known_args(words, namespace)
 
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and a message, and exit with 2."""
+        self.print_usage(sys.stderr)
+        self.exit(2, f"{for_stderr(f'{self.prog}: error: {message}')}\n")
+
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Name the choice nearest to an unknown one."""
         if action.choices is not None and value not in action.choices:
@@ -43,3 +51,15 @@ class Parser(argparse.ArgumentParser):
         if option.startswith("edge"):
             return ": edges are for Python, restitution(..., edge=..., edge_distance=...)"
         return f", known: --{', --'.join(known[2:])}"  # without -h, --help
+
+
+def wrapped(text: str, indent: str = "", width: int = WIDTH) -> list[str]:
+    """Break a text into lines for a terminal; lines after the first are indented."""
+    return textwrap.wrap(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+
+
+def for_stderr(message: str) -> str:
+    """Break the lines of a message for a terminal; in a file or a pipe they stay whole, so that grep finds them."""
+    if not sys.stderr.isatty():
+        return message
+    return "\n".join(part for line in message.splitlines() for part in wrapped(line, "  "))

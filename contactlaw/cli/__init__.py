@@ -11,14 +11,13 @@ import importlib
 import os
 import re
 import sys
-import textwrap
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from contactlaw._version import VERSION
 from contactlaw.cli import old_names
-from contactlaw.parser import Parser
+from contactlaw.parser import Parser, for_stderr, wrapped
 
 _ABOUT = re.compile(r'"""``contactlaw (\w+)`` \((\w+)\): (.*)\.')
 _ORDER = {"ask": 0, "measure": 1, "engines": 2}  # of groups in the help; the others follow
@@ -82,7 +81,7 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="one of those below")
     called = next((word for word in words or () if not word.startswith("-")), None)
     if words and (answer := old_names.answer([*words])):
-        made.exit(_MISUSED, f"contactlaw: {answer}\n")
+        made.exit(_MISUSED, f"{for_stderr(f'contactlaw: {answer}')}\n")
     subcommands = sorted(_subcommands(), key=lambda row: (_ORDER.get(row[0], len(_ORDER)), row))
     names = [name for _, name, _ in subcommands]
     if words is None or called in names:
@@ -94,7 +93,7 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         commands.add_parser(name)
         title = f"\n{group}:"
         lines += [title] * (title not in lines)
-        lines += textwrap.wrap(f"  {name:12}{about}", 80, subsequent_indent=" " * 14)
+        lines += wrapped(f"  {name:12}{about}", " " * 14)
     made.formatter_class = argparse.RawDescriptionHelpFormatter
     made.epilog = "\n".join([*lines, "\n`contactlaw COMMAND --help` lists the options of a command."])
     return made

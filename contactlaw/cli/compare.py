@@ -14,9 +14,10 @@ from contactlaw._arrays import Array
 from contactlaw._readable import percent
 from contactlaw.cli.parts import bands, chosen, impacts, measured, options
 from contactlaw.cli.parts.figure import Figure
-from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
+from contactlaw.cli.parts.table import Column, Table, in_words
 from contactlaw.comparison import Comparison, compare
 from contactlaw.model import ImpactModel
+from contactlaw.parser import wrapped
 from contactlaw.physical.pair import Pair
 from contactlaw.quantities import TIME
 

@@ -12,7 +12,8 @@ from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw.cli.parts import bands, chosen, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS
-from contactlaw.cli.parts.table import Column, Table, in_words, wrapped
+from contactlaw.cli.parts.table import Column, Table, in_words
+from contactlaw.parser import wrapped
 from contactlaw.quantities import SHARE
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}

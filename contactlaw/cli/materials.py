@@ -8,7 +8,8 @@ from dataclasses import asdict
 from typing import Any
 
 from contactlaw.cli.parts import options
-from contactlaw.cli.parts.table import Column, Table, wrapped
+from contactlaw.cli.parts.table import Column, Table
+from contactlaw.parser import wrapped
 from contactlaw.physical.materials import Material, find, materials
 
 # Title and unit of each column, and the number of these units in one SI unit.

@@ -9,7 +9,8 @@ from typing import Any
 from contactlaw import laws, table
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
-from contactlaw.cli.parts.table import Column, Table, wrapped
+from contactlaw.cli.parts.table import Column, Table
+from contactlaw.parser import wrapped
 from contactlaw.physical.law import law_of
 from contactlaw.physical.strengths import with_strengths
 from contactlaw.table import cache, file

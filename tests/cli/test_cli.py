@@ -56,12 +56,6 @@ def test_cor_names_the_limits_exceeded(capsys):
         assert words in out
 
 
-def test_cor_can_integrate(model, capsys):
-    assert main([*IMPACT, "--solve", "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)
-    assert printed["restitution"] == model.solve(12.0, 0.9e-3, 1e-3).restitution
-
-
 def test_the_law_of_hertz_names_the_yield_speed_too(model, capsys):
     for law in ("myc", "hertz"):
         assert main([*IMPACT, "--law", law]) == 0
@@ -92,10 +86,9 @@ def test_several_values_are_every_combination(model, capsys):
     assert main([*MANY, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     asked = [(row["thickness"], row["speed"]) for row in rows]
-    assert asked == [(0.5e-3, 1), (0.5e-3, 5), (1e-3, 1), (1e-3, 5), (None, 1), (None, 5)]
+    assert asked == [(0.5e-3, 1), (0.5e-3, 5), (1e-3, 1), (1e-3, 5), ("inf", 1), ("inf", 5)]
     for row in rows:
-        h = np.inf if row["thickness"] is None else row["thickness"]
-        hit = model.lookup(row["speed"], row["radius"], h)
+        hit = model.lookup(row["speed"], row["radius"], float(row["thickness"]))
         assert row["restitution"] == hit.restitution
     assert rows[0]["flags"] == []
     assert set(rows[0]) == {"speed", "radius", "thickness", *cl.Rebound.__dataclass_fields__, *ENDS, *ASKED}
@@ -260,6 +253,7 @@ STEEL = ["cor", "--sphere", "stainless-steel-304", "--plate", "aluminium-6082-t6
         [*IMPACT, "--sphere", "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer", "--law", "fem", "--no-band"],
         ["materials"],
         ["materials", "stainless-steel-304"],
+        ["table", "info"],
         ["find", "thickness", "--cor", "0.5", *STEEL[1:], "--radius", "1mm,2mm", "--speed", "1,3"],
         [
             "constant",
@@ -424,12 +418,6 @@ def test_a_history_is_csv_with_the_question_and_the_flags_in_each_row(tmp_path, 
     assert main([*HISTORY, "--speed", "60", "--thickness", "0.3mm"]) == 0
     rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
     assert len(rows) == 256 and {row["flags"] for row in rows} == {"THIN_PLATE|FAST_IMPACT"}
-
-
-@pytest.mark.parametrize("size", ["-1mm", "-.5mm", "-1", "-inf"])
-def test_a_negative_quantity_is_refused_for_what_it_is(size, capsys):
-    sizes = ["--radius", "1mm", "--speed", "1", "--thickness", size]
-    refused([*COR, *sizes], f"contactlaw: --thickness: got '{size}'; must", capsys=capsys)
 
 
 PLOT = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0.1:70:2"]

@@ -94,11 +94,8 @@ def test_a_table_over_speed(model, capsys):
         ([*CONSTANT, "--error", "1e-4"], "--error: got 0.0001; only --table takes it"),
         ([*TABLE, "--speed", "1,0"], "--speed: got '0'; must lie"),
         ([*TABLE, "--speed", "1,1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
-        (["materials", "glas"], "unknown material 'glas'"),
         (["export", "lammps", "--out", "no/where"], "--out: there is no folder no"),
         (["export", "header", "--sphere", "steal", "--plate", "glass"], "--sphere: unknown material 'steal'"),
-        (["table", "check", "--points", "5"], "--points: got 5; at least 100"),
-        (["table", "info", "missing.h5"], "missing.h5"),
     ],
 )
 def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, monkeypatch, capsys):
@@ -125,20 +122,3 @@ def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, m
 )
 def test_wrong_usage_is_status_2(argv, capsys):
     misused(argv, "", capsys)
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        CONSTANT,
-        ["table", "info"],
-        ["table", "info", "--law", "fem", "--sphere", "stainless-steel-304", "--plate", "copper-ofhc-annealed"],
-        ["materials"],
-        ["materials", "copper-ofhc-annealed"],
-    ],
-    ids=" ".join,
-)
-def test_what_people_read_fits_a_terminal(words, capsys):
-    assert main(words) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert max(len(line) for line in lines) <= 80

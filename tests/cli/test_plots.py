@@ -37,15 +37,14 @@ def caption(figure):
     return " ".join(figure.texts[1].get_text().split())
 
 
-@pytest.mark.parametrize("more", [[], ["--history"]])
-def test_a_full_disk_leaves_the_picture_that_was_there(more, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_leaves_the_picture_that_was_there(tmp_path, monkeypatch, capsys):
     def full(*_):
         raise OSError(ENOSPC, os.strerror(ENOSPC))
 
     (tmp_path / "it.png").write_text("before")
     monkeypatch.setattr(os, "fsync", full)
     words = "--sphere gamma-alumina --plate glass --law myc --radius 1mm --thickness 1mm --speed 1"
-    assert main(["cor", *more, *words.split(), "--plot", f"{tmp_path}/it.png"]) == 1
+    assert main(["cor", *words.split(), "--plot", f"{tmp_path}/it.png"]) == 1
     assert f"--plot: cannot write {tmp_path}/it.png: No space left" in capsys.readouterr().err
     assert (tmp_path / "it.png").read_text() == "before"
 
@@ -76,23 +75,6 @@ def test_the_half_space_is_a_thin_line_over_thickness(drawn, tmp_path):
     assert curve.get_linewidth() > 2.0 * thin.get_linewidth()
     assert thin.get_ydata() == pytest.approx([model.restitution(30.0, R, INF)] * 2, abs=1e-12)
     assert "Thin line: half-space" in caption(figure)
-
-
-@pytest.mark.parametrize(
-    ("lists", "message"),
-    [
-        (
-            "--radius 1mm:2mm:9 --thickness 1mm:9mm:9 --speed 1,2",
-            "--speed, --thickness, --radius: got 2, 9, 9 values; a",
-        ),
-        ("--radius 1mm --thickness 1mm:9mm:9,inf --speed 1:2:9", "--speed, --thickness: got 9, 10 values; a plot has"),
-    ],
-)
-def test_more_lists_than_a_plot_has_are_refused(lists, message, tmp_path, capsys):
-    path = tmp_path / "cor.svg"
-    body = ["cor", "--sphere=gamma-alumina", "--plate=glass", f"--plot={path}"]
-    assert main([*body, *lists.split()]) == 1
-    assert message in capsys.readouterr().err and not path.exists()
 
 
 def test_without_a_list_the_axis_has_the_speeds_up_to_the_one_stated(drawn, tmp_path):

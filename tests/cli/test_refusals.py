@@ -1,6 +1,9 @@
 """Command lines with mistakes: each ends with a status and a sentence, none with a traceback."""
 
+import contextlib
+import io
 import shlex
+import sys
 
 import pytest
 
@@ -56,6 +59,8 @@ REFUSED = {  # status 1
     f"{FAST} --thickness 1mm --diameter -1mm": "--radius: got '-1mm/2'; must lie between",
     f"{FAST} --thickness 1mm --radius 0": "--radius: got '0'; must lie between",
     f"{FAST} --radius 1mm --thickness 1mm,-2mm": "--thickness: got '-2mm'; must lie between",
+    f"{FAST} --radius 1mm --thickness -.5mm": "--thickness: got '-.5mm'; must lie between",
+    f"{FAST} --radius 1mm --thickness -inf": "--thickness: got '-inf'; must lie between",
     f"{FAST} --radius 1mm --thickness 9nm": "must be at least",
     f"{SIZES} --speed -1": "--speed: got '-1'; must lie between",
     f"{SIZES} --speed 1,nan": "--speed: got 'nan'; must lie between",
@@ -147,3 +152,18 @@ def test_a_mistake_is_answered_in_words(line, words, capsys, tmp_path, monkeypat
     *_, sentence = message.splitlines()
     assert sentence.startswith("contactlaw") and ("usage:" in message) == (line in MISUSED)
     assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.parametrize("line", [f"{HIT} --sphere steel", f"{HIT} --quantity 1", "speed-table"])
+def test_a_message_fits_a_terminal_and_is_one_line_elsewhere(line, monkeypatch):
+    texts = []
+    for is_terminal in (True, False):
+        err = io.StringIO()
+        err.isatty = lambda is_terminal=is_terminal: is_terminal
+        monkeypatch.setattr(sys, "stderr", err)
+        with contextlib.suppress(SystemExit):
+            main(shlex.split(line))
+        texts.append(err.getvalue())
+    wrapped, whole = texts
+    assert max(map(len, wrapped.splitlines())) <= 80 < len(whole.splitlines()[-1])
+    assert wrapped.split() == whole.split()

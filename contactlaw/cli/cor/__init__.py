@@ -12,12 +12,12 @@ from contactlaw import quantities
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
-from contactlaw.answers.uncertainty import Uncertainty
 from contactlaw.cli.cor import figures, files, tables
 from contactlaw.cli.parts import bands, chosen, impacts, options, wording
-from contactlaw.cli.parts.table import Table, flag_names, in_words, wrapped
+from contactlaw.cli.parts.table import Table, flag_names, in_words
 from contactlaw.model import ImpactModel
-from contactlaw.physical.validity import explain
+from contactlaw.parser import wrapped
+from contactlaw.physical.validity import Validity, explain
 
 _OF_BAND = "sphere_error", "plate_error", *tables.ERRORS, "causes"
 _BANDLESS = "no_band", "angle", "history", "cylinder", "bowl", "foundation"  # options without a band
@@ -101,10 +101,10 @@ def _print(arguments: Namespace, model: ImpactModel) -> None:
     table, known = tables.table(arguments, model)
     form = "csv" if arguments.history and arguments.form == "text" else arguments.form
     if form == "text" and len(table) == 1 and arguments.angle is None:
-        print(*_fields(table, known, _yield_speed(arguments, model, table.values)), sep="\n")
+        print(*_fields(table, _yield_speed(arguments, model, table.values)), sep="\n")
     else:
         table.write(sys.stdout, form)
-    if form == "text" and known:
+    if form == "text" and known and not np.all(table.values["flags"] & Validity.CLAMPED):
         assumed = ImpactModel(bands.assumed(model.pair), law=arguments.law)
         first = known if assumed.pair == model.pair else tables.uncertainty(arguments, assumed, table.values)
         meaning = f"68 %: {bands.meaning(known.restitution, model.pair)}."
@@ -113,14 +113,15 @@ def _print(arguments: Namespace, model: ImpactModel) -> None:
             print("", *wrapped(bands.causes(known.restitution)), sep="\n")
 
 
-def _fields(table: Table, known: Uncertainty | None, yield_speed: str) -> Iterator[str]:
+def _fields(table: Table, yield_speed: str) -> Iterator[str]:
     """Lines of one impact, field by field."""
     yield from wrapped(in_words(table.asked))
     for column in impacts.COLUMNS:
-        value, band = table.values[column.name].item(), getattr(known, column.name, None)
-        shown = in_unit(value, column.unit).strip()
-        if band and np.isfinite(band.low).all():
-            low, high = (in_unit(end.item(), column.unit, 3).strip() for end in (band.low, band.high))
+        shown = in_unit(table.values[column.name].item(), column.unit).strip()
+        names = f"{column.name}_low", f"{column.name}_high"
+        ends = [table.values[name].item() for name in names if name in table.values]
+        if np.isfinite(ends).any():
+            low, high = (in_unit(end, column.unit, 3).strip() for end in ends)
             shown = f"{shown:20s}  68 %: {low} to {high}"
         yield f"{column.name:20s}  {shown}"
     yield f"{'yield_speed':20s}  {yield_speed}"

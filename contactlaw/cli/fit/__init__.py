@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 from argparse import Namespace
 from typing import Any
 
@@ -15,7 +14,7 @@ from contactlaw.cli.fit import printed
 from contactlaw.cli.parts import chosen, measured, options, rebounds, wording
 from contactlaw.cli.parts.figure import Figure
 from contactlaw.cli.parts.options import reader_of
-from contactlaw.cli.parts.table import in_words
+from contactlaw.cli.parts.table import for_json, in_words
 from contactlaw.fitting import Fit, Measurements, fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
@@ -84,8 +83,8 @@ def _run(arguments: Namespace) -> None:
         if arguments.plot is not None:
             _figure(found, in_words(bodies)).save(arguments.plot)
         if arguments.form == "json":
-            thickness = None if arguments.thickness == math.inf else arguments.thickness
-            numbers = bodies | {"radius_m": arguments.radius, "thickness_m": thickness} | printed.record(found)
+            sizes = {"radius_m": arguments.radius, "thickness_m": for_json(arguments.thickness)}
+            numbers = bodies | sizes | printed.record(found)
             print(json.dumps(numbers, indent=2, default=np.ndarray.tolist))
         else:
             print(in_words(bodies), *printed.text(found), "", sep="\n")

@@ -8,10 +8,11 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._readable import percent, rounded, scale_of, with_error
 from contactlaw.cli.parts.impacts import COLUMNS
-from contactlaw.cli.parts.table import Column, Table, flag_names, wrapped
+from contactlaw.cli.parts.table import Column, Table, flag_names
 from contactlaw.fitting import Fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.parser import wrapped
 
 _IN_JSON = (
     "values",

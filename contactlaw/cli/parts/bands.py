@@ -9,6 +9,7 @@ from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.table import Column, Table
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.validity import Validity
 
 _MOST = 3  # causes that are named
 _ASSUMED = 0.1  # relative error of a strength whose own is not stated
@@ -18,17 +19,22 @@ _HERE = "two in three real impacts lie here"
 
 
 def with_bands(table: Table, bands: Uncertainty | None) -> Table:
-    """Add the ends of each band after its value; without bands, leave the table as it is."""
+    """Add the ends of each band after its value; without bands, leave the table as it is.
+
+    The bands are of integrated impacts: a value at the border of a table, which is that of another
+    impact, has none.
+    """
     columns, values = [], dict(table.values)
+    inside = table.values["flags"] & Validity.CLAMPED == 0
     for column in table.columns:
         columns.append(column)
-        band: Band | None = getattr(bands, column.name, None)
-        if band:
+        if band := getattr(bands, column.name, None):
             low, high = f"{column.name}_low", f"{column.name}_high"
             shown = "68 %" if column.name == "restitution" else ""
             columns += [Column(low, column.unit, shown, to=high, digits=".3f"), Column(high, column.unit)]
             values |= {
-                end: np.where(np.isfinite(size), size, np.nan) for end, size in ((low, band.low), (high, band.high))
+                end: np.where(np.isfinite(size) & inside, size, np.nan)
+                for end, size in ((low, band.low), (high, band.high))
             }
     return dataclasses.replace(table, columns=columns, values=values)
 

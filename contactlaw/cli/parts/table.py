@@ -4,7 +4,6 @@ import csv
 import json
 import math
 import string
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TextIO
@@ -14,9 +13,8 @@ import numpy as np
 from contactlaw._arrays import Integers
 from contactlaw._escaped import cell, line
 from contactlaw._readable import in_unit
+from contactlaw.parser import WIDTH, wrapped
 from contactlaw.physical.validity import Validity, count_flags, explain
-
-WIDTH = 80  # of a line on a terminal
 
 
 class Column(NamedTuple):
@@ -37,7 +35,7 @@ class Table:
     """Rows of numbers in SI units, or of texts, and what was asked.
 
     A number that is not known is NaN: "-" on a terminal, an empty cell in CSV, null in JSON. An
-    infinite number is null in JSON, which has none.
+    infinite number, of a half-space, is the text "inf" in JSON, which has no such number.
     """
 
     columns: Sequence[Column]
@@ -99,11 +97,8 @@ class Table:
             writer.writerow(cell("|".join(value) if isinstance(value, list) else value) for value in row.values())
 
     def records(self) -> list[dict[str, Any]]:
-        """Rows for JSON, which has no inf."""
-        return [
-            {name: None if value in (math.inf, -math.inf) else value for name, value in row.items()}
-            for row in self._rows()
-        ]
+        """Rows for JSON."""
+        return [{name: for_json(value) for name, value in row.items()} for row in self._rows()]
 
     def write(self, out: TextIO, form: str = "text") -> None:
         """Write the table as ``text``, ``csv`` or ``json``; JSON is a list, or the only row."""
@@ -133,6 +128,11 @@ class Table:
         return (_joined(["" if math.isnan(number) else f"{number:{digits}}" for number in row]) for row in rows)
 
 
+def for_json(value: Any) -> Any:
+    """Write the thickness of a half-space as a text, since JSON has no infinite number."""
+    return "inf" if value == math.inf else value
+
+
 def _joined(texts: list[str]) -> str:
     """Write a number, or both ends of a range; one that is not known is empty."""
     if any(texts) and not all(texts):
@@ -157,11 +157,6 @@ def aligned(columns: Sequence[Sequence[str]]) -> list[str]:
         padded.append([pad(text, width) for text in column])
     lines = ("  ".join(row).rstrip() for row in zip(*padded, strict=True))
     return [*filter(None, lines)]  # units may be missing
-
-
-def wrapped(text: str, indent: str = "", width: int = WIDTH) -> list[str]:
-    """Break a text into lines for a terminal; lines after the first are indented."""
-    return textwrap.wrap(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def in_words(asked: Mapping[str, Any]) -> str:

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
+from contactlaw.parser import for_stderr
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _OTHER_NAMES = {
@@ -153,7 +154,7 @@ def naming_impact(
 def print_message(message: str) -> None:
     """Write a message to stderr."""
     if sys.stderr is not None:  # None if the shell has closed it by 2>&-; print would take stdout
-        print(f"contactlaw: {message}", file=sys.stderr)
+        print(for_stderr(f"contactlaw: {message}"), file=sys.stderr)
 
 
 def print_warning(message: Warning | str, *_: object) -> None:
