@@ -148,7 +148,7 @@ def test_other_programs_read_rows_or_everything(tmp_path, capsys):
     )
     assert said["title"] == "steel on glass" and said["chi_squared"] == pytest.approx(found.chi_squared)
     assert said["probability"] == said["laws"]["fem"]["probability"] == pytest.approx(found.probability)
-    assert said["rebounds"][0]["thickness"] is None and said["rebounds"][1]["measured"] == 0.8
+    assert said["rebounds"][0]["thickness"] == "inf" and said["rebounds"][1]["measured"] == 0.8
     assert [one["high"] for one in said["rebounds"]] == pytest.approx(found.band.high.tolist())
     assert main(["compare", str(path), "--csv"]) == 0
     rows = [*csv.DictReader(capsys.readouterr().out.splitlines())]

@@ -119,4 +119,4 @@ def test_the_commands_say_the_same(steel, capsys):
     assert float(row.split()[0]) == pytest.approx(steel.speed(0.9, 1e-3, 5e-3).value[0], rel=1e-3)
     assert main(["find", "speed", *STEEL, "--cor", "0.9,0.01", "--thickness", "inf", "--json"]) == 0
     row = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
-    assert (row["restitution"], row["thickness"]) == (0.9, None)
+    assert (row["restitution"], row["thickness"]) == (0.9, "inf")
