@@ -40,7 +40,7 @@ def _info(arguments: Namespace) -> None:
     stored = _stored(arguments)
     settings = ", ".join(f"{name} {value:g}" for name, value in asdict(stored.settings).items())
     axes, rungs = stored.grid.axes, stored.grid.rungs[:, 0]
-    cells = f"{axes.rows:g} by {sum(axes[2:5]):g} cells, {rungs.size} strengths to {rungs[-1]:.4g}"
+    cells = f"{axes.rows:g} by {sum(axes[2:5]):g} cells, strengths up to {rungs[-1]:.4g} times: {rungs.size}"
     for text in (f"law {stored.law.family}: {stored.law.source}", f"settings: {settings}; {cells}"):
         print(*wrapped(text), sep="\n")
     _print_certificate(stored)

@@ -166,7 +166,7 @@ _WORDS = {
     ),
     Validity.CLAMPED: (
         "outside the table, the value is that of its border",
-        "integrate there, the COR is too high, by how much is not known",
+        "integrate there: the COR is too high by an unknown amount",
     ),
     Validity.OTHER_LAW: (
         "finite elements favour another law for these materials",
@@ -183,10 +183,10 @@ _WORDS = {
         "take a thicker plate, or the COR for an upper bound, up to 0.03 too high",
     ),
     Validity.RATE_DEPENDENT: (
-        "a polymer, or as soft and light as one, without a loss factor that the law takes",
+        "a polymer, or a body as soft and light as one, whose loss factor the law does not have",
         "give law fem its loss factor, and its modulus at the frequency of the impact, or its kind "
-        "if it is no polymer; the COR is too high if no body flows, else too high or too low, by "
-        "how much is not known",
+        "if it is no polymer; the COR is too high by an unknown amount if no body flows, else too high or "
+        "too low",
     ),
     Validity.DAMAGE: ("a brittle body may break or flow", "the values are for one that stays whole"),
     Validity.UNTRIED_STRENGTH: (
@@ -201,11 +201,11 @@ _WORDS = {
     ),
     Validity.FROM_HARDNESS: (
         "a metal yields whose strength is that at 8 % of strain, from its hardness",
-        "take the COR for an upper bound, by how much is not known; give the exponent of hardening",
+        "take the COR for an upper bound, an unknown amount too high; give the exponent of hardening",
     ),
     Validity.NEAR_EDGE: (
         "nearer to an edge than the plate is thick or two contacts are wide",
-        "take the values for estimates, the plate is no thin one there",
+        "take the values for estimates: so near, the theory of thin plates does not hold",
     ),
     Validity.STRIKES_AGAIN: (
         "the plate comes back and strikes the sphere again",

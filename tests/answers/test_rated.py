@@ -153,7 +153,7 @@ def test_tables_of_the_user(tmp_path, capsys):
     with pytest.raises(ValueError, match=known):
         cl.ImpactModel(cl.Pair(quicker, "glass"), table=own.table)
     assert main(["table", "info", str(path)]) == 0
-    assert "strengths to 1.332" in " ".join(capsys.readouterr().out.split())
+    assert "strengths up to 1.332 times: " in " ".join(capsys.readouterr().out.split())
 
 
 def test_a_damaged_table_is_refused(tmp_path):

@@ -161,20 +161,6 @@ def test_single_numbers_have_their_range(model, name, bad):
                 call(bad)
 
 
-@pytest.mark.parametrize(
-    ("numbers", "name"),
-    [
-        ((1e12, 0.2, 1e300, 1e9), "density"),
-        ((2e3, 0.2, 1e-7, 1e2), "density"),
-        ((3e8, 0.2, 1e3, 1e-196), "yield_strength"),
-    ],
-)
-def test_materials_whose_products_overflow_are_refused(numbers, name):
-    """They would else give 'math domain error', OverflowError or a force of NaN later on."""
-    with pytest.raises(ValueError, match=f"^{name}: .* must .*material 'own'"):
-        cl.Material("own", *numbers)
-
-
 FOIL = (0.35549572329291923, 0.1, 1.1637769686423725e-07)  # lookups read out of bounds here
 
 

@@ -41,30 +41,6 @@ def test_no_hardening_and_no_rate_are_none():
     assert STEEL.flow == (350e6, 0.0, 1.0, 0.0, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("numbers", "message"),
-    [
-        ({"hardening": 0.3}, "give (B, n) with B in Pa, or the hardness"),
-        ({"hardening": (2e8, 0.3, 1.0)}, "must be (B, n)"),
-        ({"hardening": (-1.0, 0.3)}, "B must be from 0"),
-        ({"hardening": (2e8, 1.5)}, "n must be above 0 and up to 1"),
-        ({"hardening": (2e8, 0.3), "yield_strength": None}, "needs a yield_strength"),
-        ({"hardening": 0.3, "hardness": 0.9e9}, "as if it softened"),
-        ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
-        ({"hardening": 0.7, "hardness": 3e9, "yield_strength": None}, "n must be up to 0.6"),
-        ({"hardening": (275.0, 0.36)}, "give it in Pa"),
-        ({"rate": 0.02}, "must be (C, rate0)"),
-        ({"rate": (0.9, 1.0)}, "C must be from 0 to 0.5"),
-        ({"rate": (0.02, 0.0)}, "must be positive"),
-        ({"rate": (0.02, 1.0), "yield_strength": None}, "an elastic body has no flow stress"),
-    ],
-)
-def test_wrong_constants_are_refused(numbers, message):
-    with pytest.raises(ValueError, match="material 'steel'") as caught:
-        with_flow(**numbers)
-    assert message in str(caught.value)
-
-
 def test_hardness_scales_of_metals_imply_a_metal():
     kinds = [cl.Material("ball", 200e9, 0.3, 7850, hardness=text).kind for text in ("62 HRC", "200 HB", "800 HV")]
     assert kinds == ["metal", "metal", None]

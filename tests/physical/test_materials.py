@@ -360,6 +360,29 @@ REFUSED = [
     *(({"uncertainty": {"density": bad}}, r"from 0 to 1, as 0.1 for 10 % \(") for bad in (1.1, -0.1, math.inf)),
     ({"loss_factor": "handbook"}, r"write loss_factor = \[0.03, 1e4\] with your numbers"),
     ({"specified_minimum": 235e6}, "must be True or False"),
+    *(
+        ({"hardness": bad}, f"^hardness: got {bad!r}.* HV, HB, HBW, HRC.* .material 'steel'")
+        for bad in ("62 HRB", "7.3 GPa", "62", "HRC", "-62 HRC", "nan HV", "6 2 HV")
+    ),
+    *(({"hardness": bad}, "must be from 20 to 68 HRC.*give HV or HB") for bad in ("19.9 HRC", "68.5 HRC", "0 HRC")),
+    ({"hardness": "0 HV"}, "^hardness: got 0.0; must be positive"),
+    ({"hardening": 0.3, "yield_strength": 350e6}, r"give \(B, n\) with B in Pa, or the hardness.*material 'steel'"),
+    ({"hardening": (2e8, 0.3, 1.0)}, r"must be \(B, n\)"),
+    ({"hardening": (-1.0, 0.3), "yield_strength": 350e6}, "B must be from 0"),
+    ({"hardening": (2e8, 1.5), "yield_strength": 350e6}, "n must be above 0 and up to 1"),
+    ({"hardening": (2e8, 0.3)}, "needs a yield_strength"),
+    ({"hardening": 0.3, "hardness": 0.9e9, "yield_strength": 350e6}, "as if it softened"),
+    ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
+    ({"hardening": 0.7, "hardness": 3e9}, "n must be up to 0.6"),
+    ({"hardening": (275.0, 0.36), "yield_strength": 350e6}, "give it in Pa"),
+    ({"rate": 0.02, "yield_strength": 350e6}, r"must be \(C, rate0\)"),
+    ({"rate": (0.9, 1.0), "yield_strength": 350e6}, "C must be from 0 to 0.5"),
+    ({"rate": (0.02, 0.0), "yield_strength": 350e6}, "must be positive"),
+    ({"rate": (0.02, 1.0)}, "an elastic body has no flow stress"),
+    # Products of these overflow: later on, they would give 'math domain error' or a force of NaN.
+    ({"youngs_modulus": 1e12, "density": 1e300, "yield_strength": 1e9}, "^density: .* must .*material 'steel'"),
+    ({"youngs_modulus": 2e3, "density": 1e-7, "yield_strength": 1e2}, "^density: .* must .*material 'steel'"),
+    ({"youngs_modulus": 3e8, "yield_strength": 1e-196}, "^yield_strength: .* must .*material 'steel'"),
 ]
 
 
