@@ -108,7 +108,7 @@ class Solver(Backend):
             lam, y, s = units.inelasticity, units.yield_ratio, units.strength
             thin = lam > 2.0 * limit
             hit = solved(laws, np.where(thin, 0.0, lam), y, self.rtol, strength=s)
-            onset = np.log([force.onset_at(laws, one) / force.growth_at(laws, one) for one in s])
+            onset = np.log([force.scale_at(laws, one, force.LOG_ONSET) / force.growth_at(laws, one) for one in s])
             never |= rated & (onset >= -math.log(share))  # the strength has outgrown the load
             before, gap = gap, np.log(hit.compression_ratio * hit.elastic_compression / y) - onset
             gap[thin | never] = 0.0

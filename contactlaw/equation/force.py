@@ -134,9 +134,9 @@ def at_strength(laws: Array, strength: float) -> BlendedLaw:
     return BlendedLaw(_law_of_rung(laws, low), _law_of_rung(laws, high), share, end)
 
 
-@kernel(inline=True)
-def _scale_at(laws: Array, strength: float, column: int) -> float:
-    """Value whose logarithm is in a column of the rungs; 1 for an array of one law."""
+@kernel
+def scale_at(laws: Array, strength: float, column: int) -> float:
+    """Value whose logarithm is in a column of the rungs, such as LOG_ONSET; 1 for an array of one law."""
     if laws[PIECES] > 0.0:
         return 1.0
     low, high, share = _rungs_around(laws, strength)
@@ -146,13 +146,7 @@ def _scale_at(laws: Array, strength: float, column: int) -> float:
 @kernel
 def growth_at(laws: Array, strength: float) -> float:
     """Yield compression of an impact over that of the slow pair."""
-    return _scale_at(laws, strength, LOG_SCALE)
-
-
-@kernel
-def onset_at(laws: Array, strength: float) -> float:
-    """Compression of an impact at which flow begins, over the slow pair's yield compression."""
-    return _scale_at(laws, strength, LOG_ONSET)
+    return scale_at(laws, strength, LOG_SCALE)
 
 
 @kernel(inline=True)
@@ -195,12 +189,6 @@ def row_of(law: Array, k: int) -> int:
 
 
 @kernel(inline=True)
-def piece_at(law: Array, q: float) -> int:
-    """Index of the loading curve's piece at q; a kink belongs to the piece that begins there."""
-    return max(_count(law, int(law[STARTS]), int(law[PIECES]), q) - 1, 0)
-
-
-@kernel(inline=True)
 def piece_force(law: Array, k: int, q: float) -> float:
     """Force of the loading curve's piece k at q, also a little beyond its ends."""
     row = row_of(law, k)
@@ -211,7 +199,8 @@ def piece_force(law: Array, k: int, q: float) -> float:
 @kernel(inline=True)
 def loading_of(law: Array, q: float) -> float:
     """Compute `loading` of a law that is not blended."""
-    return piece_force(law, piece_at(law, q), q)
+    pieces_begun = _count(law, int(law[STARTS]), int(law[PIECES]), q)  # a kink belongs to the piece that begins there
+    return piece_force(law, max(pieces_begun - 1, 0), q)
 
 
 @kernel(inline=True)

@@ -35,7 +35,9 @@ def test_a_blend_of_two_laws_is_the_law_made_for_a_strength(pair, fineness):
         one = law_for_pair(stronger, law)
         scale = force.growth_at(laws, strength) * law.scale
         assert scale == pytest.approx(one.scale, rel=1e-4)
-        assert force.onset_at(laws, strength) * law.scale == pytest.approx(one.onset or one.scale, rel=1e-4)
+        assert force.scale_at(laws, strength, force.LOG_ONSET) * law.scale == pytest.approx(
+            one.onset or one.scale, rel=1e-4
+        )
         lam, chi = rng.uniform(0.0, 1.0, 30), np.geomspace(0.3, 1.5 * one.range[1], 30)
         exact, blended = (
             zener._run(zener.TO_THE_END, data, lam, unit / chi, 1e-10, strength=strength)
@@ -149,4 +151,4 @@ def test_a_rate_beyond_the_laws_is_refused():
 def test_a_pair_without_a_rate_has_its_own_law():
     law = cl.ImpactModel(cl.Pair("glass", "glass")).force_law
     assert by_strength(cl.Pair("glass", "glass"), law) is law.data
-    assert force.growth_at(law.data, 1.0) == force.onset_at(law.data, 1.0) == 1.0
+    assert force.growth_at(law.data, 1.0) == force.scale_at(law.data, 1.0, force.LOG_ONSET) == 1.0
