@@ -59,7 +59,6 @@ class Function:
         self._program, self._language, self._python = program, program.language, python
         lines, self._first = inspect.getsourcelines(python)
         tree: Any = ast.parse(textwrap.dedent("".join(lines)))
-        self._tree = tree.body[0]
         found = inspect.getclosurevars(python)
         self._scope = {**python.__globals__, **found.builtins, **found.nonlocals}
         given_types = self._bound(python, *(Value(one, "") for one in given))
@@ -68,7 +67,7 @@ class Function:
         self.result, before = types.VOID, None
         while before != (self.types, self.result):  # until no type is wider than before
             before = dict(self.types), self.result
-            self.body = self._block(self._tree.body)
+            self.body = self._block(tree.body[0].body)
 
     def refuse(self, node: Any, remedy: str) -> NoReturn:
         """Say where a kernel leaves the subset of Python, and what to write instead."""
@@ -155,19 +154,12 @@ class Function:
             if UNKNOWN in (start.known, stop.known):
                 self.refuse(node.iter, "a loop over the members of a tuple has known ends")
             return self._unrolled(node, start.known, stop.known)
-        self._check_end(node)
         self.types[node.target.id] = INT
-        body, name = self._block(node.body), self._language.variable(node.target.id)
-        head = f"for ({name} = {start.text}; {name} < {stop.within(7)}; {name} += {step.text}) {{"
+        body, language = self._block(node.body), self._language
+        self.types.pop(node.target.id)  # after a loop to its end Python has another number there
+        name, kind = language.variable(node.target.id), language.local + language.type(INT) * language.typed
+        head = f"for ({kind}{name} = {start.text}; {name} < {stop.within(7)}; {name} += {step.text}) {{"
         return [head, *body, "}"] if body else []
-
-    def _check_end(self, loop: Any) -> None:
-        """Refuse to read a loop's variable after the loop: in C and JavaScript it is one step further then."""
-        names = [one for one in ast.walk(self._tree) if isinstance(one, ast.Name) and one.id == loop.target.id]
-        later = [one for one in names if one.lineno > loop.end_lineno]
-        after = min(later, key=lambda one: (one.lineno, one.col_offset), default=None)
-        if after and isinstance(after.ctx, ast.Load):
-            self.refuse(after, "count in a while loop, or keep the variable's value under another name")
 
     def _picks(self, node: Any, index: str) -> bool:
         """Whether an expression is a member of a tuple whose place is a variable."""
@@ -178,13 +170,11 @@ class Function:
 
     def _unrolled(self, node: Any, start: Any, stop: Any) -> list[str]:
         """Write a loop over the members of tuples, which have no place, once for each."""
-        name, lines = node.target.id, list[str]()
-        before = self.types.get(name)
+        lines = list[str]()
         for n in range(start, stop):
-            self.types[name] = Known(value=n)
+            self.types[node.target.id] = Known(value=n)
             lines += self._block(node.body)
-        self.types.pop(name)
-        self.types |= {name: before} if before else {}
+        self.types.pop(node.target.id)
         return lines
 
     def _unpacked(self, places: list[Any], value: Any) -> tuple[list[Any], list[Any]]:

@@ -95,7 +95,10 @@ class Program:
         name, prefix = name.strip("_"), self.language.prefix
         if isinstance(value, np.ndarray):
             if value.dtype.names and id(value) not in self._arrays:
-                self._arrays[id(value)] = self._empty_rows(value, name)
+                row = self.row(value.dtype)  # all of them are zero
+                at = f"{prefix}{self.free_name(id(value), name.strip('_').lower())}"
+                self.parts.append(f"static {self.language.type(row)[:-2]} {at}[{value.size}] = {{ {{ 0 }} }};")
+                self._arrays[id(value)] = self.span(row, at, str(value.size))
             if id(value) not in self._arrays:
                 one = self.free_name(id(value), name.lower())
                 self.parts.append(self.language.constant(one, value.ravel().tolist()))
@@ -108,13 +111,6 @@ class Program:
             if self._constants.setdefault(one, found.text) == found.text:
                 return Value(found.type, f"{prefix}{one}", known=found.known)
         raise ValueError(f"{one}: two constants have this name, rename one of them")
-
-    def _empty_rows(self, value: Any, name: str) -> Value:
-        """Write rows that are all zero."""
-        row = self.row(value.dtype)
-        at = f"{self.language.prefix}{self.free_name(id(value), name.strip('_').lower())}"
-        self.parts.append(f"static {self.language.type(row)[:-2]} {at}[{value.size}] = {{ {{ 0 }} }};")
-        return self.span(row, at, str(value.size))
 
     def span(self, row: Struct, at: str, n: str) -> Value:
         """Rows from an address on."""

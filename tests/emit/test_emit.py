@@ -235,7 +235,7 @@ def last(way, n):
     ("kernel", "message"),
     [
         (unbounded, r"range\(n\).* a loop over the members of a tuple has known ends"),
-        (last, "count in a while loop, or keep the variable's value under another name"),
+        (last, "k.* give the variable a value before it is read"),
     ],
 )
 def test_loops_that_other_languages_have_otherwise_are_refused(kernel, message):
