@@ -611,16 +611,23 @@ def outcomes(
             out.inelasticity[k] = STRETCH * x / (1.0 - x)
             out.strength[k] = log(at.strength[i]) if rated else 0.0
         for i in range(n):
-            k, rung, between, row, column = start + i, at.rung[i], at.between[i], at.row[i], at.column[i]
-            out.restitution[k] = cor_from(field(table, axes, 0, rung, between, row, column))
-            out.contact_time[k] = 1.0 / field(table, axes, 1, rung, between, row, column)
-            out.wave_rate[k] = field(table, axes, 2, rung, between, row, column)
-            out.compression_ratio[k] = field(table, axes, 3, rung, between, row, column)
+            _write_fields(table, axes, at.rung[i], at.between[i], at.row[i], at.column[i], out, start + i)
         for i in range(n):
             if not at.column[i] >= 0.0:
                 _write_nan(out, start + i)
                 bad += 1
     return bad
+
+
+@kernel(inline=True)
+def _write_fields(
+    table: Array, axes: Axes, rung: int, between: float, row: float, column: float, out: Outcome, n: int
+) -> None:
+    """Write the four fields that tables store, of impact n."""
+    out.restitution[n] = cor_from(field(table, axes, 0, rung, between, row, column))
+    out.contact_time[n] = 1.0 / field(table, axes, 1, rung, between, row, column)
+    out.wave_rate[n] = field(table, axes, 2, rung, between, row, column)
+    out.compression_ratio[n] = field(table, axes, 3, rung, between, row, column)
 
 
 @kernel(inline=True)
@@ -692,9 +699,6 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
             out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
             out.yield_ratio[n] = at.elastic / _overload(axes, at.p, at.g)
             out.strength[n] = min(out.strength[n], math.log(strongest(table, axes)))
-        out.restitution[n] = cor_from(field(table, axes, 0, at.rung, at.between, at.row, at.column))
-        out.contact_time[n] = 1.0 / field(table, axes, 1, at.rung, at.between, at.row, at.column)
-        out.wave_rate[n] = field(table, axes, 2, at.rung, at.between, at.row, at.column)
-        out.compression_ratio[n] = field(table, axes, 3, at.rung, at.between, at.row, at.column)
+        _write_fields(table, axes, at.rung, at.between, at.row, at.column, out, n)
         out.elastic_compression[n] = at.elastic
     return outside
