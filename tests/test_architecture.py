@@ -358,8 +358,8 @@ EDITS = [
     ("table/lookup.py", "* (1.0 / 36.0)", "* (0.5 / 36.0)", (0, 1)),
     (
         "equation/force.py",
-        "return piece_force(law, piece_at(law, q), q)",
-        "return 2.0 * piece_force(law, piece_at(law, q), q)",
+        "return piece_force(law, max(pieces_begun - 1, 0), q)",
+        "return 2.0 * piece_force(law, max(pieces_begun - 1, 0), q)",
         (2,),
     ),
     ("equation/motion.py", "-2.0 * q * f, f", "-3.0 * q * f, f", (3,)),
