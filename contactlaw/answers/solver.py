@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,6 @@ from contactlaw.answers.backend import (
     OutsideTableError,
     Part,
     UnsolvedError,
-    refuse_to_yield,
     renumbered,
     too_fast,
     too_thin,
@@ -27,14 +25,11 @@ from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.responses import REACH
-from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
+from contactlaw.physical.scaling import edges_of, swings_of
 from contactlaw.table.grid import Settings
 
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
-_CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
-_ROUNDS = 30
-_SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
 
 
 def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> None:
@@ -83,47 +78,6 @@ class Solver(Backend):
         return [Part(slice(None), impacts, units.time, known, found, flags, edges, False)]
 
     near = far
-
-    def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does.
-
-        There the largest compression is that of first flow. They are found by the secant method in
-        logarithms, in which the compression is nearly linear in the speed. It starts at the yield
-        speed on a half-space, which is the lowest of all plates.
-        """
-        laws, constants, impact = self.bodies.data, self.bodies.constants, self.bodies.impact(impacts)
-        share, rated = yield_share(self.bodies.pair, self.bodies.law), constants.plate.rate.slope > 0.0
-        found = np.full(impacts.speed.size, math.inf)
-        if math.isinf(share):
-            return found
-        if not rated:
-            constants = constants._replace(yield_compression=share)
-        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones_like(found)))
-        log_speed = 1.25 * np.log(at_one.yield_ratio) - 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
-        limit = math.inf if self.extent is None else self.extent.largest_inelasticity
-        slope, last, gap = np.full_like(found, 0.75), np.full_like(found, math.nan), np.zeros_like(found)
-        never = np.zeros(found.size, dtype=np.bool_)
-        for _ in range(_ROUNDS):
-            units = numbers_of(constants, laws, impact._replace(speed=np.exp(log_speed)))
-            lam, y, s = units.inelasticity, units.yield_ratio, units.strength
-            thin = lam > 2.0 * limit
-            hit = solved(laws, np.where(thin, 0.0, lam), y, self.rtol, strength=s)
-            onset = np.log([force.onset_at(laws, one) / force.growth_at(laws, one) for one in s])
-            never |= rated & (onset >= -math.log(share))  # the strength has outgrown the load
-            before, gap = gap, np.log(hit.compression_ratio * hit.elastic_compression / y) - onset
-            gap[thin | never] = 0.0
-            if np.abs(gap).max(initial=0.0) < _CONVERGED:
-                break
-            step = log_speed - last
-            moved = np.divide(gap - before, step, out=slope, where=np.abs(step) > 0.0)
-            slope = np.clip(moved, *_SLOPES)
-            last, log_speed = log_speed, log_speed - gap / slope
-        else:
-            n = int(np.abs(gap).argmax())
-            raise UnsolvedError(n, f"lambda = {lam[n]:.6g}", "no speed was found at which it yields")
-        if (lam > limit)[~never].any():
-            refuse_to_yield(impacts, (lam > limit) & ~never, limit)
-        return np.where(never, math.inf, np.exp(log_speed))
 
 
 def solved_within(

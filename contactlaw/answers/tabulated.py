@@ -19,7 +19,7 @@ from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import Backend, OutsideTableError, Part, renumbered, split
-from contactlaw.answers.solver import RTOL, Solver
+from contactlaw.answers.solver import Solver
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import History
 from contactlaw.laws import Law
@@ -184,11 +184,6 @@ class TableLookup(Backend):
         out = outcome.history(part.impacts.speed.size, samples)
         shapes.sample(self.bodies.data, self.shapes, part.outcome, out)
         return out, None
-
-    def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        given = extent(self.bodies.law) if self.given is None else self.table.settings
-        return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
 
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
         """COR as a function of speed [m/s] of the sphere and the plate of one impact."""
