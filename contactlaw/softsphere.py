@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching, kernel, tuple_of
 from contactlaw.answers.backend import OutsideTableError, too_thin
-from contactlaw.answers.solver import RTOL, solved_within
+from contactlaw.answers.solver import Solver
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import PlateConstants
@@ -540,8 +540,8 @@ def time_step(
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest), mass)
-    found = solved_within(bodies.data, units, RTOL, None, few=True)
-    time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
+    (found,) = Solver(bodies).far(given)
+    time = min(float(found.outcome.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = max(FEWEST_STEPS, (_ERROR / error) ** 0.4)
     if softening > 1.0:
         steps, time = _SOFTENED_STEPS, CONTACT_TIME * float(units.time[0]) * softening**0.4

@@ -215,12 +215,10 @@ def _above(value: float, limit: float) -> str:
 
 
 @contextmanager
-def renumbered(some: Places, mass: Array | None = None) -> Iterator[None]:
-    """Make errors about one of some impacts name it by its number among all, and the mass given."""
+def renumbered(some: Places) -> Iterator[None]:
+    """Make errors about one of some impacts name it by its number among all."""
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
         impact, *rest = error.args
-        if mass is not None and isinstance(error, OutsideTableError):
-            rest[-1] = float(mass[impact])
         raise type(error)(int(some[impact]), *rest) from None

@@ -13,11 +13,10 @@ from contactlaw.answers.backend import (
     OutsideTableError,
     Part,
     UnsolvedError,
-    renumbered,
     too_fast,
     too_thin,
 )
-from contactlaw.equation import edge, force, outcome, zener
+from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Outcome
@@ -68,35 +67,27 @@ class Solver(Backend):
         elif impacts.frequency is not None and impacts.wall is not None:
             swing = impacts.wall, impacts.frequency
             edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)
+        if self.extent is not None:
+            self._refuse_outside(self.extent, units, impacts)
         few = edges is not None and count <= _FEW
-        with renumbered(np.arange(count), impacts.mass):
-            found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
+        numbers = units.inelasticity, units.yield_ratio
+        found = solved(bodies.data, *numbers, self.rtol, few=few, edges=edges, strength=units.strength)
         if impacts.frequency is not None:
             angle = found.contact_time * units.time * impacts.frequency
             within("thickness", angle, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
-        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
-        return [Part(slice(None), impacts, units.time, known, found, flags, edges, False)]
+        flags = np.zeros(count, dtype=np.int64)
+        return [Part(slice(None), impacts, units.time, numbers, found, flags, edges, False)]
 
     near = far
 
-
-def solved_within(
-    law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False, edges: Edges | None = None
-) -> Outcome:
-    """Integrate impacts up to the first one that is outside the extent, which is refused."""
-    lam, y, s = units.inelasticity, units.yield_ratio, units.strength
-    if extent is None:
-        return solved(law, lam, y, rtol, few=few, edges=edges, strength=s)
-    thin = extent.largest_inelasticity
-    beyond = int(np.argmax(np.append(lam > thin, True)))
-    inner = edge.part(edges, slice(beyond))
-    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner, strength=s[:beyond])
-    chi = found.elastic_compression / found.yield_ratio
-    for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
-        raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
-    if beyond < lam.size:
-        raise OutsideTableError(beyond, too_thin(lam[beyond], thin))
-    return found
+    def _refuse_outside(self, extent: Settings, units: Numbers, impacts: Impacts) -> None:
+        """Refuse the first impact that is outside a table of this extent."""
+        thinnest, fastest = extent.largest_inelasticity, extent.largest_overload
+        lam, s = units.inelasticity, units.strength
+        chi = zener.elastic_compression(self.bodies.data, lam, s) / units.yield_ratio
+        for n in np.flatnonzero((lam > thinnest) | (chi > fastest))[:1].tolist():
+            reason = too_thin(lam[n], thinnest) if lam[n] > thinnest else too_fast(chi[n], fastest)
+            raise OutsideTableError(n, reason, None if impacts.mass is None else float(impacts.mass[n]))
 
 
 def solved(

@@ -153,7 +153,7 @@ class TableLookup(Backend):
             if self.border.outside == "solve":
                 return Solver(self.bodies).far(impacts)
             if self.border.outside == "raise":
-                with renumbered(beyond, None if impacts.mass is None else impacts.mass[beyond]):
+                with renumbered(beyond):
                     self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
             lookup.fields(self.packed, True, found)
             flags[beyond] = int(Validity.CLAMPED)
@@ -166,7 +166,8 @@ class TableLookup(Backend):
         if not math.exp(strength) > most:
             Solver(self.bodies, extent=self.table.settings).far(impacts)
         times = f"{math.exp(strength):.4g} times stronger, above {most:.4g}"
-        raise OutsideTableError(0, f"its rate makes the bodies {times}")
+        mass = None if impacts.mass is None else float(impacts.mass[0])
+        raise OutsideTableError(0, f"its rate makes the bodies {times}", mass)
 
     def slid(self, part: Part, psi: Array) -> Array:
         """Change of sliding speeds psi [mu V0]."""
