@@ -8,14 +8,7 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.backend import (
-    Backend,
-    OutsideTableError,
-    Part,
-    UnsolvedError,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import Backend, OutsideTableError, Part, UnsolvedError, too_fast, too_thin
 from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
