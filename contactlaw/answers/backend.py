@@ -63,17 +63,7 @@ class Backend:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        return self._rebounds(self.parts(impacts), impacts)
-
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0].
-
-        `psi` are the sliding speeds before [mu V0].
-        """
-        parts, changes = self.parts(impacts), np.empty_like(psi)
-        for part in parts:
-            changes[part.places] = self.slid(part, psi[part.places])
-        return self._rebounds(parts, impacts), changes
+        return self.together(self.parts(impacts), impacts)
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
@@ -119,7 +109,8 @@ class Backend:
     def _rebound(self, part: Part) -> Rebound:
         return rebound(self.bodies, *part[1:])
 
-    def _rebounds(self, parts: list[Part], impacts: Impacts) -> Rebound:
+    def together(self, parts: list[Part], impacts: Impacts) -> Rebound:
+        """Everything about impacts whose outcomes were found in parts."""
         return Rebound(**_joined([(one.places, vars(self._rebound(one))) for one in parts], impacts))
 
 
