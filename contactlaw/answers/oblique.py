@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
-from contactlaw.answers.backend import Backend, Part, renumbered
+from contactlaw.answers.backend import Part, renumbered
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import share_of_solid
@@ -28,7 +29,7 @@ Collide = Callable[..., tuple[Vector, Vector]]
 
 
 def oblique(
-    by: Backend,
+    by: Solver,
     speed: ArrayLike,
     sliding_speed: ArrayLike,
     radius: ArrayLike,
@@ -101,22 +102,22 @@ def collide_kernel(tabulated: TableLookup) -> Collide:
     return _jitted(tabulated.packed, tabulated.slides, tabulated.bodies.constants.mass)
 
 
-def answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
+def answer(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
     """Everything about impacts with these sliding speeds [m/s]."""
-    parts, changed = _outcomes(backend, impacts, friction, size)
-    return kernels.of(backend.bodies, backend.together(parts, impacts), impacts, friction, size, changed)
+    parts, changed = _outcomes(solver, impacts, friction, size)
+    return kernels.of(solver.bodies, solver.together(parts, impacts), impacts, friction, size, changed)
 
 
-def _outcomes(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> tuple[list[Part], Array]:
+def _outcomes(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> tuple[list[Part], Array]:
     """Outcomes of the normal motion, and the change of the sliding speed [m/s]."""
     limit = friction * impacts.speed
     psi = np.zeros_like(limit)
     with np.errstate(over="ignore"):  # with next to no friction psi is inf
         np.divide(size, limit, out=psi, where=limit > 0.0)
     psi = np.clip(psi, -FASTEST, FASTEST)
-    parts, changed = backend.parts(impacts), np.empty_like(psi)
+    parts, changed = solver.parts(impacts), np.empty_like(psi)
     for part in parts:
-        changed[part.places] = backend.slid(part, psi[part.places])
+        changed[part.places] = solver.slid(part, psi[part.places])
     return parts, limit * changed
 
 

@@ -18,7 +18,7 @@ from contactlaw import laws
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import Backend, OutsideTableError, Part, renumbered, split
+from contactlaw.answers.backend import OutsideTableError, Part, renumbered, split
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import History
@@ -57,11 +57,12 @@ class Border:
             self.clamped += more
 
 
-class TableLookup(Backend):
+class TableLookup(Solver):
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
-        self.bodies, self.given, self.border = bodies, given, border
+        super().__init__(bodies)
+        self.given, self.border = given, border
 
     @functools.cached_property
     def law(self) -> Law:
@@ -125,10 +126,6 @@ class TableLookup(Backend):
             out = np.ravel(self.rebounds(impacts).restitution)
         return out
 
-    def near(self, impacts: Impacts) -> list[Part]:
-        """Integrate impacts, whatever table there is."""
-        return Solver(self.bodies).near(impacts)
-
     def far(self, impacts: Impacts) -> list[Part]:
         """Look impacts up."""
         if self.instead is not None:
@@ -151,7 +148,7 @@ class TableLookup(Backend):
         if lookup.fields(self.packed, False, found):
             beyond = np.flatnonzero(np.isnan(found.restitution))
             if self.border.outside == "solve":
-                return Solver(self.bodies).far(impacts)
+                return self.integrated(impacts)
             if self.border.outside == "raise":
                 with renumbered(beyond):
                     self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
@@ -207,7 +204,7 @@ class TableLookup(Backend):
         return NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
 
 
-def by_method(tabulated: TableLookup, method: str) -> Backend:
+def by_method(tabulated: TableLookup, method: str) -> Solver:
     """Table or solver, as the user says."""
     if method not in ("table", "solve"):
         raise ArgumentError("method", method, "must be 'table' or 'solve'")
