@@ -218,7 +218,7 @@ class ImpactModel:
         else:
             # a short cut for engines that call this once per collision
             if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
-                value = self._tabulated.restitution(speed, radius, thickness)
+                value = self._tabulated.restitution(speed, radius, thickness, 1.0)
                 if value == value:  # not NaN
                     return value
             sheets: Any = thickness

@@ -101,9 +101,9 @@ class TableLookup(Solver):
         return cache.cached_slides(self.table, self.bodies.pair.tangential_ratio)
 
     @functools.cached_property
-    def restitution(self) -> Callable[[float, float, float], float]:
-        """COR of one impact, whose arguments have to be floats; NaN outside the table."""
-        return functools.partial(python_entries()[0], self.packed)
+    def restitution(self) -> Callable[[float, float, float, float], float]:
+        """COR of one impact by speed, sizes and mass over that of a solid sphere, all floats; NaN outside the table."""
+        return functools.partial(_python_entry(), self.packed)
 
     @property
     def largest_inelasticity(self) -> float:
@@ -185,13 +185,13 @@ class TableLookup(Solver):
 
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
         """COR as a function of speed [m/s] of the sphere and the plate of one impact."""
-        at, table, mass = python_entries()[1], self.packed, self.bodies.impact(impacts).mass
-        known = impacts.radius.item(), impacts.thickness.item(), mass.item()
+        at = self.restitution
+        known = impacts.radius.item(), impacts.thickness.item(), self.bodies.impact(impacts).mass.item()
 
         def restitution(speed: float) -> float:
             if not isinstance(speed, float):  # the entry would take "5" and True for numbers
                 speed = scalars(speed=speed)[0].item()
-            value = at(table, speed, *known)
+            value = at(speed, *known)
             if value != value:  # NaN; half the time of a call of isnan
                 one = replace(impacts, speed=scalars(speed=speed)[0])
                 return self.restitutions(one).item()
@@ -212,12 +212,9 @@ def by_method(tabulated: TableLookup, method: str) -> Solver:
 
 
 @functools.cache
-def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
-    """Python's entries of `solid_on_plate` and `restitution_on_plate`; each argument a float."""
-    return (
-        direct(lookup.solid_on_plate, "float64(float64[::1], f8, f8, f8)"),
-        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)"),
-    )
+def _python_entry() -> Callable[..., float]:
+    """Python's entry of `restitution_on_plate`; each argument a float."""
+    return direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)")
 
 
 def extent(law: Law) -> Settings:
