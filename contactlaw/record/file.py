@@ -196,11 +196,11 @@ class Record:
         """
         import pandas as pd
 
-        table = pd.DataFrame({name: self.rows[name] for name in self._columns})
-        if "kind" in table:
-            table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
-        if "flags" in table:
-            table["flags"] = [", ".join(str(flag.name).lower() for flag in Validity(one)) for one in table["flags"]]
+        table = pd.DataFrame(self.rows)
+        for column, numbers in ("kind", Kind), ("flags", Validity):
+            if column in table:
+                words = [numbers(one).name or "" for one in table[column]]
+                table[column] = [one.lower().replace("|", ", ") for one in words]
         for n, name in enumerate(("sphere", "target")):
             names = [one.materials[n].name for one in self.bodies]
             table[name] = np.array([*names, ""])[self.which]
