@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -102,6 +101,8 @@ def compare(
     >>> found.restitution.round(3), round(found.chi_squared, 1), round(found.probability, 1)
     (array([0.985]), 0.6, 0.4)
     """
+    from scipy.special import chdtrc
+
     data = Measurements.of(data, (), pair.sphere.density)
     for name in _NEEDED:
         if getattr(data, name) is None:
@@ -123,17 +124,10 @@ def compare(
     if knows_law:
         shared = np.hstack([shared, by_law[:, None] * correlated(speed, radius / thickness)])
     chi_2 = chi_squared(off, own, shared)
-    chance, rms = _by_chance(chi_2, off.size), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
+    chance, rms = float(chdtrc(off.size, chi_2)), float(np.sqrt(np.average(off**2, weights=error**-2.0)))
     unknown = ["model"] * (not knows_law)
     if np.any(hit.overload > 1.0):
         bodies = {"the bead": pair.sphere, "the plate": pair.plate}
         unknown += [f"yield strength of {role}" for role, body in bodies.items() if body.specified_minimum]
     cor, flags = np.asarray(hit.restitution), np.asarray(hit.flags)
     return Comparison(data, cor, band, flags, chi_2, chance, if_exact, rms, (*unknown,))
-
-
-def _by_chance(chi_squared: float, count: int) -> float:
-    """Probability of a larger sum of squares of so many normal deviates, by its finite series."""
-    half, odd = max(0.5 * chi_squared, 1e-300), 0.5 * (count % 2)
-    terms = (math.exp(n * math.log(half) - half - math.lgamma(n + 1.0)) for n in np.arange(odd, 0.5 * count))
-    return min(math.fsum(terms) + bool(odd) * math.erfc(math.sqrt(half)), 1.0)

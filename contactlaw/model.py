@@ -28,6 +28,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup, by_method
 from contactlaw.answers.uncertainty import Uncertainty, uncertainty
+from contactlaw.answers.yields import yield_speeds
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, scalars, shaped
@@ -217,7 +218,7 @@ class ImpactModel:
         else:
             # a short cut for engines that call this once per collision
             if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
-                value = self._tabulated.restitution(speed, radius, thickness)
+                value = self._tabulated.restitution(speed, radius, thickness, 1.0)
                 if value == value:  # not NaN
                     return value
             sheets: Any = thickness
@@ -531,7 +532,7 @@ class ImpactModel:
         array([7.594, 6.156])
         """
         impacts = self._bodies.given(1.0, radius, thickness, mass=mass)
-        return shaped(self._tabulated.yield_speeds(impacts), impacts.shape)
+        return shaped(yield_speeds(self._bodies, impacts, self.largest_inelasticity), impacts.shape)
 
     def sensitivity(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None

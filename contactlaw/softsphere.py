@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching, kernel, tuple_of
-from contactlaw.answers.backend import OutsideTableError, too_thin
-from contactlaw.answers.solver import RTOL, solved_within
+from contactlaw.answers.solver import Solver
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import PlateConstants
@@ -52,6 +51,7 @@ from contactlaw.stepping.spring import (
     resized,
     unit_spring,
 )
+from contactlaw.table import Settings
 from contactlaw.walls.facet import Point
 
 __all__ = [
@@ -91,7 +91,6 @@ class _Batch(NamedTuple):
     plate: PlateConstants
     near: EdgeEcho | None
     softening: float
-    diameters: Array  # [m]
     springs: Any  # a row with the fields of Spring for each contact
     states: Any  # a row with the fields of State, or of SoftState
     values: Array  # the numbers of these rows
@@ -124,21 +123,14 @@ def _sliding_at(normal: Array, velocity: Array, n: int) -> tuple[Point, Point, f
 
 
 @kernel(cache=True)
-def _advance_all(batch: _Batch, overlap: Array, step: float) -> int:
-    """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
-
-    The deepest possible overlap is measured from where the plate is: its displacement is added.
-    """
-    for n in range(overlap.size):
-        if not -math.inf < overlap[n] <= batch.diameters[n] + batch.states[n].plate_displacement:
-            return n
+def _advance_all(batch: _Batch, overlap: Array, step: float) -> None:
+    """`advance` for arrays, in place."""
     for n in range(overlap.size):
         last, near = tuple_of(State, batch.states[n]), _near_at(batch.near, n)
         state = advance(batch.law, _spring_at(batch, n), last, overlap[n], step, near)
         for k in range(len(state)):
             batch.values[n, k] = state[k]
         batch.force[n] = state.force
-    return -1
 
 
 @kernel(cache=True)
@@ -160,14 +152,11 @@ def _slide_all(
 
 
 @kernel(cache=True)
-def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
+def _soften_all(batch: _Batch, overlap: Array, step: float) -> None:
     """`advance_softened` for arrays, as `_advance_all`.
 
     The COR of an impact is known from its second step on; a bead that was struck gets a new one.
     """
-    for n in range(overlap.size):
-        if not -math.inf < overlap[n] <= batch.diameters[n]:
-            return n
     for n in range(overlap.size):
         spring, last = _spring_at(batch, n), tuple_of(SoftState, batch.states[n])
         u = (overlap[n] - last.overlap) / step + last.force * step / spring.mass  # before the first force
@@ -183,7 +172,6 @@ def _soften_all(batch: _Batch, overlap: Array, step: float) -> int:
         for k in range(len(state)):
             batch.values[n, k] = state[k]
         batch.force[n] = state.force + state.kick
-    return -1
 
 
 @kernel(cache=True)
@@ -304,7 +292,6 @@ class Contacts:
             plate=unit.plate,
             near=edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME)),
             softening=float(softening),
-            diameters=2.0 * r,  # with this overlap a sphere is in the plate altogether
             springs=np.rec.fromarrays([*springs.values()], dtype=[(name, "f8") for name in springs]),
             states=states,
             values=states.view(np.float64).reshape(r.size, len(states.dtype)),
@@ -314,6 +301,7 @@ class Contacts:
             approach=np.zeros(r.size),
             restitution=np.ones(r.size),
         )
+        self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._pair, self._overlap, self._step, self._sliding = model.pair, np.zeros(r.size), 0.0, np.zeros((r.size, 3))
 
     @property
@@ -380,9 +368,11 @@ class Contacts:
         if softened and step != self._step and self.force.any():
             reason = f"must stay {self._step:g} s while softened contacts last"
             raise ArgumentError("step", step, reason)
-        wrong = (_soften_all if softened else _advance_all)(self._batch, overlap, step)
-        if wrong >= 0:
-            self._refuse(overlap[wrong], wrong)
+        # a sphere is at most as deep as its diameter below where the plate is now
+        possible = (overlap > -math.inf) & (overlap <= self._diameters + self.plate_displacement)
+        if not possible.all():
+            self._refuse(overlap, int(np.argmin(possible)))
+        (_soften_all if softened else _advance_all)(self._batch, overlap, step)
         self._overlap[:], self._step = overlap, step
         return self.force
 
@@ -422,17 +412,12 @@ class Contacts:
             raise ArgumentError("velocity", None, reason)
         return self._sliding
 
-    def _refuse(self, overlap: float, n: int) -> NoReturn:
-        if not math.isfinite(overlap):
-            what = "must be finite [m]"
-        else:
-            what = (
-                f"must be at most the diameter {self._batch.diameters[n]:.6g} m and the plate's "
-                f"displacement {self.plate_displacement[n]:.3g} m"
-            )
+    def _refuse(self, overlap: Array, n: int) -> NoReturn:
+        depth, displacement = self._diameters[n], self.plate_displacement[n]
+        most = f"the diameter {depth:.6g} m and the plate's displacement {displacement:.3g} m"
+        what = f"must be at most {most}" if math.isfinite(overlap[n]) else "must be finite [m]"
         remedy = "contactlaw.softsphere.time_step advises a step that is short enough"
-        reason = f"{what}; has the simulation blown up? {remedy}"
-        raise ArgumentError("overlap", overlap, reason, n)
+        raise ArgumentError("overlap", float(overlap[n]), f"{what}; has the simulation blown up? {remedy}", n)
 
 
 def most_softening(model: ImpactModel, speed: float, radius: float, slowest: float = 0.1, parcel: float = 1.0) -> float:
@@ -540,14 +525,13 @@ def time_step(
     r = r / parcel
     bodies = SphereOnPlate(model.pair, model.force_law)
     given = bodies.given(v, r, h, mass=None if mass is None else number("mass", mass))
-    units = bodies.numbers(bodies.impact(given))
-    lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
-    if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
-        raise OutsideTableError(0, too_thin(lam, largest), mass)
-    found = solved_within(bodies.data, units, RTOL, None, few=True)
-    time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
+    # too thin a plate is refused as by a lookup, but without a table
+    thinnest = Settings(largest_inelasticity=model.largest_inelasticity, largest_overload=1e20)
+    (found,) = Solver(bodies, extent=thinnest if model.outside == "raise" else None).far(given)
+    unit = float(found.time[0])
+    time = min(float(found.outcome.contact_time[0]), CONTACT_TIME) * unit
     steps: float = max(FEWEST_STEPS, (_ERROR / error) ** 0.4)
     if softening > 1.0:
-        steps, time = _SOFTENED_STEPS, CONTACT_TIME * float(units.time[0]) * softening**0.4
+        steps, time = _SOFTENED_STEPS, CONTACT_TIME * unit * softening**0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.
     return float(f"{time / steps:.6g}")

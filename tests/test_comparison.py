@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from command_line import refused
 from rebounds import RADIUS, THICKNESS
-from scipy import stats
 
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.cli import main
 from contactlaw.cli.parts import rebounds
-from contactlaw.comparison import _by_chance
 
 STEEL = cl.Material("my steel", 200e9, 0.29, 7800.0, 1.2e9, kind="metal", uncertainty={"yield_strength": 0.1})
 PAIR = cl.Pair(STEEL, "soda-lime-glass")
@@ -35,13 +33,6 @@ HEAD = """# title = "steel on glass"
 
 def data(cor, error):
     return {"speed": SPEED, "radius": RADIUS, "thickness": THICKNESS, "restitution": cor, "restitution_error": error}
-
-
-def test_the_probability_is_that_of_chi_squared():
-    for count in (1, 2, 3, 20, 201, 1000):
-        for square in (0.3 * count, count, 2.0 * count, 50.0 + 2.0 * count):
-            exact = stats.chi2.sf(square, count)
-            assert _by_chance(square, count) == pytest.approx(exact, rel=1e-9), (count, square)
 
 
 def test_data_that_scatter_as_stated_agree_by_chance_as_often_as_stated():

@@ -1,28 +1,15 @@
-"""What table and solver have in common: their methods and their errors.
-
-`contactlaw.answers.tabulated.TableLookup` looks impacts up, `contactlaw.answers.solver.Solver`
-integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
-"""
+"""Outcomes in parts, each found in one way, and the errors of impacts that have none."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlaw._arrays import Array, Integers, Mask, Places
-from contactlaw._errors import ArgumentError
-from contactlaw.equation import zener
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.outcome import History, Outcome, history
-from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.history import ForceHistory, with_units
-from contactlaw.physical.impacts import Impacts, check_finite
-from contactlaw.physical.rebound import Rebound, rebound
-from contactlaw.table import slides
-
-_CLOSE = 512  # samples between which the path of a sphere is a cubic
-_RTOL = 1e-10  # error allowed per step of histories
+from contactlaw.equation.outcome import Outcome
+from contactlaw.physical.impacts import Impacts
 
 
 class Part(NamedTuple):
@@ -41,88 +28,6 @@ class Part(NamedTuple):
 Ask = Callable[[Impacts], list[Part]]
 
 
-class Backend:
-    """Outcomes of impacts of a sphere on plates, and what follows from them."""
-
-    bodies: SphereOnPlate
-
-    def far(self, impacts: Impacts) -> list[Part]:
-        """Outcomes on plates from which nothing comes back."""
-        raise NotImplementedError
-
-    def near(self, impacts: Impacts) -> list[Part]:
-        """Outcomes near edges, on curved walls and on foundations, from which something comes back."""
-        raise NotImplementedError
-
-    def parts(self, impacts: Impacts) -> list[Part]:
-        """Outcomes of all impacts, in one part or several."""
-        near = impacts.remember
-        if near is None:
-            return self.far(impacts)
-        return split(impacts, near, self.near, lambda some: self.far(some.forgetting))
-
-    def rebounds(self, impacts: Impacts) -> Rebound:
-        """Everything about impacts."""
-        return self._rebounds(self.parts(impacts), impacts)
-
-    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
-        """Everything about the normal part, and the change of the sliding speed [mu V0].
-
-        `psi` are the sliding speeds before [mu V0].
-        """
-        parts, changes = self.parts(impacts), np.empty_like(psi)
-        for part in parts:
-            changes[part.places] = self.slid(part, psi[part.places])
-        return self._rebounds(parts, impacts), changes
-
-    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
-        """Contacts at even times from first touch to separation."""
-        if not (isinstance(samples, int | np.integer) and 2 <= samples <= 1_000_000):
-            raise ArgumentError("samples", samples, "must be an integer from 2 to 1 000 000")
-        columns = []
-        for part in self.parts(impacts):
-            units = self.bodies.numbers(self.bodies.impact(part.impacts))
-            flags = self._rebound(part).flags
-            lam, shape = part.outcome.inelasticity, part.impacts.shape
-            contacts, path = self.contacts(part, samples)
-            found = with_units(contacts, units, lam, shape, flags, path)
-            columns.append((part.places, {**found._asdict(), "flags": flags}))
-        whole = _joined(columns, impacts)
-        flags = whole.pop("flags")
-        together = ForceHistory(**whole)
-        together.flags = flags
-        check_finite(self.bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in together))
-        return together
-
-    def slid(self, part: Part, psi: Array) -> Array:
-        """Change of sliding speeds psi [mu V0], by integration."""
-        kappa = self.bodies.pair.tangential_ratio
-        after = slides.after(self.bodies.data, part.outcome, kappa, psi[:, None], edges=part.edges)
-        return np.asarray(psi - after[:, 0])
-
-    def contacts(self, part: Part, samples: int) -> tuple[History, Array | None]:
-        """Contacts over time on Hertz's scale, by integration, and near edges the displacement of the plate.
-
-        The plate is where the sphere would be without compression. The path of the sphere is the
-        integral of its speed, between samples that are close, by the cubic through speeds and forces.
-        """
-        every = 1 if part.edges is None else -(-_CLOSE // (samples - 1))
-        out = history(part.outcome.contact_time, every * (samples - 1) + 1)
-        zener.histories(self.bodies.data, part.outcome, _RTOL, out, part.edges)
-        if part.edges is None:
-            return out, None
-        step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force
-        moved = 0.5 * step * (u[:, 1:] + u[:, :-1]) + step * step / 12.0 * (f[:, 1:] - f[:, :-1])
-        path = np.pad(np.cumsum(moved, axis=1), ((0, 0), (1, 0))) - out.compression
-        return History(*(values[:, ::every] for values in out)), path[:, ::every]
-
-    def _rebound(self, part: Part) -> Rebound:
-        return rebound(self.bodies, *part[1:])
-
-    def _rebounds(self, parts: list[Part], impacts: Impacts) -> Rebound:
-        return Rebound(**_joined([(one.places, vars(self._rebound(one))) for one in parts], impacts))
-
-
 def split(impacts: Impacts, which: Mask, ask: Ask, ask_others: Ask) -> list[Part]:
     """Outcomes of impacts of two kinds."""
     if which.all() or not which.any():
@@ -134,7 +39,7 @@ def split(impacts: Impacts, which: Mask, ask: Ask, ask_others: Ask) -> list[Part
     return parts
 
 
-def _joined(columns: list[tuple[Any, dict[str, Any]]], impacts: Impacts) -> dict[str, Any]:
+def joined(columns: list[tuple[Any, dict[str, Any]]], impacts: Impacts) -> dict[str, Any]:
     """Put answers of parts of the impacts together; each has its places and its columns."""
     if len(columns) == 1:
         return columns[0][1]
@@ -214,22 +119,11 @@ def _above(value: float, limit: float) -> str:
     return " is above ".join(next(pair for pair in pairs if pair[0] != pair[1]))
 
 
-def refuse_to_yield(impacts: Impacts, beyond: Mask, limit: float) -> NoReturn:
-    """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
-    n = int(np.argmax(beyond))
-    heavy = "" if impacts.mass is None else f" and mass={impacts.mass[n]:g} kg"
-    bead = f"a bead of {impacts.radius[n]:g} m{heavy}"
-    thin = f"under {bead} the inelasticity at yield is above {limit:.4g}"
-    raise ArgumentError("thickness", impacts.thickness[n], f"too thin for the table: {thin}")
-
-
 @contextmanager
-def renumbered(some: Places, mass: Array | None = None) -> Iterator[None]:
-    """Make errors about one of some impacts name it by its number among all, and the mass given."""
+def renumbered(some: Places) -> Iterator[None]:
+    """Make errors about one of some impacts name it by its number among all."""
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
         impact, *rest = error.args
-        if mass is not None and isinstance(error, OutsideTableError):
-            rest[-1] = float(mass[impact])
         raise type(error)(int(some[impact]), *rest) from None

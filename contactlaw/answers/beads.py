@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import enable_caching
-from contactlaw.answers.solver import RTOL, solved_within
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, TableLookup, extent
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.arguments import broadcast, check, scalars
 from contactlaw.physical.bodies import TwoSpheres
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
@@ -69,17 +69,11 @@ class Beads:
         """Everything about impacts; radii [m] in the order in which the materials were given."""
         return self._bulk.rebounds(self._impacts(speed, radius, other_radius))
 
-    def restitutions(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> float | Array:
-        """COR of impacts, as in `rebounds`."""
-        return self.rebounds(speed, radius, other_radius).restitution
-
-    def integrated(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> float | Array:
-        """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
+    def integrated(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Rebound:
+        """Everything about impacts as in `rebounds`, by a solver that needs no table."""
         enable_caching()
-        impacts = self._impacts(speed, radius, other_radius)
-        units = self._bulk.bodies.numbers(self._bulk.bodies.impact(impacts))
-        found = solved_within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
-        return shaped(found.restitution, impacts.shape)
+        within = Solver(self._bulk.bodies, extent=extent(self.law))
+        return within.rebounds(self._impacts(speed, radius, other_radius))
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of beads of these radii [m] as a function of speed [m/s]."""
@@ -144,4 +138,4 @@ def restitution_sphere_sphere(
     >>> cl.restitution_sphere_sphere(bead, bead, [20.0, 80.0], 1e-3, 1e-3).round(4)
     array([0.9616, 0.6966])
     """
-    return Beads(sphere, other, law, Border("raise")).restitutions(speed, radius, other_radius)
+    return Beads(sphere, other, law, Border("raise")).rebounds(speed, radius, other_radius).restitution

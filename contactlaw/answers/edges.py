@@ -42,13 +42,7 @@ def _cor_near(
     law: Array, response: Array, pair: PairConstants, path: float, impact: Impact, edge_distance: float
 ) -> float:
     speed, radius, thickness, mass = impact
-    if not (
-        lookup.V_MIN <= speed <= lookup.V_MAX
-        and lookup.R_MIN <= radius <= lookup.R_MAX
-        and lookup.THINNEST * radius <= thickness
-        and edge_distance >= 0.0
-        and mass > 0.0
-    ):
+    if not (lookup.is_valid(speed, radius, thickness) and edge_distance >= 0.0 and mass > 0.0):
         return math.nan
     known = numbers(pair, law, impact)
     rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0

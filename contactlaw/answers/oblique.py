@@ -12,17 +12,16 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
-from contactlaw.answers.backend import Backend, renumbered
+from contactlaw.answers.backend import Part, renumbered
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical import oblique as kernels
 from contactlaw.physical.arguments import broadcast, check, vectors
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound
 from contactlaw.physical.plates import Thickness
-from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.vectors import Vector
 from contactlaw.table import lookup
 
@@ -30,7 +29,7 @@ Collide = Callable[..., tuple[Vector, Vector]]
 
 
 def oblique(
-    by: Backend,
+    by: Solver,
     speed: ArrayLike,
     sliding_speed: ArrayLike,
     radius: ArrayLike,
@@ -52,7 +51,7 @@ def oblique(
     whole = impacts.speed.reshape(impacts.shape or ())
     s, mu, _, _ = broadcast(sliding_speed=sliding_speed, friction=friction, speed=whole)
     check(sliding_speed=s, friction=mu)
-    return answer(by, by.bodies, impacts, mu, s)
+    return answer(by, impacts, mu, s)
 
 
 def collide(
@@ -70,7 +69,6 @@ def collide(
     (v, omega, n, w), shape = vectors(velocity=velocity, spin=spin, normal=normal, wall_velocity=wall_velocity)
     if not n.any(axis=1).all():
         raise ArgumentError("normal", normal, "must not be zero")
-    kernels.unit_all(n)
     mu, _, around = broadcast(friction=friction, velocity=np.empty(shape[:-1]))
     check(friction=mu)
     given = tabulated.bodies.given(np.ones(around or ()), radius, thickness, mass=mass)
@@ -86,8 +84,9 @@ def collide(
     check(speed=speed[moving], sliding_speed=size[moving])
     impacts = replace(given.part(moving), speed=speed[moving])
     with renumbered(moving):
-        hit, changed[moving] = _answer(tabulated, impacts, mu[moving], size[moving])
-    e[moving] = hit.restitution
+        parts, changed[moving] = _outcomes(tabulated, impacts, mu[moving], size[moving])
+    for part in parts:
+        e[moving[part.places]] = part.outcome.restitution
     check_finite(tabulated.bodies.pair, replace(given, speed=speed), e + changed)
     kernels.rebound_all(v, omega, n, w, given.radius, e, changed)
     return v.reshape(*whole, 3), omega.reshape(*whole, 3)
@@ -103,20 +102,23 @@ def collide_kernel(tabulated: TableLookup) -> Collide:
     return _jitted(tabulated.packed, tabulated.slides, tabulated.bodies.constants.mass)
 
 
-def answer(backend: Backend, bodies: SphereOnPlate, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
+def answer(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
     """Everything about impacts with these sliding speeds [m/s]."""
-    normal, changed = _answer(backend, impacts, friction, size)
-    return kernels.of(bodies, normal, impacts, friction, size, changed)
+    parts, changed = _outcomes(solver, impacts, friction, size)
+    return kernels.of(solver.bodies, solver.together(parts, impacts), impacts, friction, size, changed)
 
 
-def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> tuple[Rebound, Array]:
-    """Everything about the normal part, and the change of the sliding speed [m/s]."""
+def _outcomes(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> tuple[list[Part], Array]:
+    """Outcomes of the normal motion, and the change of the sliding speed [m/s]."""
     limit = friction * impacts.speed
     psi = np.zeros_like(limit)
     with np.errstate(over="ignore"):  # with next to no friction psi is inf
         np.divide(size, limit, out=psi, where=limit > 0.0)
-    normal, changed = backend.oblique(impacts, np.clip(psi, -FASTEST, FASTEST))
-    return normal, limit * changed
+    psi = np.clip(psi, -FASTEST, FASTEST)
+    parts, changed = solver.parts(impacts), np.empty_like(psi)
+    for part in parts:
+        changed[part.places] = solver.slid(part, psi[part.places])
+    return parts, limit * changed
 
 
 def _jitted(table: Array, slides: Array, density: float) -> Collide:

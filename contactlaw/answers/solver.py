@@ -2,39 +2,28 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
 import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.answers.backend import (
-    Backend,
-    OutsideTableError,
-    Part,
-    UnsolvedError,
-    refuse_to_yield,
-    renumbered,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import OutsideTableError, Part, UnsolvedError, joined, split, too_fast, too_thin
 from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import History, Outcome, history
 from contactlaw.physical.arguments import within
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.impacts import Impacts, check_finite
+from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.responses import REACH
-from contactlaw.physical.scaling import edges_of, numbers_of, swings_of, yield_share
+from contactlaw.physical.scaling import edges_of, swings_of
+from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
 RTOL = 1e-10  # error allowed per step, by default
+_CLOSE = 512  # samples between which the path of a sphere is a cubic
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
-_CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
-_ROUNDS = 30
-_SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
 
 
 def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> None:
@@ -47,13 +36,14 @@ def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> Non
         raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
 
 
-@dataclass(frozen=True, eq=False)
-class Solver(Backend):
-    """Integrates impacts; those outside a table of the given extent are refused as by a lookup."""
+class Solver:
+    """Integrates impacts; those outside a table of the given extent are refused as by a lookup.
 
-    bodies: SphereOnPlate
-    rtol: float = RTOL
-    extent: Settings | None = None
+    `contactlaw.answers.tabulated.TableLookup` looks impacts up, and may replace it.
+    """
+
+    def __init__(self, bodies: SphereOnPlate, rtol: float = RTOL, extent: Settings | None = None) -> None:
+        self.bodies, self.rtol, self.extent = bodies, rtol, extent
 
     @classmethod
     def within(cls, bodies: SphereOnPlate, rtol: float) -> Solver:
@@ -63,7 +53,11 @@ class Solver(Backend):
         return cls(bodies, rtol)
 
     def far(self, impacts: Impacts) -> list[Part]:
-        """Integrate impacts."""
+        """Outcomes on plates from which nothing comes back."""
+        return self.integrated(impacts)
+
+    def integrated(self, impacts: Impacts) -> list[Part]:
+        """Outcomes by integration, also near edges, on curved walls and on foundations."""
         bodies, count, edges = self.bodies, impacts.speed.size, None
         impact = bodies.impact(impacts)
         units = bodies.numbers(impact)
@@ -73,76 +67,84 @@ class Solver(Backend):
         elif impacts.frequency is not None and impacts.wall is not None:
             swing = impacts.wall, impacts.frequency
             edges = swings_of(bodies.pair.plate, bodies.constants, units, impact, *swing)
+        if self.extent is not None:
+            self._refuse_outside(self.extent, units, impacts)
         few = edges is not None and count <= _FEW
-        with renumbered(np.arange(count), impacts.mass):
-            found = solved_within(bodies.data, units, self.rtol, self.extent, few, edges)
+        numbers = units.inelasticity, units.yield_ratio
+        found = solved(bodies.data, *numbers, self.rtol, few=few, edges=edges, strength=units.strength)
         if impacts.frequency is not None:
             angle = found.contact_time * units.time * impacts.frequency
             within("thickness", angle, 0.0, REACH, "swings [rad] of a curved wall or foundation in the contact")
-        known, flags = (units.inelasticity, units.yield_ratio), np.zeros(count, dtype=np.int64)
-        return [Part(slice(None), impacts, units.time, known, found, flags, edges, False)]
+        flags = np.zeros(count, dtype=np.int64)
+        return [Part(slice(None), impacts, units.time, numbers, found, flags, edges, False)]
 
-    near = far
+    def _refuse_outside(self, extent: Settings, units: Numbers, impacts: Impacts) -> None:
+        """Refuse the first impact that is outside a table of this extent."""
+        thinnest, fastest = extent.largest_inelasticity, extent.largest_overload
+        lam, s = units.inelasticity, units.strength
+        chi = zener.elastic_compression(self.bodies.data, lam, s) / units.yield_ratio
+        for n in np.flatnonzero((lam > thinnest) | (chi > fastest))[:1].tolist():
+            reason = too_thin(lam[n], thinnest) if lam[n] > thinnest else too_fast(chi[n], fastest)
+            raise OutsideTableError(n, reason, None if impacts.mass is None else float(impacts.mass[n]))
 
-    def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does.
+    def parts(self, impacts: Impacts) -> list[Part]:
+        """Outcomes of all impacts, in one part or several."""
+        near = impacts.remember
+        if near is None:
+            return self.far(impacts)
+        return split(impacts, near, self.integrated, lambda some: self.far(some.forgetting))
 
-        There the largest compression is that of first flow. They are found by the secant method in
-        logarithms, in which the compression is nearly linear in the speed. It starts at the yield
-        speed on a half-space, which is the lowest of all plates.
+    def rebounds(self, impacts: Impacts) -> Rebound:
+        """Everything about impacts."""
+        return self.together(self.parts(impacts), impacts)
+
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
+        """Contacts at even times from first touch to separation."""
+        if not (isinstance(samples, int | np.integer) and 2 <= samples <= 1_000_000):
+            raise ArgumentError("samples", samples, "must be an integer from 2 to 1 000 000")
+        columns = []
+        for part in self.parts(impacts):
+            units = self.bodies.numbers(self.bodies.impact(part.impacts))
+            flags = self._rebound(part).flags
+            lam, shape = part.outcome.inelasticity, part.impacts.shape
+            contacts, path = self.contacts(part, samples)
+            found = with_units(contacts, units, lam, shape, flags, path)
+            columns.append((part.places, {**found._asdict(), "flags": flags}))
+        whole = joined(columns, impacts)
+        flags = whole.pop("flags")
+        together = ForceHistory(**whole)
+        together.flags = flags
+        check_finite(self.bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in together))
+        return together
+
+    def slid(self, part: Part, psi: Array) -> Array:
+        """Change of sliding speeds psi [mu V0], by integration."""
+        kappa = self.bodies.pair.tangential_ratio
+        after = slides.after(self.bodies.data, part.outcome, kappa, psi[:, None], edges=part.edges)
+        return np.asarray(psi - after[:, 0])
+
+    def contacts(self, part: Part, samples: int) -> tuple[History, Array | None]:
+        """Contacts over time on Hertz's scale, by integration, and near edges the displacement of the plate.
+
+        The plate is where the sphere would be without compression. The path of the sphere is the
+        integral of its speed, between samples that are close, by the cubic through speeds and forces.
         """
-        laws, constants, impact = self.bodies.data, self.bodies.constants, self.bodies.impact(impacts)
-        share, rated = yield_share(self.bodies.pair, self.bodies.law), constants.plate.rate.slope > 0.0
-        found = np.full(impacts.speed.size, math.inf)
-        if math.isinf(share):
-            return found
-        if not rated:
-            constants = constants._replace(yield_compression=share)
-        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones_like(found)))
-        log_speed = 1.25 * np.log(at_one.yield_ratio) - 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
-        limit = math.inf if self.extent is None else self.extent.largest_inelasticity
-        slope, last, gap = np.full_like(found, 0.75), np.full_like(found, math.nan), np.zeros_like(found)
-        never = np.zeros(found.size, dtype=np.bool_)
-        for _ in range(_ROUNDS):
-            units = numbers_of(constants, laws, impact._replace(speed=np.exp(log_speed)))
-            lam, y, s = units.inelasticity, units.yield_ratio, units.strength
-            thin = lam > 2.0 * limit
-            hit = solved(laws, np.where(thin, 0.0, lam), y, self.rtol, strength=s)
-            onset = np.log([force.scale_at(laws, one, force.LOG_ONSET) / force.growth_at(laws, one) for one in s])
-            never |= rated & (onset >= -math.log(share))  # the strength has outgrown the load
-            before, gap = gap, np.log(hit.compression_ratio * hit.elastic_compression / y) - onset
-            gap[thin | never] = 0.0
-            if np.abs(gap).max(initial=0.0) < _CONVERGED:
-                break
-            step = log_speed - last
-            moved = np.divide(gap - before, step, out=slope, where=np.abs(step) > 0.0)
-            slope = np.clip(moved, *_SLOPES)
-            last, log_speed = log_speed, log_speed - gap / slope
-        else:
-            n = int(np.abs(gap).argmax())
-            raise UnsolvedError(n, f"lambda = {lam[n]:.6g}", "no speed was found at which it yields")
-        if (lam > limit)[~never].any():
-            refuse_to_yield(impacts, (lam > limit) & ~never, limit)
-        return np.where(never, math.inf, np.exp(log_speed))
+        every = 1 if part.edges is None else -(-_CLOSE // (samples - 1))
+        out = history(part.outcome.contact_time, every * (samples - 1) + 1)
+        zener.histories(self.bodies.data, part.outcome, RTOL, out, part.edges)
+        if part.edges is None:
+            return out, None
+        step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force
+        moved = 0.5 * step * (u[:, 1:] + u[:, :-1]) + step * step / 12.0 * (f[:, 1:] - f[:, :-1])
+        path = np.pad(np.cumsum(moved, axis=1), ((0, 0), (1, 0))) - out.compression
+        return History(*(values[:, ::every] for values in out)), path[:, ::every]
 
+    def _rebound(self, part: Part) -> Rebound:
+        return rebound(self.bodies, *part[1:])
 
-def solved_within(
-    law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False, edges: Edges | None = None
-) -> Outcome:
-    """Integrate impacts up to the first one that is outside the extent, which is refused."""
-    lam, y, s = units.inelasticity, units.yield_ratio, units.strength
-    if extent is None:
-        return solved(law, lam, y, rtol, few=few, edges=edges, strength=s)
-    thin = extent.largest_inelasticity
-    beyond = int(np.argmax(np.append(lam > thin, True)))
-    inner = None if edges is None else outcome.part(edges, slice(beyond))
-    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner, strength=s[:beyond])
-    chi = found.elastic_compression / found.yield_ratio
-    for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
-        raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
-    if beyond < lam.size:
-        raise OutsideTableError(beyond, too_thin(lam[beyond], thin))
-    return found
+    def together(self, parts: list[Part], impacts: Impacts) -> Rebound:
+        """Everything about impacts whose outcomes were found in parts."""
+        return Rebound(**joined([(one.places, vars(self._rebound(one))) for one in parts], impacts))
 
 
 def solved(

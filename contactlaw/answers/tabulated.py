@@ -18,8 +18,8 @@ from contactlaw import laws
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import Backend, OutsideTableError, Part, renumbered, split
-from contactlaw.answers.solver import RTOL, Solver
+from contactlaw.answers.backend import OutsideTableError, Part, renumbered, split
+from contactlaw.answers.solver import Solver
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import History
 from contactlaw.laws import Law
@@ -57,11 +57,12 @@ class Border:
             self.clamped += more
 
 
-class TableLookup(Backend):
+class TableLookup(Solver):
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
-        self.bodies, self.given, self.border = bodies, given, border
+        super().__init__(bodies)
+        self.given, self.border = given, border
 
     @functools.cached_property
     def law(self) -> Law:
@@ -100,9 +101,9 @@ class TableLookup(Backend):
         return cache.cached_slides(self.table, self.bodies.pair.tangential_ratio)
 
     @functools.cached_property
-    def restitution(self) -> Callable[[float, float, float], float]:
-        """COR of one impact, whose arguments have to be floats; NaN outside the table."""
-        return functools.partial(python_entries()[0], self.packed)
+    def restitution(self) -> Callable[[float, float, float, float], float]:
+        """COR of one impact by speed, sizes and mass over that of a solid sphere, all floats; NaN outside the table."""
+        return functools.partial(_python_entry(), self.packed)
 
     @property
     def largest_inelasticity(self) -> float:
@@ -124,10 +125,6 @@ class TableLookup(Backend):
             check(speed=v, radius=r, thickness=h)
             out = np.ravel(self.rebounds(impacts).restitution)
         return out
-
-    def near(self, impacts: Impacts) -> list[Part]:
-        """Integrate impacts, whatever table there is."""
-        return Solver(self.bodies).near(impacts)
 
     def far(self, impacts: Impacts) -> list[Part]:
         """Look impacts up."""
@@ -151,9 +148,9 @@ class TableLookup(Backend):
         if lookup.fields(self.packed, False, found):
             beyond = np.flatnonzero(np.isnan(found.restitution))
             if self.border.outside == "solve":
-                return Solver(self.bodies).far(impacts)
+                return self.integrated(impacts)
             if self.border.outside == "raise":
-                with renumbered(beyond, None if impacts.mass is None else impacts.mass[beyond]):
+                with renumbered(beyond):
                     self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
             lookup.fields(self.packed, True, found)
             flags[beyond] = int(Validity.CLAMPED)
@@ -166,7 +163,8 @@ class TableLookup(Backend):
         if not math.exp(strength) > most:
             Solver(self.bodies, extent=self.table.settings).far(impacts)
         times = f"{math.exp(strength):.4g} times stronger, above {most:.4g}"
-        raise OutsideTableError(0, f"its rate makes the bodies {times}")
+        mass = None if impacts.mass is None else float(impacts.mass[0])
+        raise OutsideTableError(0, f"its rate makes the bodies {times}", mass)
 
     def slid(self, part: Part, psi: Array) -> Array:
         """Change of sliding speeds psi [mu V0]."""
@@ -185,20 +183,15 @@ class TableLookup(Backend):
         shapes.sample(self.bodies.data, self.shapes, part.outcome, out)
         return out, None
 
-    def yield_speeds(self, impacts: Impacts) -> Array:
-        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        given = extent(self.bodies.law) if self.given is None else self.table.settings
-        return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
-
     def curve(self, impacts: Impacts) -> Callable[[float], float]:
         """COR as a function of speed [m/s] of the sphere and the plate of one impact."""
-        at, table, mass = python_entries()[1], self.packed, self.bodies.impact(impacts).mass
-        known = impacts.radius.item(), impacts.thickness.item(), mass.item()
+        at = self.restitution
+        known = impacts.radius.item(), impacts.thickness.item(), self.bodies.impact(impacts).mass.item()
 
         def restitution(speed: float) -> float:
             if not isinstance(speed, float):  # the entry would take "5" and True for numbers
                 speed = scalars(speed=speed)[0].item()
-            value = at(table, speed, *known)
+            value = at(speed, *known)
             if value != value:  # NaN; half the time of a call of isnan
                 one = replace(impacts, speed=scalars(speed=speed)[0])
                 return self.restitutions(one).item()
@@ -211,7 +204,7 @@ class TableLookup(Backend):
         return NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
 
 
-def by_method(tabulated: TableLookup, method: str) -> Backend:
+def by_method(tabulated: TableLookup, method: str) -> Solver:
     """Table or solver, as the user says."""
     if method not in ("table", "solve"):
         raise ArgumentError("method", method, "must be 'table' or 'solve'")
@@ -219,12 +212,9 @@ def by_method(tabulated: TableLookup, method: str) -> Backend:
 
 
 @functools.cache
-def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
-    """Python's entries of `solid_on_plate` and `restitution_on_plate`; each argument a float."""
-    return (
-        direct(lookup.solid_on_plate, "float64(float64[::1], f8, f8, f8)"),
-        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)"),
-    )
+def _python_entry() -> Callable[..., float]:
+    """Python's entry of `restitution_on_plate`; each argument a float."""
+    return direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)")
 
 
 def extent(law: Law) -> Settings:

@@ -139,7 +139,7 @@ def _integrated(backend: Solver, at: Setting) -> Rebound:
     given = Impacts(at.speed, at.radius, at.thickness, at.speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)
-    return oblique.answer(backend, backend.bodies, given, at.friction, at.sliding_speed)
+    return oblique.answer(backend, given, at.friction, at.sliding_speed)
 
 
 def columns_of(hit: Rebound, at: Setting) -> Array:

@@ -21,7 +21,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
-from contactlaw.physical.vectors import Vector, cross, divided, dot, plus
+from contactlaw.physical.vectors import Vector, cross, divided, dot, plus, put, vector
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
 
@@ -63,9 +63,6 @@ class ObliqueRebound(Rebound):
     friction_energy: float | Array
 
 
-# The following kernels take numbers, and from Python arrays of them, too.
-
-
 class Sliding(NamedTuple):
     """How a bead approaches a plate."""
 
@@ -77,7 +74,7 @@ class Sliding(NamedTuple):
 @kernel
 def unit(n: Vector) -> Vector:
     """Direction of a vector, whose squares may be beyond the largest or least number."""
-    most = np.maximum(np.maximum(abs(n[0]), abs(n[1])), abs(n[2]))
+    most = max(abs(n[0]), abs(n[1]), abs(n[2]))
     n = divided(n, most)
     return divided(n, np.sqrt(dot(n, n)))
 
@@ -147,32 +144,29 @@ def collide(
     return rebound_of(v, omega, n, came, radius, e, changed)
 
 
-def unit_all(normal: Array) -> None:
-    """Replace vectors, which are rows, by their directions."""
-    normal[:] = np.transpose(unit(normal.T))  # type: ignore[arg-type]
-
-
-@np.errstate(all="ignore")  # callers refuse what is not finite
+@kernel(cache=True)
 def approach_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array, size: Array
 ) -> None:
-    """Speeds of beads towards plates and along them; vectors are rows."""
-    vectors: list[Any] = [velocity.T, spin.T, normal.T, wall.T]
-    with np.errstate(over="ignore", invalid="ignore"):  # speeds that are refused afterwards
-        speed[:], size[:], _ = sliding(*vectors, radius)  # type: ignore[call-arg]
+    """Speeds of beads towards plates and along them; vectors are rows, and normals get the length 1."""
+    for k in range(speed.size):
+        n = unit(vector(normal[k]))
+        put(normal[k], n)
+        speed[k], size[k], _ = sliding(vector(velocity[k]), vector(spin[k]), n, vector(wall[k]), radius[k])
 
 
-@np.errstate(all="ignore")  # of beads that recede the numbers have no meaning
+@kernel(cache=True)
 def rebound_all(
     velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array, changed: Array
 ) -> None:
     """Replace velocities and spins by those afterwards, where a bead does not recede."""
-    v, omega, n, w, r = velocity.T, spin.T, normal.T, wall.T, radius
-    came: Any = sliding(v, omega, n, w, r)  # type: ignore[arg-type]
-    hit = came.speed >= lookup.V_MIN
-    after = rebound_of(v, omega, n, came, r, e, changed)  # type: ignore[arg-type]
-    for rows, new in zip((velocity, spin), after, strict=True):
-        rows[hit] = np.transpose(new)[hit]
+    for k in range(e.size):
+        v, omega, n = vector(velocity[k]), vector(spin[k]), vector(normal[k])
+        came = sliding(v, omega, n, vector(wall[k]), radius[k])
+        if came.speed >= lookup.V_MIN:
+            v, omega = rebound_of(v, omega, n, came, radius[k], e[k], changed[k])
+            put(velocity[k], v)
+            put(spin[k], omega)
 
 
 def flows(strength: Any, modulus: float, hit: Any, friction: Any, size: Any, after: Any) -> Any:

@@ -15,7 +15,6 @@ import datetime
 import io
 import json
 import os
-import platform
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -197,11 +196,11 @@ class Record:
         """
         import pandas as pd
 
-        table = pd.DataFrame({name: self.rows[name] for name in self._columns})
-        if "kind" in table:
-            table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
-        if "flags" in table:
-            table["flags"] = [", ".join(str(flag.name).lower() for flag in Validity(one)) for one in table["flags"]]
+        table = pd.DataFrame(self.rows)
+        for column, numbers in ("kind", Kind), ("flags", Validity):
+            if column in table:
+                words = [numbers(one).name or "" for one in table[column]]
+                table[column] = [one.lower().replace("|", ", ") for one in words]
         for n, name in enumerate(("sphere", "target")):
             names = [one.materials[n].name for one in self.bodies]
             table[name] = np.array([*names, ""])[self.which]
@@ -218,8 +217,6 @@ class Record:
                     "units": _UNITS,
                     "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
                     "version_contactlaw": VERSION,
-                    "version_numpy": np.__version__,
-                    "version_python": platform.python_version(),
                     **self.made,
                 }
             )
@@ -376,48 +373,38 @@ def _read(path: Path) -> Record:
     try:
         content = content_of(path)
         if path.suffix.lower() == ".npy":
-            rows = saved(content)
-            names = rows.dtype.names or ()
-            if "time" not in names:
-                raise ValueError("its rows have no column time")
-            return Record(typed({name: rows[name] for name in names}))
+            rows = _saved(content)
+            return Record(typed({name: rows[name] for name in rows.dtype.names or ()}))
         with hdf5.opened(content) as file:
             return read_from(file)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
-def saved(content: bytes) -> Rows:
-    """Read rows with named columns from the content of a file of ``np.save``.
-
-    Raises
-    ------
-    ValueError
-        If it is another file, a damaged one, or one of other arrays.
-    """
+def _saved(content: bytes) -> Rows:
+    """Read rows with named columns from the content of a file of ``np.save``."""
     if not content.startswith(b"\x93NUMPY"):
         raise ValueError("no file of np.save")
     try:
         rows: Rows = np.load(io.BytesIO(content), allow_pickle=False)
     except Exception as error:  # a damaged head is evaluated as Python
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
-    if rows.dtype.names is None or rows.ndim != 1:
+    if rows.ndim != 1 or "time" not in (rows.dtype.names or ()):
         raise ValueError(
             f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
-            "columns, as the record of an engine has"
+            "columns, one of them time, as the record of an engine has"
         )
     return rows
 
 
 def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
     """Put the rows of two records of one run together."""
-    if one.rows.dtype != two.rows.dtype:
-        raise ValueError(f"{path}: has other columns than the file before it")
-    if one.rows.size and two.rows.size and bool(one.bodies) != bool(two.bodies):
-        raise ValueError(f"{path}: one of the files knows the materials, the other does not")
+    if not (one.rows.size and two.rows.size):
+        return one if one.rows.size else two
+    if one.lacks != two.lacks:
+        before, here = (each.lacks or "nothing" for each in (one, two))
+        raise ValueError(f"{path}: it lacks {here}, but the file before it lacks {before}")
     surface = one.surface
-    if (surface is None) != (two.surface is None):
-        raise ValueError(f"{path}: one of the files knows the walls, the other does not")
     if surface is not None and two.surface is not None:
         if not np.array_equal(surface.corners, two.surface.corners):
             raise ValueError(f"{path}: is of another run: its walls are others")

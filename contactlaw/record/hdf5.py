@@ -24,26 +24,22 @@ LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hun
 def opened(content: bytes) -> Iterator[h5py.File]:
     """Open a file that is in memory; what h5py cannot read of it is a ValueError."""
     try:
-        file = h5py.File(io.BytesIO(content), "r")
-    except Exception:
-        raise ValueError("no HDF5 file, or a damaged one") from None
-    with file:
-        try:
+        with h5py.File(io.BytesIO(content), "r") as file:
             yield file
-        except ValueError:  # a refusal, which has its message already
-            raise
-        except Exception as error:
-            raise ValueError(f"a damaged HDF5 file: {error}") from None
+    except ValueError:  # a refusal, which has its message already
+        raise
+    except Exception as error:
+        raise ValueError(f"no HDF5 file, or a damaged one: {error}") from None
 
 
 def group(parent: h5py.Group, name: str) -> h5py.Group:
     """Return a group within another."""
-    return _member(parent, name, h5py.Group, "a group")
+    return _member(parent, name, h5py.Group)
 
 
 def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[Any]:
     """Read a column of numbers, of `size` rows if that is given and of `LARGEST` at most."""
-    dataset = _member(parent, name, h5py.Dataset, "a dataset")
+    dataset = _member(parent, name, h5py.Dataset)
     where = f"dataset {dataset.name[1:]}"
     is_column = dataset.ndim == 1 and dataset.dtype.kind in "iuf" and dataset.size <= LARGEST
     if not (is_column and size in (None, dataset.size)):
@@ -70,11 +66,8 @@ def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) 
     return found.astype(np.int64)
 
 
-def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
-    path = f"{parent.name}/{name}".replace("//", "/")[1:]
+def _member(parent: h5py.Group, name: str, kind: type) -> Any:
     found = parent.get(name)
-    if found is None:
-        raise ValueError(f"it has no {path}, expected {expected}")
     if not isinstance(found, kind):
-        raise ValueError(f"{path} is a {type(found).__name__.lower()}, expected {expected}")
+        raise ValueError(f"it has no {kind.__name__.lower()} {parent.name}/{name}".replace(" //", " /"))
     return found

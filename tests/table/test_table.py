@@ -180,7 +180,9 @@ def test_packaged_table_is_what_this_version_builds():
     assert packaged.settings == built.settings
     for begin in (lookup.ELASTIC, lookup.END):
         values = [
-            np.polynomial.Polynomial(one.packed[begin : begin + lookup.DEGREE + 1])(np.linspace(0.0, one.packed[0], 200))
+            np.polynomial.Polynomial(one.packed[begin : begin + lookup.DEGREE + 1])(
+                np.linspace(0.0, one.packed[0], 200)
+            )
             for one in (packaged, built)
         ]
         np.testing.assert_allclose(*values, rtol=1e-12)

@@ -216,7 +216,7 @@ def _beads_of(model: ImpactModel) -> tuple[Any, Any]:
 
 def _record_memory(records: Any) -> NDArray[np.void]:
     """Empty rows for a number of impacts, which take memory only when they are written."""
-    if not isinstance(records, Integral) or isinstance(records, bool) or not 1 <= int(records) <= 10**9:
+    if not isinstance(records, Integral) or isinstance(records, bool) or not 1 <= int(records) <= 1e9:
         raise ArgumentError("records", records, "must be a whole number from 1 to 1e9")
     return np.empty(int(records) + ROWS, IMPACT)
 

@@ -84,7 +84,7 @@ def pair_coeff(
         beads = Beads(one, two, DEFAULT, Border("raise"))
         ratio = 0.5 * (beads.pair.sphere.poissons_ratio + beads.pair.plate.poissons_ratio)
         modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus * parcel**2.5 / softening
-        restitution = float(beads.integrated(speed, radius, radius))
+        restitution = float(beads.integrated(speed, radius, radius).restitution)
         types = f"{i} {j}" if len(found) > 1 else "* *"
         contact = hertz_material(modulus, restitution, ratio, tangential)
         lines.append(f"pair_coeff {types} {contact}")
