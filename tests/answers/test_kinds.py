@@ -58,3 +58,4 @@ def test_yield_begins_at_the_yield_speed(kind):
     for thickness in (R, math.inf):
         found = model.yield_speed(R, thickness)
         assert model.solve(found, R, thickness).overload == pytest.approx(1.0, abs=1e-9)
+        assert model.lookup(found, R, thickness).overload == pytest.approx(1.0, abs=1e-4)  # 2.5e-5 with a rate
