@@ -532,7 +532,7 @@ class ImpactModel:
         array([7.594, 6.156])
         """
         impacts = self._bodies.given(1.0, radius, thickness, mass=mass)
-        return shaped(yield_speeds(self._bodies, impacts, self.largest_inelasticity), impacts.shape)
+        return shaped(yield_speeds(self._tabulated, impacts), impacts.shape)
 
     def sensitivity(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None

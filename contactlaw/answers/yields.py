@@ -7,8 +7,8 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw.answers.backend import UnsolvedError
+from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation import force, zener
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.scaling import numbers_of, yield_share
 
@@ -17,22 +17,23 @@ _ROUNDS = 1000  # where flow depends on the rate, the compression may hardly out
 _SLOPE = 0.75  # d ln(largest compression/d_Y)/d ln(speed); most impacts have 2/3 to 4/5
 
 
-def yield_speeds(bodies: SphereOnPlate, impacts: Impacts, most: float) -> Array:
+def yield_speeds(tabulated: TableLookup, impacts: Impacts) -> Array:
     """Speeds [m/s] from which sphere or plate yields; inf where neither does.
 
     There the largest compression is that of first flow. Its logarithm is nearly linear in that of
     the speed. It starts at the yield speed on a half-space, which is the lowest of all plates.
-    `most` is the largest lambda up to which speeds are found.
+    Impacts whose lambda is beyond the table's are refused.
     """
+    bodies, most = tabulated.bodies, tabulated.largest_inelasticity
     laws, constants, impact = bodies.data, bodies.constants, bodies.impact(impacts)
     share, rated = yield_share(bodies.pair, bodies.law), constants.plate.rate.slope > 0.0
     if math.isinf(share):
-        return np.full(impacts.speed.size, math.inf)
+        return np.full_like(impacts.speed, math.inf)
     if not rated:
         constants = constants._replace(yield_compression=share)
-    at_one = numbers_of(constants, laws, impact._replace(speed=np.ones(impacts.speed.size)))
+    at_one = numbers_of(constants, laws, impact._replace(speed=np.ones_like(impacts.speed)))
     log_speed = 1.25 * np.log(at_one.yield_ratio) - 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
-    never = np.zeros(log_speed.size, dtype=np.bool_)
+    never = np.zeros_like(log_speed, bool)
     for _ in range(_ROUNDS):
         units = numbers_of(constants, laws, impact._replace(speed=np.exp(log_speed)))
         lam, s = units.inelasticity, units.strength

@@ -392,7 +392,7 @@ SAID = {
     "polymer": (
         cl.Pair(POM, "glass"),
         "fem",
-        ["WARNING: a polymer", "every impact: RATE_DEPENDENT: a polymer, or as soft and light"],
+        ["WARNING: a polymer", "every impact: RATE_DEPENDENT: a polymer, or a body as soft and light"],
     ),
     "soft steel": (
         cl.Pair("stainless-steel-304", "glass"),
