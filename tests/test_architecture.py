@@ -76,8 +76,8 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # line breaks, so that neither longer lines nor missing explanations save any. Other text of the
 # packages (sources of other languages, pages, numbers) counts in lines.
 SIZES = {
-    "contactlaw": 219_060,
-    "contactlaw/answers": 14_312,
+    "contactlaw": 219_053,
+    "contactlaw/answers": 14_309,
     "contactlaw/cli": 25_197,
     "contactlaw/emit": 8_758,
     "contactlaw/engines": 16_799,
@@ -94,7 +94,7 @@ SIZES = {
     "dem_demo": 15_979,
     "validation": 93_628,
     "tests": 276_398,
-    "all Python": 611_142,
+    "all Python": 611_135,
     "other text": 3_129,
 }
 FREE = {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}
