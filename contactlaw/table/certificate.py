@@ -14,7 +14,7 @@ from contactlaw.equation.outcome import FIELDS, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
 from contactlaw.table.grid import Grid
-from contactlaw.table.lookup import NEXT, STRETCH
+from contactlaw.table.lookup import STRETCH
 from contactlaw.table.sweep import Progress
 
 BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-3}
@@ -29,7 +29,7 @@ _SMALL_DENT = 0.01  # of the largest residual compression, above which errors of
 _SAMPLES = 33  # samples of a force history that are compared
 _HISTORIES = 1000  # at most so many histories are compared
 _AT_ENDS = 0.05  # share of the points with lambda = 0, and of those with the largest
-_NEAR_KINK = 0.02  # in ln p; some of the points lie this near to yield, on either side
+_NEAR_KINK = 0.01  # of a block of columns; some of the points lie this near to yield, on either side
 _CORNER = 1e-3  # jump of a loading curve's slope, relatively, that makes outcomes less smooth
 
 
@@ -127,22 +127,16 @@ def compare_histories(law: Law, rtol: float, packed: Array, looked: Outcome) -> 
 
 def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:
     """Draw inelasticities, yield ratios and ln k: some on the half-space, near yield, and below it."""
-    axes, u = grid.axes, generator.random((6, count))
+    axes, u = grid.axes, generator.random((5, count))
     # uniform in the root: COR changes most where lambda is small
     largest = STRETCH * axes.x_max / (1.0 - axes.x_max)
     lam = u[0] ** 2 * largest
     lam[u[1] < _AT_ENDS], lam[u[1] > 1.0 - _AT_ENDS] = 0.0, largest
     log_k = np.sort(u[2]) * grid.ladder[-1]
-    x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
-    square, *factors = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
-    g, own = np.sqrt(square), np.array(factors)
-    end = g * np.maximum(grid.end(x, own), 1.0)
-    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * g * own[0])
-    p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
-    kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
-    others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]
-    p = np.clip(np.select(kinds, others, p), slowest, top)
-    return lam, grid.yield_ratios(x, p, g, own), log_k
+    rung = np.array([np.interp(np.exp(log_k), grid.rungs[:, 0], column) for column in grid.rungs.T])
+    kinds = [u[3] < 0.2, u[3] < 0.4, u[3] < 0.4 + 0.1 * (axes.after > 0.0)]
+    t = np.select(kinds, [u[4], 1.0 + _NEAR_KINK * (2.0 * u[4] - 1.0), 2.0 + u[4]], 1.0 + u[4])
+    return lam, grid.yield_ratios(lam / (lam + STRETCH), t, rung), log_k
 
 
 def _named(law: Law, values: Outcome, balanced: bool) -> dict[str, Array]:

@@ -127,9 +127,9 @@ def read(path: str | os.PathLike[str]) -> Table:
         settings = Settings(**{name: type(one)(about[name]) for name, one in asdict(Settings()).items()})
         errors = about.get("certificate")
         table = Table(_law(arrays, about), settings, arrays["table"], arrays.get("histories"))
-        lookup.check(table.packed, len(STORED))
+        lookup.check(table.packed, 1 + len(STORED))
         if table.histories is not None:
-            lookup.check(table.histories, 2 * shapes.SIZE)
+            lookup.check(table.histories, shapes.WIDTH)
         return dataclasses.replace(table, certificate=None if errors is None else Certificate(**json.loads(errors)))
 
 

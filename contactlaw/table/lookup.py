@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
     NO_RATE,
@@ -44,7 +44,7 @@ from contactlaw.equation.numbers import (
     relaxes,
     scaled,
 )
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import STORED, Outcome
 
 # Input outside these limits is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead
 # above 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and
@@ -231,6 +231,7 @@ def weights(t: float) -> tuple[float, float, float, float]:
 
 Three = tuple[float, float, float]  # coefficients of a square in x
 ALIKE = (1.0, 0.0, 0.0)
+_STRONGEST = 1.0 + 1e-9  # largest way between two rungs; above 1 by rounding
 
 
 class Rung(NamedTuple):
@@ -239,7 +240,7 @@ class Rung(NamedTuple):
     lower: int  # of two rungs
     between: float  # way to the next, from 0 to 1
     g: float
-    later: Three  # factor of P, beside g
+    later: Three  # factor of P
     slower: Three  # factor of w^(1/4)
 
 
@@ -263,63 +264,50 @@ def _between(table: Array, at: int, way: float) -> float:
 
 
 @kernel(inline=True)
+def strength_at(axes: Axes, speed: float, radius: float) -> float:
+    """Strength k at the rate of an impact."""
+    return 1.0 + axes.slope * max(axes.log_rate + RATE_POWER * log(speed) - log(radius), 0.0)
+
+
+@kernel(inline=True)
+def strongest(table: Array, axes: Axes) -> float:
+    """Largest strength k of a table; infinite without a ladder."""
+    return float(table[HEADER + (int(axes.rungs) - 1) * RUNG]) if axes.rungs > 1.0 else math.inf
+
+
+class Place(NamedTuple):
+    """Place of an impact in a table: the nearest one, if it is outside."""
+
+    row: float
+    column: float
+    x: float
+    p: float
+    w: float  # w^(1/4)
+    root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5), if it is known
+    inside: bool
+
+
+@kernel(inline=True)
 def of_rung(series: tuple[float, ...], factor: Three, x: float) -> float:
     """Return P or w^(1/4) of a strength."""
     return powers(series, x) * (factor[0] + x * (factor[1] + x * factor[2]))
 
 
 @kernel(inline=True)
-def strongest(table: Array, axes: Axes) -> float:
-    """Largest strength k of a table; infinite without a ladder."""
-    rungs = int(axes.rungs)
-    return float(table[HEADER + (rungs - 1) * RUNG]) * (1.0 + 1e-9) if rungs > 1 else math.inf
-
-
-class Contact(NamedTuple):
-    """What plate, frequency and mass make of an impact."""
-
-    x: float
-    above: float  # p times stiff, over w^(1/4)
-    stiff: float  # exp(eta/4) of the plate's stiffening eta
-    root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5)
-
-
-@kernel(inline=True)
-def contact(
-    plate: PlateConstants,
-    scale: float,
-    speed: float,
-    radius: float,
-    thickness: float,
-    mass: float,
-    g: float,
-    thin: bool,
-    usual: bool,
-) -> Contact:
-    """Coordinate x of an impact, and what p follows from.
-
-    Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
-    without losses and of a solid sphere: then they become vector instructions.
-    """
-    root, slower = fifth_root(speed), 1.0
-    above = scale * root
-    if not usual:
-        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
-        plate, slower = pair.plate, pair.time
-        above *= math.sqrt(math.sqrt(slower))
-        if relaxes(plate):
-            log_time = math.log(radius * slower) - 0.2 * math.log(speed)
-            plate, root, growth = relaxed(plate, root, log_time)
-            above *= math.exp(-0.25 * (0.4 + plate.growth.yield_power) * growth)
-    if thin:  # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
-        part = plate.inelasticity * root * (radius * radius)
-        return Contact(part / (part + STRETCH * (thickness * thickness)), above, 1.0, root / slower)
-    ratio = radius / thickness
-    plate = scaled(plate, 1.0, 1.0, 1.0, g)
-    quarter = exp(0.25 * plate_stiffening(plate, root, ratio))
-    stiffer = (quarter * quarter) * (quarter * quarter)
-    lam = inelasticity_of(plate, root, ratio, stiffer)
-    return Contact(lam / (lam + STRETCH), above, quarter, root * stiffer / slower)
+def on_grid(
+    axes: Axes, w: tuple[float, ...], ends: tuple[float, ...], on: Rung, x: float, above: float, root: float
+) -> Place:
+    """Place of x and of p, which is `above` times w^(1/4)."""
+    near_x = x if 0.0 <= x <= axes.x_max else axes.x_max
+    elastic, end = of_rung(w, on.slower, near_x), max(of_rung(ends, on.later, near_x), 1.0)
+    p, top = above * elastic, max(axes.top * on.later[0], NEXT * end) if axes.after > 0.0 else end
+    near_p = p if p <= top else top
+    over, under, first = 2.0 * axes.beyond * (near_p - 1.0), near_p + end - 2.0, axes.below + 3.0
+    over, under, first = (2.0 * axes.below * near_p, near_p + 1.0, 0.0) if near_p <= 1.0 else (over, under, first)
+    after, last = (near_p > end) & (axes.after > 0.0), axes.below + axes.beyond + 6.0
+    over, under, first = (axes.after * (near_p - end), top - end, last) if after else (over, under, first)
+    inside = (near_x == x) & (near_p == p)
+    return Place(near_x * (axes.rows / axes.x_max), first + over / under, near_x, near_p, elastic, root, inside)
 
 
 @kernel(inline=True)
@@ -327,34 +315,6 @@ def is_valid(speed: float, radius: float, thickness: float) -> bool:
     """Whether an impact is in its limits; without a branch, so that loops become vectors."""
     valid = (speed >= V_MIN) & (speed <= V_MAX) & (thickness >= R_MIN)
     return valid & (radius >= R_MIN) & (radius <= R_MAX) & (THINNEST * radius <= thickness)
-
-
-@kernel(inline=True)
-def top_of(axes: Axes, end: float, later: float, g: float) -> float:
-    """Largest p of a table in which the law ends at `end`, by a factor later than that of slow impacts."""
-    beyond = max(axes.top * later, NEXT * end)
-    return max(beyond if axes.after > 0.0 else end, g)
-
-
-@kernel(inline=True)
-def column_of(axes: Axes, p: float, end: float, top: float, g: float) -> float:
-    """Column of p."""
-    over, under, first = 2.0 * axes.beyond * (p - g), p + end - 2.0 * g, axes.below + 3.0
-    over, under, first = (2.0 * axes.below * p, p + g, 0.0) if p <= g else (over, under, first)
-    after, last = (p > end) & (axes.after > 0.0) & (p > g), axes.below + axes.beyond + 6.0
-    over, under, first = (axes.after * (p - end), top - end, last) if after else (over, under, first)
-    return first + over / under
-
-
-class Place(NamedTuple):
-    """Place of an impact in a table."""
-
-    row: float
-    column: float  # -1 for bad input, and outside the table
-    x: float
-    p: float
-    root: float  # as in `Contact`
-    w: float  # w^(1/4)
 
 
 @kernel(inline=True)
@@ -367,61 +327,37 @@ def place(
     radius: float,
     thickness: float,
     mass: float,
-    g: float,
-    later: Three,
-    slower: Three,
+    on: Rung,
     thin: bool,
     usual: bool,
 ) -> Place:
-    """Place of one impact; `contact` says what the last two are."""
-    one = contact(plate, axes.scale, speed, radius, thickness, mass, g, thin, usual)
-    elastic, end, stiff = of_rung(w, slower, one.x), g * of_rung(ends, later, one.x), one.stiff
-    p, top = one.above * elastic, top_of(axes, end, g * later[0], g)
-    good = (one.x >= 0.0) & (one.x <= axes.x_max) & (p <= top * stiff) & is_valid(speed, radius, thickness)
-    # all p times stiff: one division less
-    row, column = one.x * (axes.rows / axes.x_max), column_of(axes, p, end * stiff, top * stiff, g * stiff)
-    return Place(row if good else 0.0, column if good else -1.0, one.x, p / stiff, one.root, elastic)
+    """Place of one impact.
 
-
-@kernel(inline=True)
-def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
-    """Interpolate a field from 4 x 4 of its coefficients in one rung, which begin at `at`; no index is negative."""
-    i, j = whole(row), whole(max(column, 0.0))
-    a0, a1, a2, a3 = weights(row - i)
-    b0, b1, b2, b3 = weights(column - j)
-    p = at + np.uint64(i) * stride + np.uint64(j)
-    q = p + stride
-    r = q + stride
-    o = r + stride
-    i1, i2, i3 = np.uint64(1), np.uint64(2), np.uint64(3)
-    c0 = a0 * table[p] + a1 * table[q] + a2 * table[r] + a3 * table[o]
-    c1 = a0 * table[p + i1] + a1 * table[q + i1] + a2 * table[r + i1] + a3 * table[o + i1]
-    c2 = a0 * table[p + i2] + a1 * table[q + i2] + a2 * table[r + i2] + a3 * table[o + i2]
-    c3 = a0 * table[p + i3] + a1 * table[q + i3] + a2 * table[r + i3] + a3 * table[o + i3]
-    found: float = ((b0 * c0 + b1 * c1) + (b2 * c2 + b3 * c3)) * (1.0 / 36.0)
-    return found
-
-
-@kernel(inline=True)
-def field(table: Array, axes: Axes, which: int, rung: int, between: float, row: float, column: float) -> float:
-    """Interpolate a field at a place and between two rungs."""
-    size, stride = np.uint64(int(axes.size)), np.uint64(int(axes.stride))
-    rungs = int(axes.rungs)
-    at = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + rung) * size
-    low = value(table, at, stride, row, column)
-    return low + between * (value(table, at + size, stride, row, column) - low) if rungs > 1 else low
-
-
-@kernel(inline=True)
-def cor_from(lost: float) -> float:
-    """COR from the field 1 - COR, whose spline may pass its limits by its error."""
-    return 1.0 - min(max(lost, 0.0), 1.0)
-
-
-@kernel(inline=True)
-def strength_at(axes: Axes, speed: float, radius: float) -> float:
-    """Strength k at the rate of an impact."""
-    return 1.0 + axes.slope * max(axes.log_rate + RATE_POWER * log(speed) - log(radius), 0.0)
+    Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
+    without losses and of a solid sphere: then they become vector instructions.
+    """
+    root, slower = fifth_root(speed), 1.0
+    above = axes.scale * root
+    if not usual:
+        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
+        plate, slower = pair.plate, pair.time
+        above *= math.sqrt(math.sqrt(slower))
+        if relaxes(plate):
+            log_time = math.log(radius * slower) - 0.2 * math.log(speed)
+            plate, root, growth = relaxed(plate, root, log_time)
+            above *= math.exp(-0.25 * (0.4 + plate.growth.yield_power) * growth)
+    if thin:  # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
+        part = plate.inelasticity * root * (radius * radius)
+        x, above = part / (part + STRETCH * (thickness * thickness)), above / on.g
+    else:
+        ratio = radius / thickness
+        plate = scaled(plate, 1.0, 1.0, 1.0, on.g)
+        quarter = exp(0.25 * plate_stiffening(plate, root, ratio))
+        stiffer = (quarter * quarter) * (quarter * quarter)
+        lam = inelasticity_of(plate, root, ratio, stiffer)
+        x, above, root = lam / (lam + STRETCH), above / (quarter * on.g), root * stiffer
+    at = on_grid(axes, w, ends, on, x, above, root / slower)
+    return tuple_of(Place, at, inside=at.inside & is_valid(speed, radius, thickness))
 
 
 @kernel(inline=True)
@@ -429,19 +365,78 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
     """Place of an impact, that of its strength, and this k."""
     axes, plate = axes_of(table), plate_of(table)
     strength = strength_at(axes, speed, radius) if axes.rungs > 1.0 else 1.0
-    on, usual = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0
-    w, ends, thin = series_at(table, ELASTIC), series_at(table, END), is_thin(plate.corrections)
-    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.later, on.slower, thin, usual)
-    column = at.column if strength <= strongest(table, axes) else -1.0
-    return Place(at.row, column, at.x, at.p, at.root, at.w), on, strength
+    on, usual, thin = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0, is_thin(plate.corrections)
+    w, ends = series_at(table, ELASTIC), series_at(table, END)
+    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on, thin, usual)
+    return tuple_of(Place, at, inside=at.inside & (on.between <= _STRONGEST)), on, strength
 
 
 @kernel(inline=True)
-def cor_at(table: Array, at: Place, on: Rung) -> float:
+def place_near(table: Array, x: float, above: float, strength: float) -> tuple[Place, Rung]:
+    """Nearest place to dimensionless numbers; p is `above` times w^(1/4)."""
+    axes = axes_of(table)
+    most = strongest(table, axes)
+    near = strength if strength <= most else most
+    on = rung_of(table, axes, near)
+    at = on_grid(axes, series_at(table, ELASTIC), series_at(table, END), on, x, above, math.nan)
+    return tuple_of(Place, at, inside=at.inside & (strength <= most * _STRONGEST)), on
+
+
+@kernel(inline=True)
+def place_at(table: Array, lam: float, y: float, log_strength: float) -> tuple[Place, Rung]:
+    """Nearest place to an inelasticity, a yield ratio and ln of a strength."""
+    unit = axes_of(table).unit
+    return place_near(table, lam / (lam + STRETCH), 1.0 / math.sqrt(math.sqrt(unit * y)), math.exp(log_strength))
+
+
+@kernel(inline=True)
+def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
+    """Interpolate in 4 x 4 coefficients of one rung, whose block begins at `at`; no index is negative."""
+    i, j = whole(row), whole(column)
+    a, b = weights(row - i), weights(column - j)
+    p, total = at + np.uint64(i) * stride + np.uint64(j), 0.0
+    for k in range(4):
+        q = p + np.uint64(k) * stride
+        low, high = b[0] * table[q] + b[1] * table[q + np.uint64(1)], b[2] * table[q + np.uint64(2)]
+        total += a[k] * (low + (high + b[3] * table[q + np.uint64(3)]))
+    return total * (1.0 / 36.0)
+
+
+@kernel(inline=True)
+def cor_at(table: Array, axes: Axes, rung: int, between: float, row: float, column: float) -> float:
+    """COR at a place and between two rungs; the spline of 1 - COR may pass its limits by its error."""
+    size, stride = np.uint64(int(axes.size)), np.uint64(int(axes.stride))
+    at = np.uint64(HEADER + RUNG * int(axes.rungs)) + np.uint64(rung) * size
+    lost = value(table, at, stride, row, column)
+    if axes.rungs > 1.0:
+        lost += between * (value(table, at + size, stride, row, column) - lost)
+    return 1.0 - min(max(lost, 0.0), 1.0)
+
+
+@kernel(inline=True)
+def cor_of(table: Array, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
-    if not at.column >= 0.0:
-        return math.nan
-    return cor_from(field(table, axes_of(table), 0, on.lower, on.between, at.row, at.column))
+    return cor_at(table, axes_of(table), on.lower, on.between, at.row, at.column) if at.inside else math.nan
+
+
+@kernel(inline=True)
+def four(
+    table: Array, axes: Axes, on: Rung, at: Place, begin: int, width: int
+) -> tuple[float, float, float, float]:
+    """Interpolate four numbers, of `width` that each node has beside each other from `begin` on."""
+    rungs, row, column = int(axes.rungs), int(at.row), int(at.column)
+    a, b = weights(at.row - row), weights(at.column - column)
+    v0 = v1 = v2 = v3 = 0.0
+    for k in range(16 * min(rungs, 2)):
+        i, j, m = k // 4 % 4, k % 4, k // 16
+        share = (on.between if m == 1 else 1.0 - on.between) * a[i] * b[j] / 36.0
+        node = (on.lower + m) * int(axes.size) + (row + i) * int(axes.stride) + column + j
+        p = np.uint64(begin + node * width)
+        v0 += share * table[p]
+        v1 += share * table[p + np.uint64(1)]
+        v2 += share * table[p + np.uint64(2)]
+        v3 += share * table[p + np.uint64(3)]
+    return v0, v1, v2, v3
 
 
 @kernel(cache=True)
@@ -453,7 +448,7 @@ def restitution_on_plate(table: Array, speed: float, radius: float, thickness: f
     if not is_valid(speed, radius, thickness):
         return math.nan
     at, on, _ = place_of(table, speed, radius, thickness, mass)
-    return cor_at(table, at, on)
+    return cor_of(table, at, on)
 
 
 @kernel(cache=True)
@@ -471,10 +466,8 @@ def _slice(values: Array, start: int, count: int) -> Array:
 class _Chunk(NamedTuple):
     """Places of some impacts, in scratch memory."""
 
-    row: Any
+    row: Any  # -1 outside the table
     column: Any
-    p: Any
-    root: Any
     strength: Any
     g: Any
     between: Any
@@ -482,17 +475,10 @@ class _Chunk(NamedTuple):
     rung: Any
 
 
-@kernel(inline=True)
-def _scratch() -> _Chunk:
-    """Allocate the places of a chunk."""
-    s = np.zeros((13, _CHUNK))
-    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7:], np.zeros(_CHUNK, dtype=np.int64))
-
-
 @kernel
-def _find_rungs(table: Array, speed: Array, radius: Array, out: _Chunk) -> None:
+def _find_rungs(table: Array, axes: Axes, speed: Array, radius: Array, out: _Chunk) -> None:
     """`rung_of` of the impacts of a chunk."""
-    axes, own = axes_of(table), out.own
+    own = out.own
     for i in range(speed.size):
         out.strength[i] = strength_at(axes, speed[i], radius[i])
     for i in range(speed.size):
@@ -503,46 +489,22 @@ def _find_rungs(table: Array, speed: Array, radius: Array, out: _Chunk) -> None:
 
 
 @kernel(inline=True)
-def _pair_of(at: Place, scales: bool) -> tuple[float, float]:
-    """Two numbers of a place."""
-    return (at.p, at.root) if scales else (at.row, at.column)
+def _find_places(
+    table: Array, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, thin: bool, usual: bool, rated: bool
+) -> None:
+    """Rows and columns of the impacts of a chunk.
 
-
-@kernel
-def _places(table: Array, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, scales: bool) -> None:
-    """Rows and columns of the impacts of a chunk, or else p and root.
-
-    Each loop writes two arrays: the compiler checks that what it reads is not what it writes, and
+    The loop writes two arrays: the compiler checks that what it reads is not what it writes, and
     makes no vector instructions where there is too much to check.
     """
-    axes, plate, ws, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
-    n, rated, thin, solid = v.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
-    usual, own, g = solid and not relaxes(plate), at.own, at.g
-    first, second = (at.p, at.root) if scales else (at.row, at.column)
-    if usual and thin:
-        for i in range(n):
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, True, True)
-            first[i], second[i] = _pair_of(one, scales)
-    elif usual and not rated:
-        for i in range(n):
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, False, True)
-            first[i], second[i] = _pair_of(one, scales)
-    elif usual:
-        for i in range(n):
-            later, slower = (own[0, i], own[1, i], own[2, i]), (own[3, i], own[4, i], own[5, i])
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, g[i], later, slower, False, True)
-            first[i], second[i] = _pair_of(one, scales)
-    else:
-        for i in range(n):
-            share, grown = 1.0 if solid else mass[i], g[i] if rated else 1.0
-            later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
-            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], share, grown, later, slower, thin, False)
-            first[i], second[i] = _pair_of(one, scales)
-    if rated and not scales:
-        most = strongest(table, axes)
-        for i in range(n):
-            second[i] = second[i] if at.strength[i] <= most else -1.0
+    axes, plate, w, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
+    rows, columns, own, g, solid = at.row, at.column, at.own, at.g, mass.size == 0
+    for i in range(v.size):
+        later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
+        slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
+        on = Rung(0, 0.0, g[i] if rated else 1.0, later, slower)
+        one = place(axes, w, ends, plate, v[i], r[i], h[i], 1.0 if usual or solid else mass[i], on, thin, usual)
+        rows[i], columns[i] = one.row if one.inside else -1.0, one.column if one.inside else 0.0
 
 
 @kernel(cache=True)
@@ -551,33 +513,29 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
 
     Masses are over those of solid spheres; without any, all spheres are.
     """
-    axes, at, bad = axes_of(table), _scratch(), 0
+    axes, plate, s, bad = axes_of(table), plate_of(table), np.zeros((11, _CHUNK)), 0
+    at = _Chunk(s[0], s[1], s[2], s[3], s[4], s[5:], np.zeros(_CHUNK, dtype=np.int64))
+    rated, thin, usual = axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0 and not relaxes(plate)
     for start in range(0, out.size, _CHUNK):
         n = min(_CHUNK, out.size - start)
         v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
         m, values = _slice(mass, start, n), _slice(out, start, n)
-        if axes.rungs > 1.0:
-            _find_rungs(table, v, r, at)
-        _places(table, v, r, h, m, at, False)
+        if rated:
+            _find_rungs(table, axes, v, r, at)
+        if usual and thin:
+            _find_places(table, v, r, h, m, at, True, True, False)
+        elif usual and not rated:
+            _find_places(table, v, r, h, m, at, False, True, False)
+        elif usual:
+            _find_places(table, v, r, h, m, at, False, True, True)
+        else:
+            _find_places(table, v, r, h, m, at, thin, False, rated)
         for i in range(n):
-            lost = field(table, axes, 0, at.rung[i], at.between[i], at.row[i], at.column[i])
-            values[i] = cor_from(lost) if at.column[i] >= 0.0 else math.nan
+            cor = cor_at(table, axes, at.rung[i], at.between[i], max(at.row[i], 0.0), at.column[i])
+            values[i] = cor if (at.row[i] >= 0.0) & (at.between[i] <= _STRONGEST) else math.nan
         for i in range(n):
             bad += values[i] != values[i]
     return bad
-
-
-@kernel(inline=True)
-def _overload(axes: Axes, p: float, g: float) -> float:
-    """Overload chi of p."""
-    square = (p / g) * (p / g)
-    return axes.unit * (square * square)
-
-
-@kernel(inline=True)
-def _fourth(root: float) -> float:
-    """Fourth power."""
-    return (root * root) * (root * root)
 
 
 @kernel(cache=True)
@@ -588,97 +546,14 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    axes, w, at, bad = axes_of(table), series_at(table, ELASTIC), _scratch(), 0
-    rated = axes.rungs > 1.0
-    for start in range(0, speed.size, _CHUNK):
-        n = min(_CHUNK, speed.size - start)
-        v, r, h, m = (
-            _slice(speed, start, n),
-            _slice(radius, start, n),
-            _slice(thickness, start, n),
-            _slice(mass, start, n),
-        )
-        if rated:
-            _find_rungs(table, v, r, at)
-        _places(table, v, r, h, m, at, False)
-        _places(table, v, r, h, m, at, True)
-        for i in range(n):
-            k, x, own = start + i, at.row[i] * (axes.x_max / axes.rows), at.own
-            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-            elastic = _fourth(of_rung(w, slower, x))
-            root[k], out.elastic_compression[k] = at.root[i], elastic
-            out.yield_ratio[k] = elastic / _overload(axes, at.p[i], at.g[i] if rated else 1.0)
-            out.inelasticity[k] = STRETCH * x / (1.0 - x)
-            out.strength[k] = log(at.strength[i]) if rated else 0.0
-        for i in range(n):
-            _write_fields(table, axes, at.rung[i], at.between[i], at.row[i], at.column[i], out, start + i)
-        for i in range(n):
-            if not at.column[i] >= 0.0:
-                _write_nan(out, start + i)
-                bad += 1
+    axes, bad = axes_of(table), 0
+    for n in range(speed.size):
+        share = 1.0 if mass.size == 0 else mass[n]
+        at, on, strength = place_of(table, speed[n], radius[n], thickness[n], share)
+        root[n] = at.root
+        _write(table, axes, at, on, math.log(strength), at.inside, out, n)
+        bad += not at.inside
     return bad
-
-
-@kernel(inline=True)
-def _write_fields(
-    table: Array, axes: Axes, rung: int, between: float, row: float, column: float, out: Outcome, n: int
-) -> None:
-    """Write the four fields that tables store, of impact n."""
-    out.restitution[n] = cor_from(field(table, axes, 0, rung, between, row, column))
-    out.contact_time[n] = 1.0 / field(table, axes, 1, rung, between, row, column)
-    out.wave_rate[n] = field(table, axes, 2, rung, between, row, column)
-    out.compression_ratio[n] = field(table, axes, 3, rung, between, row, column)
-
-
-@kernel(inline=True)
-def _write_nan(out: Outcome, n: int) -> None:
-    """Write NaN for the fields of impact n."""
-    out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
-    out.compression_ratio[n] = out.elastic_compression[n] = math.nan
-
-
-class Spot(NamedTuple):
-    """Place in a table of dimensionless numbers."""
-
-    row: float
-    column: float
-    rung: int
-    between: float
-    x: float
-    p: float
-    g: float
-    elastic: float  # w
-    inside: bool
-
-
-@kernel(inline=True)
-def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
-    """Nearest place in a table to x, p and a strength k."""
-    axes = axes_of(table)
-    most = strongest(table, axes)
-    within_x = x if 0.0 <= x <= axes.x_max else axes.x_max
-    within_k = strength if 1.0 <= strength <= most else min(most, 1e300)
-    on = rung_of(table, axes, within_k)
-    end = on.g * of_rung(series_at(table, END), on.later, within_x)
-    top = top_of(axes, end, on.g * on.later[0], on.g)
-    within_p = p if p <= top else top
-    column = column_of(axes, within_p, end, top, on.g)
-    inside = within_x == x and within_p == p and within_k == strength
-    w = _fourth(of_rung(series_at(table, ELASTIC), on.slower, within_x))
-    row = within_x * (axes.rows / axes.x_max)
-    return Spot(row, column, on.lower, on.between, within_x, within_p, on.g, w, inside)
-
-
-@kernel(inline=True)
-def spot_at(table: Array, lam: float, y: float, log_strength: float) -> Spot:
-    """Nearest place in a table to an inelasticity, a yield ratio and ln of a strength."""
-    axes, x, strength = axes_of(table), min(lam / (lam + STRETCH), 1.0), math.exp(log_strength)
-    within, on = (
-        x if 0.0 <= x <= axes.x_max else axes.x_max,
-        rung_of(table, axes, min(strength, strongest(table, axes))),
-    )
-    w = of_rung(series_at(table, ELASTIC), on.slower, within)
-    return spot_of(table, x, on.g * w / math.sqrt(math.sqrt(axes.unit * y)), strength)
 
 
 @kernel(cache=True)
@@ -688,17 +563,31 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     Outside the table fields are NaN, unless `clamp` takes the nearest point of its border, and
     puts that point's coordinates in place of the impact's.
     """
-    axes, outside = axes_of(table), 0
+    axes, bad = axes_of(table), 0
+    most = math.log(strongest(table, axes))
     for n in range(out.inelasticity.size):
-        at = spot_at(table, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
-        if not at.inside:
-            outside += 1
-            if not clamp:
-                _write_nan(out, n)
-                continue
-            out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
-            out.yield_ratio[n] = at.elastic / _overload(axes, at.p, at.g)
-            out.strength[n] = min(out.strength[n], math.log(strongest(table, axes)))
-        _write_fields(table, axes, at.rung, at.between, at.row, at.column, out, n)
-        out.elastic_compression[n] = at.elastic
-    return outside
+        at, on = place_at(table, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
+        if at.inside or clamp:
+            _write(table, axes, at, on, min(out.strength[n], most), True, out, n)
+        else:
+            _write(table, axes, at, on, out.strength[n], False, out, n)
+        bad += not at.inside
+    return bad
+
+
+@kernel(inline=True)
+def _write(
+    table: Array, axes: Axes, at: Place, on: Rung, log_strength: float, known: bool, out: Outcome, n: int
+) -> None:
+    """Write the fields of impact n; those that are not known are NaN."""
+    lost = rate = wave = deep = elastic = math.nan
+    if known:
+        begin = HEADER + int(axes.rungs) * (RUNG + int(axes.size))
+        lost, rate, wave, deep = four(table, axes, on, at, begin, len(STORED))
+        elastic, ratio = (at.w * at.w) * (at.w * at.w), at.w / at.p
+        out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
+        out.yield_ratio[n] = (ratio * ratio) * (ratio * ratio) / axes.unit
+        out.strength[n] = log_strength
+    out.restitution[n] = 1.0 - min(max(lost, 0.0), 1.0) if known else math.nan
+    out.contact_time[n], out.wave_rate[n] = 1.0 / rate, wave
+    out.compression_ratio[n], out.elastic_compression[n] = deep, elastic

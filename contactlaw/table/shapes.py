@@ -27,50 +27,45 @@ from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import Grid, ladder_of
+from contactlaw.table.lookup import Place, Rung, axes_of, four
 from contactlaw.table.sweep import Progress
 
 STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
+WIDTH = 2 * SIZE + 2  # numbers of a node, with two that are not used: four are read at a time
 _ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 8  # cells along lambda, up to yield, to the law's end and beyond
 _APART = 0.015  # largest distance of rungs in ln k
 
 
 def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
     """Solve shapes at nodes, times [T_H] and speeds [V0], and fit splines."""
-    coarse = grid.with_cells(_ROWS, _BELOW, max(_BEYOND, int(grid.axes.beyond)), _AFTER)
+    after = _AFTER * (grid.axes.after > 0.0)
+    coarse = grid.with_axes(rows=_ROWS, below=_BELOW, beyond=max(_BEYOND, grid.axes.beyond), after=after)
     coarse = coarse.on_ladder(law, ladder_of(law, _APART))
     lam, y, strength = coarse.nodes()
     flat = lam.ravel(), y.ravel(), strength.ravel()
-    states = np.empty((lam.size, 2, SIZE))
+    states = np.zeros((lam.size, WIDTH))
 
     def solve(part: slice) -> None:
         lams, ys, strengths = (each[part] for each in flat)
         status, time, speed = zener.shape(law.at_any_strength, lams, ys, rtol, SHARES, strengths)
         if status.any():
             raise sweep.failure("shape", law, lams, ys, *zener.failure(status))
-        states[part] = np.stack((time, speed), axis=1)[:, :, :-1]
+        states[part, : 2 * SIZE] = np.hstack((time[:, :-1], speed[:, :-1]))
 
     sweep.in_parts(solve, lam.size, progress)
-    return coarse.packed(coarse.coefficients(states.reshape(*lam.shape, 2 * SIZE)))
+    return coarse.packed(states.reshape(*lam.shape, WIDTH))
 
 
 @kernel
-def _states(shapes: Array, at: lookup.Spot, out: Array) -> None:
-    """Put times and speeds of one contact, between touch and separation, into out (2 SIZE,)."""
-    axes = lookup.axes_of(shapes)
-    rungs, stride, size, row, column = int(axes.rungs), int(axes.stride), int(axes.size), int(at.row), int(at.column)
-    a, b = lookup.weights(at.row - row), lookup.weights(at.column - column)
-    first = (at.rung * size + row * stride + column) * out.size + lookup.HEADER + lookup.RUNG * rungs
-    for n in range(out.size):
-        out[n] = 0.0
-    for k in range(16 * min(rungs, 2)):
-        i, j, m = k // 4 % 4, k % 4, k // 16
-        weight = (at.between if m == 1 else 1.0 - at.between) * a[i] * b[j] / 36.0
-        p = first + (m * size + i * stride + j) * out.size
-        for n in range(out.size):
-            out[n] += weight * shapes[p + n]
+def _states(shapes: Array, at: Place, on: Rung, out: Array) -> None:
+    """Put times and speeds of one contact, between touch and separation, into out (WIDTH,)."""
+    axes = axes_of(shapes)
+    begin = lookup.HEADER + lookup.RUNG * int(axes.rungs)
+    for n in range(0, WIDTH, 4):
+        out[n], out[n + 1], out[n + 2], out[n + 3] = four(shapes, axes, on, at, begin + n, WIDTH)
 
 
 @kernel
@@ -88,13 +83,14 @@ def _force(law: BlendedLaw, curve: UnloadingCurve, loading: bool, d: float, y: f
 def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
     samples = out.time.shape[1]
-    inner = np.empty(2 * SIZE)
+    inner = np.empty(WIDTH)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
         own = force.at_strength(law, found.strength[n])
-        _states(shapes, lookup.spot_at(shapes, lam, y, found.strength[n]), inner)
+        at, on = lookup.place_at(shapes, lam, y, found.strength[n])
+        _states(shapes, at, on, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # to assign to a slice takes the compiler a second
             t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]

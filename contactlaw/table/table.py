@@ -13,7 +13,7 @@ from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, sweep
 from contactlaw.table.certificate import CORNERED, Certificate, bounds, compare_histories, compare_outcomes
-from contactlaw.table.grid import AFTER, BELOW, Grid, Settings
+from contactlaw.table.grid import Grid, Settings
 from contactlaw.table.lookup import STRETCH
 from contactlaw.table.sweep import Progress, no_progress
 
@@ -91,7 +91,7 @@ def build(
     slow = dataclasses.replace(law, strengths=None)
     grid = grids.grid(slow, settings)
     for doubling in range(_DOUBLINGS):
-        grid = grid.with_cells(settings.rows, BELOW, settings.columns * 2**doubling, AFTER)
+        grid = grid.with_axes(beyond=settings.columns * 2**doubling)
         table = _certified(slow, settings, grid, points, progress, {})
         if not _exceeds(table):
             break
@@ -116,28 +116,26 @@ def _certified(
     law: Law, settings: Settings, grid: Grid, points: int, progress: Progress, known: dict[float, Array]
 ) -> Table:
     """Make a table from the nodes of a grid; the fields of rungs that are known need no solutions."""
-    lam, y, strength = grid.nodes()
-    rungs = []
+    nodes = grid.nodes()
     for n, log_k in enumerate(grid.ladder.tolist()):
         if log_k not in known:
-            at = lam[n].ravel(), y[n].ravel(), strength[n].ravel()
-            found = sweep.solved(law, *at, settings.rtol, progress)
-            known[log_k] = _stored(law, found, grid, grid.rungs[n, 2:]).reshape(len(STORED), *lam[n].shape)
-        rungs.append(known[log_k])
-    fields = [grid.coefficients(values) for values in np.array(rungs).swapaxes(0, 1)]
-    table = Table(law, settings, grid.packed(np.array(fields)))
+            lam, y, strength = (one[n] for one in nodes)
+            found = sweep.solved(law, lam.ravel(), y.ravel(), strength.ravel(), settings.rtol, progress)
+            elastic = grid.elastic(lam / (lam + STRETCH), grid.rungs[n, 5:])
+            known[log_k] = _stored(law, found, elastic.ravel()).reshape(*lam.shape, len(STORED))
+    values = np.stack([known[log_k] for log_k in grid.ladder.tolist()])
+    table = Table(law, settings, grid.packed(values, 0))
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
-def _stored(law: Law, found: Outcome, grid: Grid, own: Array) -> Array:
+def _stored(law: Law, found: Outcome, elastic: Array) -> Array:
     """Fields that tables keep, see `contactlaw.equation.outcome.STORED`."""
-    elastic = grid.elastic(found.inelasticity / (found.inelasticity + STRETCH), own)
     lost, extremes = 1.0 - found.restitution, outcome.extremes(elastic.size)
     zener.extremes(law.at_any_strength, found, extremes)
     still = found.inelasticity == 0.0  # no waves: energies alone give the COR, 1 exactly without losses
     lost[still] = 1.0 - np.sqrt(1.0 - extremes.plastic_fraction[still] - extremes.other_fraction[still])
     peak = found.compression_ratio * found.elastic_compression
-    return np.array([lost, 1.0 / found.contact_time, found.wave_rate, peak / elastic])
+    return np.stack([lost, 1.0 / found.contact_time, found.wave_rate, peak / elastic], axis=1)
 
 
 def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:
