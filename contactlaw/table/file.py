@@ -35,7 +35,7 @@ from contactlaw.table.grid import Settings
 from contactlaw.table.table import Table
 
 FORMAT = "contactlaw table"
-SCHEMA = 7
+SCHEMA = 8
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: a PC can hold it
 _DATASETS = {
@@ -127,9 +127,9 @@ def read(path: str | os.PathLike[str]) -> Table:
         settings = Settings(**{name: type(one)(about[name]) for name, one in asdict(Settings()).items()})
         errors = about.get("certificate")
         table = Table(_law(arrays, about), settings, arrays["table"], arrays.get("histories"))
-        lookup.check(table.packed, 1 + len(STORED))
+        lookup.check(table.packed, len(STORED))
         if table.histories is not None:
-            lookup.check(table.histories, shapes.WIDTH)
+            lookup.check(table.histories, 2 * shapes.SIZE)
         return dataclasses.replace(table, certificate=None if errors is None else Certificate(**json.loads(errors)))
 
 

@@ -169,17 +169,16 @@ class Grid:
         """Return the numbers of cells of each block of columns."""
         return [int(count) for count in (axes.below, axes.beyond, axes.after) if count]
 
-    def packed(self, values: Array, *alone: int) -> Array:
-        """Pack the grid and splines through values at nodes (rungs, rows, columns, numbers of a node).
+    def packed(self, values: Array) -> Array:
+        """Pack the grid and splines through values at nodes (rungs, rows, columns, fields).
 
-        The splines of numbers that are also needed `alone` come first. Rows and columns end with one
-        more coefficient: kernels read it with the weight 0, without a test.
+        Rows and columns end with one more coefficient: kernels read it with the weight 0, without a
+        test.
         """
         blocks = np.split(values, np.cumsum(np.array(self._cells(self.axes)) + 1)[:-1], axis=2)
         fitted = spline_coefficients(np.concatenate([spline_coefficients(block, 2) for block in blocks], axis=2), 1)
         fitted = np.pad(fitted, [(0, 0), (0, 1), (0, 1), (0, 0)], mode="edge")
-        first = (fitted[..., one].ravel() for one in alone)
-        return np.concatenate([self.head, self.rungs.ravel(), *first, fitted.ravel()])
+        return np.concatenate([self.head, self.rungs.ravel(), np.moveaxis(fitted, 3, 0).ravel()])
 
 
 def grid(law: Law, settings: Settings) -> Grid:

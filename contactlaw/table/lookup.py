@@ -44,7 +44,7 @@ from contactlaw.equation.numbers import (
     relaxes,
     scaled,
 )
-from contactlaw.equation.outcome import STORED, Outcome
+from contactlaw.equation.outcome import Outcome
 
 # Input outside these limits is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead
 # above 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and
@@ -128,7 +128,7 @@ def with_plate(table: Array, pair: PairConstants) -> Array:
 
 @kernel(inline=True)
 def axes_of(table: Array) -> Axes:
-    """Read the axes, as numbers: no later write to an array can change them."""
+    """Read the axes."""
     t = table
     return Axes(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], t[12], t[13])
 
@@ -152,6 +152,21 @@ def series_at(table: Array, k: int) -> tuple[float, ...]:
         (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6], c[k + 7])
         + (c[k + 8], c[k + 9], c[k + 10], c[k + 11], c[k + 12], c[k + 13], c[k + 14], c[k + 15])
     )  # fmt: skip
+
+
+class Head(NamedTuple):
+    """What kernels read of a table once, as numbers: no later write to an array can change them."""
+
+    axes: Axes
+    plate: PlateConstants
+    w: Any  # coefficients of the polynomial w^(1/4)
+    ends: Any  # and of P
+
+
+@kernel(inline=True)
+def head_of(table: Array) -> Head:
+    """Read the beginning of a table."""
+    return Head(axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END))
 
 
 @kernel(inline=True)
@@ -294,12 +309,11 @@ def of_rung(series: tuple[float, ...], factor: Three, x: float) -> float:
 
 
 @kernel(inline=True)
-def on_grid(
-    axes: Axes, w: tuple[float, ...], ends: tuple[float, ...], on: Rung, x: float, above: float, root: float
-) -> Place:
+def on_grid(head: Head, on: Rung, x: float, above: float, root: float) -> Place:
     """Place of x and of p, which is `above` times w^(1/4)."""
+    axes = head.axes
     near_x = x if 0.0 <= x <= axes.x_max else axes.x_max
-    elastic, end = of_rung(w, on.slower, near_x), max(of_rung(ends, on.later, near_x), 1.0)
+    elastic, end = of_rung(head.w, on.slower, near_x), max(of_rung(head.ends, on.later, near_x), 1.0)
     p, top = above * elastic, max(axes.top * on.later[0], NEXT * end) if axes.after > 0.0 else end
     near_p = p if p <= top else top
     over, under, first = 2.0 * axes.beyond * (near_p - 1.0), near_p + end - 2.0, axes.below + 3.0
@@ -319,25 +333,15 @@ def is_valid(speed: float, radius: float, thickness: float) -> bool:
 
 @kernel(inline=True)
 def place(
-    axes: Axes,
-    w: tuple[float, ...],
-    ends: tuple[float, ...],
-    plate: PlateConstants,
-    speed: float,
-    radius: float,
-    thickness: float,
-    mass: float,
-    on: Rung,
-    thin: bool,
-    usual: bool,
+    head: Head, speed: float, radius: float, thickness: float, mass: float, on: Rung, thin: bool, usual: bool
 ) -> Place:
     """Place of one impact.
 
     Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
     without losses and of a solid sphere: then they become vector instructions.
     """
-    root, slower = fifth_root(speed), 1.0
-    above = axes.scale * root
+    plate, root, slower = head.plate, fifth_root(speed), 1.0
+    above = head.axes.scale * root
     if not usual:
         pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
         plate, slower = pair.plate, pair.time
@@ -356,87 +360,76 @@ def place(
         stiffer = (quarter * quarter) * (quarter * quarter)
         lam = inelasticity_of(plate, root, ratio, stiffer)
         x, above, root = lam / (lam + STRETCH), above / (quarter * on.g), root * stiffer
-    at = on_grid(axes, w, ends, on, x, above, root / slower)
+    at = on_grid(head, on, x, above, root / slower)
     return tuple_of(Place, at, inside=at.inside & is_valid(speed, radius, thickness))
 
 
 @kernel(inline=True)
-def place_of(table: Array, speed: float, radius: float, thickness: float, mass: float) -> tuple[Place, Rung, float]:
+def place_of(
+    table: Array, head: Head, speed: float, radius: float, thickness: float, mass: float
+) -> tuple[Place, Rung, float]:
     """Place of an impact, that of its strength, and this k."""
-    axes, plate = axes_of(table), plate_of(table)
-    strength = strength_at(axes, speed, radius) if axes.rungs > 1.0 else 1.0
-    on, usual, thin = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0, is_thin(plate.corrections)
-    w, ends = series_at(table, ELASTIC), series_at(table, END)
-    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on, thin, usual)
+    strength = strength_at(head.axes, speed, radius) if head.axes.rungs > 1.0 else 1.0
+    on, usual = rung_of(table, head.axes, strength), not relaxes(head.plate) and mass == 1.0
+    at = place(head, speed, radius, thickness, mass, on, is_thin(head.plate.corrections), usual)
     return tuple_of(Place, at, inside=at.inside & (on.between <= _STRONGEST)), on, strength
 
 
 @kernel(inline=True)
-def place_near(table: Array, x: float, above: float, strength: float) -> tuple[Place, Rung]:
+def place_near(table: Array, head: Head, x: float, above: float, strength: float) -> tuple[Place, Rung]:
     """Nearest place to dimensionless numbers; p is `above` times w^(1/4)."""
-    axes = axes_of(table)
-    most = strongest(table, axes)
-    near = strength if strength <= most else most
-    on = rung_of(table, axes, near)
-    at = on_grid(axes, series_at(table, ELASTIC), series_at(table, END), on, x, above, math.nan)
+    most = strongest(table, head.axes)
+    on = rung_of(table, head.axes, strength if strength <= most else most)
+    at = on_grid(head, on, x, above, math.nan)
     return tuple_of(Place, at, inside=at.inside & (strength <= most * _STRONGEST)), on
 
 
 @kernel(inline=True)
-def place_at(table: Array, lam: float, y: float, log_strength: float) -> tuple[Place, Rung]:
+def place_at(table: Array, head: Head, lam: float, y: float, log_strength: float) -> tuple[Place, Rung]:
     """Nearest place to an inelasticity, a yield ratio and ln of a strength."""
-    unit = axes_of(table).unit
-    return place_near(table, lam / (lam + STRETCH), 1.0 / math.sqrt(math.sqrt(unit * y)), math.exp(log_strength))
+    above = 1.0 / math.sqrt(math.sqrt(head.axes.unit * y))
+    return place_near(table, head, lam / (lam + STRETCH), above, math.exp(log_strength))
 
 
 @kernel(inline=True)
 def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
     """Interpolate in 4 x 4 coefficients of one rung, whose block begins at `at`; no index is negative."""
     i, j = whole(row), whole(column)
-    a, b = weights(row - i), weights(column - j)
-    p, total = at + np.uint64(i) * stride + np.uint64(j), 0.0
+    a, b, c = weights(row - i), weights(column - j), (0.0, 0.0, 0.0, 0.0)
+    p, i1, i2, i3 = at + np.uint64(i) * stride + np.uint64(j), np.uint64(1), np.uint64(2), np.uint64(3)
     for k in range(4):
-        q = p + np.uint64(k) * stride
-        low, high = b[0] * table[q] + b[1] * table[q + np.uint64(1)], b[2] * table[q + np.uint64(2)]
-        total += a[k] * (low + (high + b[3] * table[q + np.uint64(3)]))
-    return total * (1.0 / 36.0)
+        share = a[k]
+        c0, c1, c2, c3 = share * table[p], share * table[p + i1], share * table[p + i2], share * table[p + i3]
+        c = (c[0] + c0, c[1] + c1, c[2] + c2, c[3] + c3)
+        p += stride
+    return ((b[0] * c[0] + b[1] * c[1]) + (b[2] * c[2] + b[3] * c[3])) * (1.0 / 36.0)
 
 
 @kernel(inline=True)
-def cor_at(table: Array, axes: Axes, rung: int, between: float, row: float, column: float) -> float:
-    """COR at a place and between two rungs; the spline of 1 - COR may pass its limits by its error."""
-    size, stride = np.uint64(int(axes.size)), np.uint64(int(axes.stride))
-    at = np.uint64(HEADER + RUNG * int(axes.rungs)) + np.uint64(rung) * size
-    lost = value(table, at, stride, row, column)
-    if axes.rungs > 1.0:
-        lost += between * (value(table, at + size, stride, row, column) - lost)
+def field(table: Array, axes: Axes, which: int, rung: int, between: float, row: float, column: float) -> float:
+    """Interpolate a field at a place and between two rungs."""
+    size, stride, rungs = np.uint64(int(axes.size)), np.uint64(int(axes.stride)), int(axes.rungs)
+    at = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + rung) * size
+    low = value(table, at, stride, row, column)
+    return low + between * (value(table, at + size, stride, row, column) - low) if rungs > 1 else low
+
+
+@kernel(inline=True)
+def field_at(table: Array, axes: Axes, which: int, at: Place, on: Rung) -> float:
+    """Interpolate a field of one impact."""
+    return field(table, axes, which, on.lower, on.between, at.row, at.column)
+
+
+@kernel(inline=True)
+def cor_from(lost: float) -> float:
+    """COR from the field 1 - COR, whose spline may pass its limits by its error."""
     return 1.0 - min(max(lost, 0.0), 1.0)
 
 
 @kernel(inline=True)
 def cor_of(table: Array, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
-    return cor_at(table, axes_of(table), on.lower, on.between, at.row, at.column) if at.inside else math.nan
-
-
-@kernel(inline=True)
-def four(
-    table: Array, axes: Axes, on: Rung, at: Place, begin: int, width: int
-) -> tuple[float, float, float, float]:
-    """Interpolate four numbers, of `width` that each node has beside each other from `begin` on."""
-    rungs, row, column = int(axes.rungs), int(at.row), int(at.column)
-    a, b = weights(at.row - row), weights(at.column - column)
-    v0 = v1 = v2 = v3 = 0.0
-    for k in range(16 * min(rungs, 2)):
-        i, j, m = k // 4 % 4, k % 4, k // 16
-        share = (on.between if m == 1 else 1.0 - on.between) * a[i] * b[j] / 36.0
-        node = (on.lower + m) * int(axes.size) + (row + i) * int(axes.stride) + column + j
-        p = np.uint64(begin + node * width)
-        v0 += share * table[p]
-        v1 += share * table[p + np.uint64(1)]
-        v2 += share * table[p + np.uint64(2)]
-        v3 += share * table[p + np.uint64(3)]
-    return v0, v1, v2, v3
+    return cor_from(field_at(table, axes_of(table), 0, at, on)) if at.inside else math.nan
 
 
 @kernel(cache=True)
@@ -447,7 +440,7 @@ def restitution_on_plate(table: Array, speed: float, radius: float, thickness: f
     """
     if not is_valid(speed, radius, thickness):
         return math.nan
-    at, on, _ = place_of(table, speed, radius, thickness, mass)
+    at, on, _ = place_of(table, head_of(table), speed, radius, thickness, mass)
     return cor_of(table, at, on)
 
 
@@ -490,20 +483,19 @@ def _find_rungs(table: Array, axes: Axes, speed: Array, radius: Array, out: _Chu
 
 @kernel(inline=True)
 def _find_places(
-    table: Array, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, thin: bool, usual: bool, rated: bool
+    head: Head, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, thin: bool, usual: bool, rated: bool
 ) -> None:
     """Rows and columns of the impacts of a chunk.
 
     The loop writes two arrays: the compiler checks that what it reads is not what it writes, and
     makes no vector instructions where there is too much to check.
     """
-    axes, plate, w, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
     rows, columns, own, g, solid = at.row, at.column, at.own, at.g, mass.size == 0
     for i in range(v.size):
         later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
         slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
         on = Rung(0, 0.0, g[i] if rated else 1.0, later, slower)
-        one = place(axes, w, ends, plate, v[i], r[i], h[i], 1.0 if usual or solid else mass[i], on, thin, usual)
+        one = place(head, v[i], r[i], h[i], 1.0 if usual or solid else mass[i], on, thin, usual)
         rows[i], columns[i] = one.row if one.inside else -1.0, one.column if one.inside else 0.0
 
 
@@ -513,7 +505,8 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
 
     Masses are over those of solid spheres; without any, all spheres are.
     """
-    axes, plate, s, bad = axes_of(table), plate_of(table), np.zeros((11, _CHUNK)), 0
+    head, s, bad = head_of(table), np.zeros((11, _CHUNK)), 0
+    axes, plate = head.axes, head.plate
     at = _Chunk(s[0], s[1], s[2], s[3], s[4], s[5:], np.zeros(_CHUNK, dtype=np.int64))
     rated, thin, usual = axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0 and not relaxes(plate)
     for start in range(0, out.size, _CHUNK):
@@ -523,16 +516,16 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
         if rated:
             _find_rungs(table, axes, v, r, at)
         if usual and thin:
-            _find_places(table, v, r, h, m, at, True, True, False)
+            _find_places(head, v, r, h, m, at, True, True, False)
         elif usual and not rated:
-            _find_places(table, v, r, h, m, at, False, True, False)
+            _find_places(head, v, r, h, m, at, False, True, False)
         elif usual:
-            _find_places(table, v, r, h, m, at, False, True, True)
+            _find_places(head, v, r, h, m, at, False, True, True)
         else:
-            _find_places(table, v, r, h, m, at, thin, False, rated)
+            _find_places(head, v, r, h, m, at, thin, False, rated)
         for i in range(n):
-            cor = cor_at(table, axes, at.rung[i], at.between[i], max(at.row[i], 0.0), at.column[i])
-            values[i] = cor if (at.row[i] >= 0.0) & (at.between[i] <= _STRONGEST) else math.nan
+            lost = field(table, axes, 0, at.rung[i], at.between[i], max(at.row[i], 0.0), at.column[i])
+            values[i] = cor_from(lost) if (at.row[i] >= 0.0) & (at.between[i] <= _STRONGEST) else math.nan
         for i in range(n):
             bad += values[i] != values[i]
     return bad
@@ -546,12 +539,12 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    axes, bad = axes_of(table), 0
+    head, bad = head_of(table), 0
     for n in range(speed.size):
         share = 1.0 if mass.size == 0 else mass[n]
-        at, on, strength = place_of(table, speed[n], radius[n], thickness[n], share)
+        at, on, strength = place_of(table, head, speed[n], radius[n], thickness[n], share)
         root[n] = at.root
-        _write(table, axes, at, on, math.log(strength), at.inside, out, n)
+        _write(table, head.axes, at, on, math.log(strength), at.inside, out, n)
         bad += not at.inside
     return bad
 
@@ -563,14 +556,14 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     Outside the table fields are NaN, unless `clamp` takes the nearest point of its border, and
     puts that point's coordinates in place of the impact's.
     """
-    axes, bad = axes_of(table), 0
-    most = math.log(strongest(table, axes))
+    head, bad = head_of(table), 0
+    most = math.log(strongest(table, head.axes))
     for n in range(out.inelasticity.size):
-        at, on = place_at(table, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
+        at, on = place_at(table, head, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
         if at.inside or clamp:
-            _write(table, axes, at, on, min(out.strength[n], most), True, out, n)
+            _write(table, head.axes, at, on, min(out.strength[n], most), True, out, n)
         else:
-            _write(table, axes, at, on, out.strength[n], False, out, n)
+            _write(table, head.axes, at, on, out.strength[n], False, out, n)
         bad += not at.inside
     return bad
 
@@ -582,12 +575,12 @@ def _write(
     """Write the fields of impact n; those that are not known are NaN."""
     lost = rate = wave = deep = elastic = math.nan
     if known:
-        begin = HEADER + int(axes.rungs) * (RUNG + int(axes.size))
-        lost, rate, wave, deep = four(table, axes, on, at, begin, len(STORED))
+        lost, rate = field_at(table, axes, 0, at, on), field_at(table, axes, 1, at, on)
+        wave, deep = field_at(table, axes, 2, at, on), field_at(table, axes, 3, at, on)
         elastic, ratio = (at.w * at.w) * (at.w * at.w), at.w / at.p
         out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
         out.yield_ratio[n] = (ratio * ratio) * (ratio * ratio) / axes.unit
         out.strength[n] = log_strength
-    out.restitution[n] = 1.0 - min(max(lost, 0.0), 1.0) if known else math.nan
+    out.restitution[n] = cor_from(lost) if known else math.nan
     out.contact_time[n], out.wave_rate[n] = 1.0 / rate, wave
     out.compression_ratio[n], out.elastic_compression[n] = deep, elastic

@@ -27,14 +27,13 @@ from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import Grid, ladder_of
-from contactlaw.table.lookup import Place, Rung, axes_of, four
+from contactlaw.table.lookup import field_at
 from contactlaw.table.sweep import Progress
 
 STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
-WIDTH = 2 * SIZE + 2  # numbers of a node, with two that are not used: four are read at a time
 _ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 8  # cells along lambda, up to yield, to the law's end and beyond
 _APART = 0.015  # largest distance of rungs in ln k
 
@@ -46,26 +45,17 @@ def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
     coarse = coarse.on_ladder(law, ladder_of(law, _APART))
     lam, y, strength = coarse.nodes()
     flat = lam.ravel(), y.ravel(), strength.ravel()
-    states = np.zeros((lam.size, WIDTH))
+    states = np.empty((lam.size, 2 * SIZE))
 
     def solve(part: slice) -> None:
         lams, ys, strengths = (each[part] for each in flat)
         status, time, speed = zener.shape(law.at_any_strength, lams, ys, rtol, SHARES, strengths)
         if status.any():
             raise sweep.failure("shape", law, lams, ys, *zener.failure(status))
-        states[part, : 2 * SIZE] = np.hstack((time[:, :-1], speed[:, :-1]))
+        states[part] = np.hstack((time[:, :-1], speed[:, :-1]))
 
     sweep.in_parts(solve, lam.size, progress)
-    return coarse.packed(states.reshape(*lam.shape, WIDTH))
-
-
-@kernel
-def _states(shapes: Array, at: Place, on: Rung, out: Array) -> None:
-    """Put times and speeds of one contact, between touch and separation, into out (WIDTH,)."""
-    axes = axes_of(shapes)
-    begin = lookup.HEADER + lookup.RUNG * int(axes.rungs)
-    for n in range(0, WIDTH, 4):
-        out[n], out[n + 1], out[n + 2], out[n + 3] = four(shapes, axes, on, at, begin + n, WIDTH)
+    return coarse.packed(states.reshape(*lam.shape, 2 * SIZE))
 
 
 @kernel
@@ -82,18 +72,17 @@ def _force(law: BlendedLaw, curve: UnloadingCurve, loading: bool, d: float, y: f
 @kernel(cache=True)
 def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
-    samples = out.time.shape[1]
-    inner = np.empty(WIDTH)
+    samples, head = out.time.shape[1], lookup.head_of(shapes)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
         own = force.at_strength(law, found.strength[n])
-        at, on = lookup.place_at(shapes, lam, y, found.strength[n])
-        _states(shapes, at, on, inner)
+        at, on = lookup.place_at(shapes, head, lam, y, found.strength[n])
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
-        for k in range(SIZE):  # to assign to a slice takes the compiler a second
-            t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]
+        for k in range(SIZE):
+            t[k + 1] = field_at(shapes, head.axes, k, at, on)
+            u[k + 1] = field_at(shapes, head.axes, SIZE + k, at, on)
         top = found.compression_ratio[n] * w_m
         curve = NO_CURVE
         residual = 0.0

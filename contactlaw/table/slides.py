@@ -26,7 +26,7 @@ from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import ladder_of, spline_coefficients
-from contactlaw.table.lookup import Place, Rung, axes_of, four, weights
+from contactlaw.table.lookup import Place, Rung, axes_of, field_at, weights
 from contactlaw.table.table import Table
 
 _NODES = 49  # of each range of psi
@@ -98,16 +98,17 @@ def change(slides: Array, at: Place, on: Rung, e: float, psi: float) -> float:
         return math.copysign(full, psi) if place >= 2.0 else math.nan
     second = place > 1.0
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
-    cell, axes = min(int(along), _NODES - 2), axes_of(slides)
-    begin = lookup.HEADER + lookup.RUNG * int(axes.rungs) + cell + (_NODES + 2 if second else 0)
-    c, v = weights(along - cell), four(slides, axes, on, at, begin, _WIDTH)
-    value = (c[0] * v[0] + c[1] * v[1] + c[2] * v[2] + c[3] * v[3]) / 6.0
+    cell, axes, value = min(int(along), _NODES - 2), axes_of(slides), 0.0
+    first, c = cell + (_NODES + 2 if second else 0), weights(along - cell)
+    for k in range(4):
+        value += c[k] * field_at(slides, axes, first + k, at, on) / 6.0
     return math.copysign(min(size * value, full), psi)
 
 
 @kernel(cache=True)
 def changes(slides: Array, found: Outcome, psi: Array, out: Array) -> None:
     """`change` of many impacts whose normal outcomes are inside the table."""
+    head = lookup.head_of(slides)
     for n in range(psi.size):
-        at, on = lookup.place_at(slides, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
+        at, on = lookup.place_at(slides, head, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
         out[n] = change(slides, at, on, found.restitution[n], psi[n])

@@ -124,7 +124,7 @@ def _certified(
             elastic = grid.elastic(lam / (lam + STRETCH), grid.rungs[n, 5:])
             known[log_k] = _stored(law, found, elastic.ravel()).reshape(*lam.shape, len(STORED))
     values = np.stack([known[log_k] for log_k in grid.ladder.tolist()])
-    table = Table(law, settings, grid.packed(values, 0))
+    table = Table(law, settings, grid.packed(values))
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
