@@ -456,47 +456,55 @@ def _slice(values: Array, start: int, count: int) -> Array:
     return values[start : start + count]
 
 
-class _Chunk(NamedTuple):
-    """Places of some impacts, in scratch memory."""
-
-    row: Any  # -1 outside the table
-    column: Any
-    strength: Any
-    g: Any
-    between: Any
-    own: Any  # `later` and `slower` of `Rung`, (6, impacts)
-    rung: Any
+# Where the numbers of a chunk of impacts begin in their scratch memory. It is one array: compilers
+# check that no write alters what is read, and make no vector instructions if there is much to check.
+_ROW, _COLUMN, _P, _W, _ROOTS = range(0, 5 * _CHUNK, _CHUNK)
+_STRENGTH, _LOWER, _BETWEEN, _G, _LATER = range(0, 5 * _CHUNK, _CHUNK)
+_SLOWER, _SCRATCH = 7 * _CHUNK, 10 * _CHUNK
 
 
-@kernel
-def _find_rungs(table: Array, axes: Axes, speed: Array, radius: Array, out: _Chunk) -> None:
-    """`rung_of` of the impacts of a chunk."""
-    own = out.own
-    for i in range(speed.size):
-        out.strength[i] = strength_at(axes, speed[i], radius[i])
-    for i in range(speed.size):
-        on = rung_of(table, axes, out.strength[i])
-        out.rung[i], out.between[i], out.g[i] = on.lower, on.between, on.g
-        own[0, i], own[1, i], own[2, i] = on.later
-        own[3, i], own[4, i], own[5, i] = on.slower
+@kernel(inline=True)
+def _three(s: Array, begin: int, i: int) -> Three:
+    """Coefficients of an impact's square."""
+    return s[begin + i], s[begin + _CHUNK + i], s[begin + 2 * _CHUNK + i]
 
 
 @kernel(inline=True)
 def _find_places(
-    head: Head, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, thin: bool, usual: bool, rated: bool
+    head: Head, v: Array, r: Array, h: Array, mass: Array, k: Array, s: Array, thin: bool, usual: bool, rated: bool
 ) -> None:
-    """Rows and columns of the impacts of a chunk.
-
-    The loop writes two arrays: the compiler checks that what it reads is not what it writes, and
-    makes no vector instructions where there is too much to check.
-    """
-    rows, columns, own, g, solid = at.row, at.column, at.own, at.g, mass.size == 0
+    """Places of a chunk of impacts; the column is -1 outside the table."""
+    solid = usual or mass.size == 0
     for i in range(v.size):
-        later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
-        slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-        on = Rung(0, 0.0, g[i] if rated else 1.0, later, slower)
-        one = place(head, v[i], r[i], h[i], 1.0 if usual or solid else mass[i], on, thin, usual)
-        rows[i], columns[i] = one.row if one.inside else -1.0, one.column if one.inside else 0.0
+        later, slower = (_three(k, _LATER, i), _three(k, _SLOWER, i)) if rated else (ALIKE, ALIKE)
+        on = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower)
+        at = place(head, v[i], r[i], h[i], 1.0 if solid else mass[i], on, thin, usual)
+        s[_ROW + i], s[_COLUMN + i] = at.row if at.inside else 0.0, at.column if at.inside else -1.0
+        s[_P + i], s[_W + i], s[_ROOTS + i] = at.p, at.w, at.root
+
+
+@kernel
+def _find(table: Array, head: Head, v: Array, r: Array, h: Array, mass: Array, k: Array, s: Array) -> None:
+    """Places of a chunk of impacts, and those of their strengths."""
+    rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
+    if rated:
+        for i in range(v.size):
+            k[_STRENGTH + i] = strength_at(head.axes, v[i], r[i])
+        for i in range(v.size):
+            on = rung_of(table, head.axes, k[_STRENGTH + i])
+            k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
+            k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
+            k[_SLOWER + i], k[_SLOWER + _CHUNK + i], k[_SLOWER + 2 * _CHUNK + i] = on.slower
+    if not usual or mass.size > 0:
+        _find_places(head, v, r, h, mass, k, s, thin, False, rated)
+    elif thin:
+        _find_places(head, v, r, h, mass, k, s, True, True, False)
+    elif rated:
+        _find_places(head, v, r, h, mass, k, s, False, True, True)
+    else:
+        _find_places(head, v, r, h, mass, k, s, False, True, False)
+    for i in range(v.size):
+        s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
 
 
 @kernel(cache=True)
@@ -505,27 +513,16 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
 
     Masses are over those of solid spheres; without any, all spheres are.
     """
-    head, s, bad = head_of(table), np.zeros((11, _CHUNK)), 0
-    axes, plate = head.axes, head.plate
-    at = _Chunk(s[0], s[1], s[2], s[3], s[4], s[5:], np.zeros(_CHUNK, dtype=np.int64))
-    rated, thin, usual = axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0 and not relaxes(plate)
+    head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     for start in range(0, out.size, _CHUNK):
         n = min(_CHUNK, out.size - start)
         v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
-        m, values = _slice(mass, start, n), _slice(out, start, n)
-        if rated:
-            _find_rungs(table, axes, v, r, at)
-        if usual and thin:
-            _find_places(head, v, r, h, m, at, True, True, False)
-        elif usual and not rated:
-            _find_places(head, v, r, h, m, at, False, True, False)
-        elif usual:
-            _find_places(head, v, r, h, m, at, False, True, True)
-        else:
-            _find_places(head, v, r, h, m, at, thin, False, rated)
+        values = _slice(out, start, n)
+        _find(table, head, v, r, h, _slice(mass, start, n), k, s)
         for i in range(n):
-            lost = field(table, axes, 0, at.rung[i], at.between[i], max(at.row[i], 0.0), at.column[i])
-            values[i] = cor_from(lost) if (at.row[i] >= 0.0) & (at.between[i] <= _STRONGEST) else math.nan
+            row, column = s[_ROW + i], s[_COLUMN + i]
+            lost = field(table, head.axes, 0, int(k[_LOWER + i]), k[_BETWEEN + i], row, max(column, 0.0))
+            values[i] = cor_from(lost) if column >= 0.0 else math.nan
         for i in range(n):
             bad += values[i] != values[i]
     return bad
@@ -539,13 +536,20 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    head, bad = head_of(table), 0
-    for n in range(speed.size):
-        share = 1.0 if mass.size == 0 else mass[n]
-        at, on, strength = place_of(table, head, speed[n], radius[n], thickness[n], share)
-        root[n] = at.root
-        _write(table, head.axes, at, on, math.log(strength), at.inside, out, n)
-        bad += not at.inside
+    head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
+    axes = head.axes
+    for start in range(0, speed.size, _CHUNK):
+        n = min(_CHUNK, speed.size - start)
+        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
+        _find(table, head, v, r, h, _slice(mass, start, n), k, s)
+        for i in range(n):
+            row, column = s[_ROW + i], s[_COLUMN + i]
+            x, root[start + i] = row * (axes.x_max / axes.rows), s[_ROOTS + i]
+            at = Place(row, column, x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
+            on = Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
+            log_strength = log(k[_STRENGTH + i]) if axes.rungs > 1.0 else 0.0
+            _write(table, axes, at, on, log_strength, at.inside, out, start + i)
+            bad += not at.inside
     return bad
 
 
