@@ -129,7 +129,7 @@ def read(path: str | os.PathLike[str]) -> Table:
         table = Table(_law(arrays, about), settings, arrays["table"], arrays.get("histories"))
         lookup.check(table.packed, len(STORED))
         if table.histories is not None:
-            lookup.check(table.histories, 2 * shapes.SIZE)
+            lookup.check(table.histories, shapes.FIELDS)
         return dataclasses.replace(table, certificate=None if errors is None else Certificate(**json.loads(errors)))
 
 
