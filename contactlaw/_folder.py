@@ -18,7 +18,7 @@ def folder() -> Path | None:
 
     Raises
     ------
-    RuntimeError
+    FileNotFoundError
         If it would be in the user's home folder and there is none, as in a container whose user
         has no entry in the list of users.
     """
@@ -30,7 +30,10 @@ def folder() -> Path | None:
 
         # without a home folder old versions of platformdirs leave the ~: expanding it raises
         chosen = platformdirs.user_cache_dir("contactlaw", appauthor=False)
-    path = Path(chosen).expanduser()
+    try:
+        path = Path(chosen).expanduser()
+    except RuntimeError as error:
+        raise FileNotFoundError(str(error)) from error
     return path if is_private(path) else None
 
 

@@ -49,7 +49,7 @@ def code_folder() -> Path | None:
                 said = "the first use of this version compiles it, for about half a minute"
                 print(f"contactlaw: {said}; kept in {home}", file=sys.stderr)
         return folder
-    except (OSError, RuntimeError) as error:
+    except OSError as error:
         warn_once(str(error))
         return None
 

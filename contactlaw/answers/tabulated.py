@@ -91,9 +91,7 @@ class TableLookup(Solver):
     @functools.cached_property
     def shapes(self) -> Array:
         """The shapes of force histories, which a first one takes a second to add to the table."""
-        found = cache.cached_shapes(self.table).histories
-        assert found is not None
-        return found
+        return cache.cached_shapes(self.table)
 
     @functools.cached_property
     def slides(self) -> Array:

@@ -243,13 +243,11 @@ def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Ed
     out.force[:, -1] = 0.0
 
 
-def shape(
-    law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0
-) -> Notes:
+def shape(law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0) -> Notes:
     """Find when, how fast and with which force q passes given shares of its largest value.
 
     There are 2 n points for n rising shares up to 1, first while loading, then back down to 0,
-    separation; their times are NaN where an impact did not solve.
+    separation.
     """
     top = _run(TO_THE_TOP, law, lam, y, rtol, strength=strength)
     w, left = top.peak_compression[:, None], top.residual_compression[:, None]
@@ -257,8 +255,7 @@ def shape(
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    solutions = _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
-    notes.time[solutions.status != OK] = math.nan
+    _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
     return notes
 
 

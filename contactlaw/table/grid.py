@@ -170,15 +170,35 @@ class Grid:
         return [int(count) for count in (axes.below, axes.beyond, axes.after) if count]
 
     def packed(self, values: Array) -> Array:
-        """Pack the grid and splines through values at nodes (rungs, rows, columns, fields).
+        """Pack the grid and splines through values at its nodes, one after the other (nodes, fields).
 
         Rows and columns end with one more coefficient: kernels read it with the weight 0, without a
         test.
         """
-        blocks = np.split(values, np.cumsum(np.array(self._cells(self.axes)) + 1)[:-1], axis=2)
+        axes = self.axes
+        stride = int(axes.stride) - 2 * len(self._cells(axes)) - 1  # nodes of a row
+        values = values.reshape(int(axes.rungs), int(axes.rows) + 1, stride, -1)
+        blocks = np.split(values, np.cumsum(np.array(self._cells(axes)) + 1)[:-1], axis=2)
         fitted = spline_coefficients(np.concatenate([spline_coefficients(block, 2) for block in blocks], axis=2), 1)
         fitted = np.pad(fitted, [(0, 0), (0, 1), (0, 1), (0, 0)], mode="edge")
         return np.concatenate([self.head, self.rungs.ravel(), np.moveaxis(fitted, 3, 0).ravel()])
+
+
+def check(packed: Array, fields: int) -> None:
+    """Refuse an array that is no table of so many numbers at a node.
+
+    Raises
+    ------
+    ValueError
+        If it is none: kernels would read beyond its end.
+    """
+    grid = Grid.of(packed)
+    axes, counts = grid.axes, np.array([*grid.axes[1:5], grid.axes.rungs])
+    whole = np.isfinite(packed).all() and (counts == abs(counts.round())).all() and axes.rungs >= 1.0
+    rises = (np.diff(grid.rungs[:, 0]) > 0.0).all() and (grid.rungs[:, 1] > 0.0).all()
+    size = lookup.HEADER + axes.rungs * (RUNG + fields * axes.size)
+    if not (whole and rises and grid.with_axes().axes == axes and packed.size == size):
+        raise ValueError(f"its table of {packed.size} numbers does not fit its axes")
 
 
 def grid(law: Law, settings: Settings) -> Grid:

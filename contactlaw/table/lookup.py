@@ -59,6 +59,7 @@ THINNEST = 0.01
 STRETCH = 2.0  # c of x = lambda/(lambda + c)
 DEGREE = 15  # of the polynomials w^(1/4) and P
 NO_MASSES = np.empty(0)
+_NUMBERS = Outcome._fields.index("inelasticity")  # where the numbers begin by which an impact is given
 _CHUNK = 256  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
@@ -91,26 +92,6 @@ HEADER = END + DEGREE + 1  # where the rungs begin
 # Numbers of a rung: k, g^2, and squares in x, the factors of P and w^(1/4) of slow impacts.
 RUNG = 8
 NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it goes on
-
-
-def check(table: Array, fields: int) -> None:
-    """Refuse an array that is no table of so many numbers at a node.
-
-    Raises
-    ------
-    ValueError
-        If it is none: kernels would read beyond its end.
-    """
-    axes = Axes(*table[: len(Axes._fields)].tolist())
-    counts = np.array([*axes[1:5], axes.rungs])
-    if not (np.isfinite(table).all() and (counts >= 0).all() and (counts == counts.round()).all() and axes.rungs >= 1):
-        raise ValueError("its table has no such axes")
-    stride = 1 + sum(int(count) + 3 for count in axes[2:5] if count)
-    rungs, size = int(axes.rungs), (int(axes.rows) + 4) * stride
-    ladder = table[HEADER : HEADER + rungs * RUNG].reshape(-1, RUNG)
-    rises = (np.diff(ladder[:, 0]) > 0.0).all() and (ladder[:, 1] > 0.0).all()
-    if (axes.stride, axes.size) != (stride, size) or table.size != HEADER + rungs * (RUNG + fields * size) or not rises:
-        raise ValueError(f"its table of {table.size} numbers does not fit its axes")
 
 
 def with_plate(table: Array, pair: PairConstants) -> Array:
@@ -396,11 +377,10 @@ def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: fl
     """Interpolate in 4 x 4 coefficients of one rung, whose block begins at `at`; no index is negative."""
     i, j = whole(row), whole(column)
     a, b, c = weights(row - i), weights(column - j), (0.0, 0.0, 0.0, 0.0)
-    p, i1, i2, i3 = at + np.uint64(i) * stride + np.uint64(j), np.uint64(1), np.uint64(2), np.uint64(3)
+    p = at + np.uint64(i) * stride + np.uint64(j)
     for k in range(4):
-        share = a[k]
-        c0, c1, c2, c3 = share * table[p], share * table[p + i1], share * table[p + i2], share * table[p + i3]
-        c = (c[0] + c0, c[1] + c1, c[2] + c2, c[3] + c3)
+        c0, c1 = c[0] + a[k] * table[p], c[1] + a[k] * table[p + np.uint64(1)]
+        c = (c0, c1, c[2] + a[k] * table[p + np.uint64(2)], c[3] + a[k] * table[p + np.uint64(3)])
         p += stride
     return ((b[0] * c[0] + b[1] * c[1]) + (b[2] * c[2] + b[3] * c[3])) * (1.0 / 36.0)
 
@@ -450,12 +430,6 @@ def solid_on_plate(table: Array, speed: float, radius: float, thickness: float) 
     return restitution_on_plate(table, speed, radius, thickness, 1.0)
 
 
-@kernel(inline=True)
-def _slice(values: Array, start: int, count: int) -> Array:
-    """Part of an array; one kernel for all slices, since each is slow to compile."""
-    return values[start : start + count]
-
-
 # Where the numbers of a chunk of impacts begin in their scratch memory. It is one array: compilers
 # check that no write alters what is read, and make no vector instructions if there is much to check.
 _ROW, _COLUMN, _P, _W, _ROOTS = range(0, 5 * _CHUNK, _CHUNK)
@@ -469,41 +443,51 @@ def _three(s: Array, begin: int, i: int) -> Three:
     return s[begin + i], s[begin + _CHUNK + i], s[begin + 2 * _CHUNK + i]
 
 
+class _Impacts(NamedTuple):
+    """Some of many impacts."""
+
+    speed: Array
+    radius: Array
+    thickness: Array
+    mass: Array  # over those of solid spheres; without any, all are
+    start: int
+    size: int
+
+
 @kernel(inline=True)
-def _find_places(
-    head: Head, v: Array, r: Array, h: Array, mass: Array, k: Array, s: Array, thin: bool, usual: bool, rated: bool
-) -> None:
+def _find_places(head: Head, hit: _Impacts, k: Array, s: Array, thin: bool, usual: bool, rated: bool) -> None:
     """Places of a chunk of impacts; the column is -1 outside the table."""
-    solid = usual or mass.size == 0
-    for i in range(v.size):
+    solid = usual or hit.mass.size == 0
+    for i in range(hit.size):
+        n = hit.start + i
         later, slower = (_three(k, _LATER, i), _three(k, _SLOWER, i)) if rated else (ALIKE, ALIKE)
-        on = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower)
-        at = place(head, v[i], r[i], h[i], 1.0 if solid else mass[i], on, thin, usual)
+        on, share = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower), 1.0 if solid else hit.mass[n]
+        at = place(head, hit.speed[n], hit.radius[n], hit.thickness[n], share, on, thin, usual)
         s[_ROW + i], s[_COLUMN + i] = at.row if at.inside else 0.0, at.column if at.inside else -1.0
         s[_P + i], s[_W + i], s[_ROOTS + i] = at.p, at.w, at.root
 
 
 @kernel
-def _find(table: Array, head: Head, v: Array, r: Array, h: Array, mass: Array, k: Array, s: Array) -> None:
+def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
     """Places of a chunk of impacts, and those of their strengths."""
     rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
     if rated:
-        for i in range(v.size):
-            k[_STRENGTH + i] = strength_at(head.axes, v[i], r[i])
-        for i in range(v.size):
+        for i in range(hit.size):
+            k[_STRENGTH + i] = strength_at(head.axes, hit.speed[hit.start + i], hit.radius[hit.start + i])
+        for i in range(hit.size):
             on = rung_of(table, head.axes, k[_STRENGTH + i])
             k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
             k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
             k[_SLOWER + i], k[_SLOWER + _CHUNK + i], k[_SLOWER + 2 * _CHUNK + i] = on.slower
-    if not usual or mass.size > 0:
-        _find_places(head, v, r, h, mass, k, s, thin, False, rated)
+    if not usual or hit.mass.size > 0:
+        _find_places(head, hit, k, s, thin, False, rated)
     elif thin:
-        _find_places(head, v, r, h, mass, k, s, True, True, False)
+        _find_places(head, hit, k, s, True, True, False)
     elif rated:
-        _find_places(head, v, r, h, mass, k, s, False, True, True)
+        _find_places(head, hit, k, s, False, True, True)
     else:
-        _find_places(head, v, r, h, mass, k, s, False, True, False)
-    for i in range(v.size):
+        _find_places(head, hit, k, s, False, True, False)
+    for i in range(hit.size):
         s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
 
 
@@ -515,16 +499,14 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
     """
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     for start in range(0, out.size, _CHUNK):
-        n = min(_CHUNK, out.size - start)
-        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
-        values = _slice(out, start, n)
-        _find(table, head, v, r, h, _slice(mass, start, n), k, s)
-        for i in range(n):
+        hit = _Impacts(speed, radius, thickness, mass, start, min(_CHUNK, out.size - start))
+        _find(table, head, hit, k, s)
+        for i in range(hit.size):
             row, column = s[_ROW + i], s[_COLUMN + i]
             lost = field(table, head.axes, 0, int(k[_LOWER + i]), k[_BETWEEN + i], row, max(column, 0.0))
-            values[i] = cor_from(lost) if column >= 0.0 else math.nan
-        for i in range(n):
-            bad += values[i] != values[i]
+            out[start + i] = cor_from(lost) if column >= 0.0 else math.nan
+        for i in range(hit.size):
+            bad += s[_COLUMN + i] < 0.0
     return bad
 
 
@@ -539,16 +521,15 @@ def outcomes(
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     axes = head.axes
     for start in range(0, speed.size, _CHUNK):
-        n = min(_CHUNK, speed.size - start)
-        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
-        _find(table, head, v, r, h, _slice(mass, start, n), k, s)
-        for i in range(n):
-            row, column = s[_ROW + i], s[_COLUMN + i]
-            x, root[start + i] = row * (axes.x_max / axes.rows), s[_ROOTS + i]
-            at = Place(row, column, x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
+        hit = _Impacts(speed, radius, thickness, mass, start, min(_CHUNK, speed.size - start))
+        _find(table, head, hit, k, s)
+        for i in range(hit.size):
+            row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
+            at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
             on = Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
             log_strength = log(k[_STRENGTH + i]) if axes.rungs > 1.0 else 0.0
             _write(table, axes, at, on, log_strength, at.inside, out, start + i)
+            root[start + i] = at.root
             bad += not at.inside
     return bad
 
@@ -577,14 +558,19 @@ def _write(
     table: Array, axes: Axes, at: Place, on: Rung, log_strength: float, known: bool, out: Outcome, n: int
 ) -> None:
     """Write the fields of impact n; those that are not known are NaN."""
-    lost = rate = wave = deep = elastic = math.nan
-    if known:
-        lost, rate = field_at(table, axes, 0, at, on), field_at(table, axes, 1, at, on)
-        wave, deep = field_at(table, axes, 2, at, on), field_at(table, axes, 3, at, on)
-        elastic, ratio = (at.w * at.w) * (at.w * at.w), at.w / at.p
-        out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
-        out.yield_ratio[n] = (ratio * ratio) * (ratio * ratio) / axes.unit
-        out.strength[n] = log_strength
-    out.restitution[n] = cor_from(lost) if known else math.nan
-    out.contact_time[n], out.wave_rate[n] = 1.0 / rate, wave
-    out.compression_ratio[n], out.elastic_compression[n] = deep, elastic
+    lost, ratio = field_at(table, axes, 0, at, on), at.w / at.p
+    values = (
+        cor_from(lost),
+        1.0 / field_at(table, axes, 1, at, on),
+        field_at(table, axes, 2, at, on),
+        field_at(table, axes, 3, at, on),
+        (at.w * at.w) * (at.w * at.w),
+        STRETCH * at.x / (1.0 - at.x),
+        (ratio * ratio) * (ratio * ratio) / axes.unit,
+        log_strength,
+    )
+    for k in range(len(values)):
+        if known:
+            out[k][n] = values[k]
+        elif k < _NUMBERS:
+            out[k][n] = math.nan

@@ -28,7 +28,6 @@ from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import Grid, ladder_of
 from contactlaw.table.lookup import field_at
-from contactlaw.table.sweep import Progress
 
 STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
@@ -39,24 +38,17 @@ _ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 16  # cells along lambda, up to yiel
 _APART = 0.015  # largest distance of rungs in ln k
 
 
-def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
+def build(law: Law, grid: Grid, rtol: float) -> Array:
     """Solve shapes at nodes and fit splines."""
     after = _AFTER * (grid.axes.after > 0.0)
     coarse = grid.with_axes(rows=_ROWS, below=_BELOW, beyond=max(_BEYOND, grid.axes.beyond), after=after)
     coarse = coarse.on_ladder(law, ladder_of(law, _APART))
-    lam, y, strength = coarse.nodes()
-    flat = lam.ravel(), y.ravel(), strength.ravel()
-    states = np.empty((lam.size, FIELDS))
 
-    def solve(part: slice) -> None:
-        lams, ys, strengths = (each[part] for each in flat)
-        found = zener.shape(law.at_any_strength, lams, ys, rtol, SHARES, strengths)
-        if np.isnan(found.time).any():
-            raise sweep.failure("shape", law, lams, ys, zener.BAD_INPUT, int(np.isnan(found.time[:, 0]).argmax()))
-        states[part] = np.hstack([one[:, :-1] for one in (found.time, found.speed, found.force)])
+    def states(out: Outcome) -> Array:
+        found = zener.shape(law.at_any_strength, out.inelasticity, out.yield_ratio, rtol, SHARES, out.strength)
+        return np.hstack([one[:, :-1] for one in (found.time, found.speed, found.force)])
 
-    sweep.in_parts(solve, lam.size, progress)
-    return coarse.packed(states.reshape(*lam.shape, FIELDS))
+    return sweep.at_nodes(law, coarse, rtol, states)
 
 
 @kernel(cache=True)

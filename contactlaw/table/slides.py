@@ -48,25 +48,17 @@ def build(table: Table, kappa: float) -> Array:
     law = table.law
     cells = _CELLS | {"after": _CELLS["after"] * (table.grid.axes.after > 0.0)}
     grid = table.grid.with_axes(**cells).on_ladder(law, ladder_of(law, _APART))
-    lam, y, strength = grid.nodes()
-    found = sweep.solved(law, lam.ravel(), y.ravel(), strength.ravel(), _RTOL)
-    change = np.empty((lam.size, 2 * _NODES))
-
-    def solve(part: slice) -> None:
-        change[part] = _changes(law.at_any_strength, outcome.part(found, part), kappa)
-
-    sweep.in_parts(solve, lam.size)
-    along = [spline_coefficients(half, 1) for half in np.split(change, 2, axis=1)]
-    return np.append(grid.packed(np.hstack(along).reshape(*lam.shape, _WIDTH)), kappa)
+    return np.append(sweep.at_nodes(law, grid, _RTOL, lambda found: _along(law.at_any_strength, found, kappa)), kappa)
 
 
-def _changes(law: Array, out: Outcome, kappa: float) -> Array:
-    """Change over psi at the nodes of both ranges, (impacts, 2 _NODES)."""
-    share, e = np.linspace(0.0, 1.0, _NODES), out.restitution[:, None]
+def _along(law: Array, found: Outcome, kappa: float) -> Array:
+    """Coefficients along psi of the change over psi in both ranges, (impacts, _WIDTH)."""
+    share, e = np.linspace(0.0, 1.0, _NODES), found.restitution[:, None]
     sticking = np.maximum(share**2, 1e-8) / kappa  # at rest there is a limit, but no share
     sliding = 1.0 / kappa + _range(kappa, e) * share
     psi = np.hstack((np.broadcast_to(sticking, sliding.shape), sliding))
-    return (psi - after(law, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    changes = (psi - after(law, found, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    return np.hstack([spline_coefficients(half, 1) for half in np.split(changes, 2, axis=1)])
 
 
 def after(

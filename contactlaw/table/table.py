@@ -8,14 +8,12 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw.equation import outcome, zener
-from contactlaw.equation.outcome import STORED, Outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, sweep
 from contactlaw.table.certificate import CORNERED, Certificate, bounds, compare_histories, compare_outcomes
 from contactlaw.table.grid import Grid, Settings
-from contactlaw.table.lookup import STRETCH
-from contactlaw.table.sweep import Progress, no_progress
 
 POINTS = 2000  # points of the certificate of a table that is built on demand
 _DOUBLINGS = 4  # numbers of columns, and distances of rungs, that are tried
@@ -59,9 +57,7 @@ class Table:
         return {} if self.certificate is None else self.certificate.exceeded(bounds(self.law))
 
 
-def build(
-    law: Law, settings: Settings | None = None, *, points: int = POINTS, progress: Progress = no_progress
-) -> Table:
+def build(law: Law, settings: Settings | None = None, *, points: int = POINTS) -> Table:
     """Solve the equation at all nodes, on all cores, until the certificate of the table passes.
 
     Parameters
@@ -72,8 +68,6 @@ def build(
         Extent and fineness.
     points : int, optional
         Number of random places at which the table is compared with the solver.
-    progress : callable, optional
-        ``progress(parts, total)`` wraps the iterator over finished parts, as ``tqdm`` does.
 
     Returns
     -------
@@ -92,13 +86,12 @@ def build(
     grid = grids.grid(slow, settings)
     for doubling in range(_DOUBLINGS):
         grid = grid.with_axes(beyond=settings.columns * 2**doubling)
-        table = _certified(slow, settings, grid, points, progress, {})
+        table = _certified(slow, settings, grid, points)
         if not _exceeds(table):
             break
-    known: dict[float, Array] = {}
     for halving in range(_DOUBLINGS if law.strengths else 0):
         ladder = grids.ladder_of(law, _APART / 2**halving)
-        table = _certified(law, settings, grid.on_ladder(law, ladder), points, progress, known)
+        table = _certified(law, settings, grid.on_ladder(law, ladder), points)
         if not _exceeds(table):
             break
     return table
@@ -112,40 +105,29 @@ def _exceeds(table: Table) -> bool:
     return bool(table.certificate.exceeded({name: margin * one for name, one in promised.items()}))
 
 
-def _certified(
-    law: Law, settings: Settings, grid: Grid, points: int, progress: Progress, known: dict[float, Array]
-) -> Table:
-    """Make a table from the nodes of a grid; the fields of rungs that are known need no solutions."""
-    nodes = grid.nodes()
-    for n, log_k in enumerate(grid.ladder.tolist()):
-        if log_k not in known:
-            lam, y, strength = (one[n] for one in nodes)
-            found = sweep.solved(law, lam.ravel(), y.ravel(), strength.ravel(), settings.rtol, progress)
-            elastic = grid.elastic(lam / (lam + STRETCH), grid.rungs[n, 5:])
-            known[log_k] = _stored(law, found, elastic.ravel()).reshape(*lam.shape, len(STORED))
-    values = np.stack([known[log_k] for log_k in grid.ladder.tolist()])
-    table = Table(law, settings, grid.packed(values))
+def _certified(law: Law, settings: Settings, grid: Grid, points: int) -> Table:
+    """Make a table from the nodes of a grid."""
+    table = Table(law, settings, sweep.at_nodes(law, grid, settings.rtol, functools.partial(_stored, law)))
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
-def _stored(law: Law, found: Outcome, elastic: Array) -> Array:
+def _stored(law: Law, found: Outcome) -> Array:
     """Fields that tables keep, see `contactlaw.equation.outcome.STORED`."""
-    lost, extremes = 1.0 - found.restitution, outcome.extremes(elastic.size)
+    lost, extremes = 1.0 - found.restitution, outcome.extremes(found.restitution.size)
     zener.extremes(law.at_any_strength, found, extremes)
     still = found.inelasticity == 0.0  # no waves: energies alone give the COR, 1 exactly without losses
     lost[still] = 1.0 - np.sqrt(1.0 - extremes.plastic_fraction[still] - extremes.other_fraction[still])
-    peak = found.compression_ratio * found.elastic_compression
-    return np.stack([lost, 1.0 / found.contact_time, found.wave_rate, peak / elastic], axis=1)
+    return np.stack([lost, 1.0 / found.contact_time, found.wave_rate, found.compression_ratio], axis=1)
 
 
-def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:
+def with_shapes(table: Table, *, points: int = POINTS) -> Table:
     """Add the shapes of force histories, and their error to the certificate.
 
     Parameters
     ----------
     table : Table
         Table from `build`.
-    points, progress
+    points : int, optional
         As in `build`.
 
     Returns
@@ -157,11 +139,11 @@ def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_p
     RuntimeError
         If a shape does not solve; the message names it.
     """
-    whole = dataclasses.replace(table, histories=shapes.build(table.law, table.grid, table.settings.rtol, progress))
+    whole = dataclasses.replace(table, histories=shapes.build(table.law, table.grid, table.settings.rtol))
     return dataclasses.replace(whole, certificate=certify(whole, points))
 
 
-def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Progress = no_progress) -> Certificate:
+def certify(table: Table, points: int = 20_000, seed: int = 0) -> Certificate:
     """Compare lookups with the solver at random points off the grid.
 
     A fifth of the points lie below yield, a fifth within 2 % of the speed of yield, a tenth beyond
@@ -175,8 +157,6 @@ def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Prog
         Number of points, at least 100.
     seed : int, optional
         Seed of their generator.
-    progress : callable, optional
-        As in `build`.
 
     Returns
     -------
@@ -188,7 +168,7 @@ def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Prog
     ValueError
         If there are too few or too many points, or the seed is negative.
     """
-    looked, errors = compare_outcomes(table.law, table.settings.rtol, table.packed, points, seed, progress)
+    looked, errors = compare_outcomes(table.law, table.settings.rtol, table.packed, points, seed)
     if table.histories is not None:
         errors["force_history"] = compare_histories(table.law, table.settings.rtol, table.histories, looked)
     return Certificate.of(errors, looked.restitution.size, seed)
