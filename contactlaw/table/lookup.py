@@ -450,19 +450,23 @@ class _Impacts(NamedTuple):
     radius: Array
     thickness: Array
     mass: Array  # over those of solid spheres; without any, all are
-    start: int
-    size: int
+
+
+@kernel(inline=True)
+def _part(hit: _Impacts, start: int) -> _Impacts:
+    """Impacts of a chunk."""
+    end = start + _CHUNK
+    return _Impacts(hit.speed[start:end], hit.radius[start:end], hit.thickness[start:end], hit.mass[start:end])
 
 
 @kernel(inline=True)
 def _find_places(head: Head, hit: _Impacts, k: Array, s: Array, thin: bool, usual: bool, rated: bool) -> None:
     """Places of a chunk of impacts; the column is -1 outside the table."""
     solid = usual or hit.mass.size == 0
-    for i in range(hit.size):
-        n = hit.start + i
+    for i in range(hit.speed.size):
         later, slower = (_three(k, _LATER, i), _three(k, _SLOWER, i)) if rated else (ALIKE, ALIKE)
-        on, share = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower), 1.0 if solid else hit.mass[n]
-        at = place(head, hit.speed[n], hit.radius[n], hit.thickness[n], share, on, thin, usual)
+        on, share = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower), 1.0 if solid else hit.mass[i]
+        at = place(head, hit.speed[i], hit.radius[i], hit.thickness[i], share, on, thin, usual)
         s[_ROW + i], s[_COLUMN + i] = at.row if at.inside else 0.0, at.column if at.inside else -1.0
         s[_P + i], s[_W + i], s[_ROOTS + i] = at.p, at.w, at.root
 
@@ -472,9 +476,9 @@ def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
     """Places of a chunk of impacts, and those of their strengths."""
     rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
     if rated:
-        for i in range(hit.size):
-            k[_STRENGTH + i] = strength_at(head.axes, hit.speed[hit.start + i], hit.radius[hit.start + i])
-        for i in range(hit.size):
+        for i in range(hit.speed.size):
+            k[_STRENGTH + i] = strength_at(head.axes, hit.speed[i], hit.radius[i])
+        for i in range(hit.speed.size):
             on = rung_of(table, head.axes, k[_STRENGTH + i])
             k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
             k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
@@ -487,7 +491,7 @@ def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
         _find_places(head, hit, k, s, False, True, True)
     else:
         _find_places(head, hit, k, s, False, True, False)
-    for i in range(hit.size):
+    for i in range(hit.speed.size):
         s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
 
 
@@ -499,13 +503,13 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
     """
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     for start in range(0, out.size, _CHUNK):
-        hit = _Impacts(speed, radius, thickness, mass, start, min(_CHUNK, out.size - start))
+        hit = _part(_Impacts(speed, radius, thickness, mass), start)
         _find(table, head, hit, k, s)
-        for i in range(hit.size):
+        for i in range(hit.speed.size):
             row, column = s[_ROW + i], s[_COLUMN + i]
             lost = field(table, head.axes, 0, int(k[_LOWER + i]), k[_BETWEEN + i], row, max(column, 0.0))
             out[start + i] = cor_from(lost) if column >= 0.0 else math.nan
-        for i in range(hit.size):
+        for i in range(hit.speed.size):
             bad += s[_COLUMN + i] < 0.0
     return bad
 
@@ -521,9 +525,9 @@ def outcomes(
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     axes = head.axes
     for start in range(0, speed.size, _CHUNK):
-        hit = _Impacts(speed, radius, thickness, mass, start, min(_CHUNK, speed.size - start))
+        hit = _part(_Impacts(speed, radius, thickness, mass), start)
         _find(table, head, hit, k, s)
-        for i in range(hit.size):
+        for i in range(hit.speed.size):
             row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
             at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
             on = Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
