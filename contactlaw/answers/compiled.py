@@ -29,5 +29,5 @@ def kernel_of(tabulated: TableLookup) -> Callable[..., float]:
 def c_function(tabulated: TableLookup) -> Any:
     """COR as a C function of speed, radius and thickness, which belongs to one table."""
     signature = numba.float64(numba.float64, numba.float64, numba.float64)
-    on_plate, packed = lookup.solid_on_plate, in_memory(tabulated.packed)
-    return _jit.c_function(signature, lambda v, r, h: on_plate(packed(), v, r, h))
+    on_plate, packed = lookup.restitution_on_plate, in_memory(tabulated.packed)
+    return _jit.c_function(signature, lambda v, r, h: on_plate(packed(), v, r, h, 1.0))

@@ -87,14 +87,14 @@ class Certificate:
         return {name: e for name, e in self.largest.items() if not e <= bounds[name]}
 
 
-def compare_outcomes(law: Law, rtol: float, packed: Array, points: int, seed: int) -> tuple[Outcome, dict[str, Array]]:
-    """Outcomes that are looked up at random points, and their errors by field."""
+def measured(law: Law, rtol: float, packed: Array, histories: Array | None, points: int, seed: int) -> dict[str, Array]:
+    """Errors by field at random points."""
     if not 100 <= points <= 10_000_000:
         raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
     if seed < 0:
         raise ArgumentError("seed", seed, "must not be negative")
-    numbers = random_points(Grid.of(packed), points, np.random.default_rng(seed))
-    looked, exact = outcome.at(*numbers), sweep.solved(law, *numbers, _FINER * rtol)
+    numbers, rtol = random_points(Grid.of(packed), points, np.random.default_rng(seed)), _FINER * rtol
+    looked, exact = outcome.at(*numbers), sweep.solved(law, *numbers, rtol)
     lookup.fields(packed, True, looked)  # rounding may put points at the border outside
     errors, ours = {}, _named(law, looked, True)
     for name, values in _named(law, exact, False).items():
@@ -103,16 +103,13 @@ def compare_outcomes(law: Law, rtol: float, packed: Array, points: int, seed: in
             scale = np.maximum(np.abs(values), max(_SMALL_DENT * scale, 1e-12))
         errors[name] = np.abs(ours[name] - values) / scale
     errors["contact_time"][exact.restitution < _RETURNING] = 0.0
-    return looked, errors
-
-
-def compare_histories(law: Law, rtol: float, packed: Array, looked: Outcome) -> Array:
-    """Errors of the force histories of outcomes that were looked up."""
-    looked = outcome.part(looked, slice(None, None, -(-looked.restitution.size // _HISTORIES)))
-    ours, exact = (outcome.history(looked.contact_time, _SAMPLES) for _ in range(2))
-    shapes.sample(law.at_any_strength, packed, looked, ours)
-    zener.histories(law.at_any_strength, looked, _FINER * rtol, exact)
-    return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))
+    if histories is not None:
+        some = outcome.part(looked, slice(None, None, -(-points // _HISTORIES)))
+        sampled, solved = (outcome.history(some.contact_time, _SAMPLES) for _ in range(2))
+        shapes.sample(law.at_any_strength, histories, some, sampled)
+        zener.histories(law.at_any_strength, some, rtol, solved)
+        errors["force_history"] = np.abs(sampled.force - solved.force).max(axis=1) / solved.force.max(axis=1)
+    return errors
 
 
 def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:

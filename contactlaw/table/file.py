@@ -6,14 +6,13 @@ altered is refused with a sentence, whatever HDF5 would have made of it. The che
 not intent: a file that fits it is checked for what kernels rely on, no more.
 """
 
-import contextlib
 import dataclasses
 import functools
 import hashlib
 import io
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
@@ -119,7 +118,8 @@ def read(path: str | os.PathLike[str]) -> Table:
         If the file is no table, was altered or cut short, has another schema or holds a value
         that no table has; the message says how to rebuild it.
     """
-    with _refused(path):
+    remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
+    try:
         arrays, about = load(path)
         force.check(arrays["law"])  # kernels follow addresses in it
         numbers: dict[str, Any] = {
@@ -134,14 +134,6 @@ def read(path: str | os.PathLike[str]) -> Table:
         certificate = Certificate(**about["certificate"]) if "certificate" in about else None
         law, settings = Law(data=arrays["law"], **numbers), Settings(**about["settings"])
         return Table(law, settings, arrays["table"], arrays.get("histories"), certificate)
-
-
-@contextlib.contextmanager
-def _refused(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Say how to make a table again whose file cannot be used."""
-    remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
-    try:
-        yield
     except FileNotFoundError:
         raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
     except (OSError, LookupError, ValueError, TypeError, RuntimeError, AttributeError) as error:

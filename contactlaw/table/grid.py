@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 from numpy.polynomial.polynomial import polyfit, polyval
-from scipy.linalg import solve_banded
+from scipy.interpolate import CubicSpline
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
@@ -255,17 +255,13 @@ def _overloads(law: Law, x: Array, w: Array, log_k: float, deepest: float) -> Ar
 
 
 def spline_coefficients(values: Array, axis: int = 0) -> Array:
-    """Coefficients of the cubic B-spline through uniform nodes along an axis, not-a-knot ends."""
-    n = values.shape[axis]
-    if n < 4:
-        raise ArgumentError("values", n, "a spline with not-a-knot ends needs at least 4 nodes")
-    # v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node; the third derivative has no jump next to the ends
-    system = np.zeros((9, n + 2))  # each row a diagonal
-    system[5, :-2], system[4, 1:-1], system[3, 2:] = 1.0, 4.0, 1.0
-    ends = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-    system[range(4, -1, -1), range(5)] = ends
-    system[range(8, 3, -1), range(n - 3, n + 2)] = ends
-    right = np.moveaxis(6.0 * values, axis, 0)
-    right = np.concatenate([0.0 * right[:1], right, 0.0 * right[:1]])
-    solved = solve_banded((4, 4), system, right.reshape(n + 2, -1)).reshape(right.shape)
-    return np.asarray(np.moveaxis(solved, 0, axis))
+    """Coefficients of the cubic B-spline through uniform nodes along an axis, not-a-knot ends.
+
+    At node i the value is v = (c[i-1] + 4 c[i] + c[i+1])/6 and the second derivative c[i-1] - 2 c[i] +
+    c[i+1], so that c[i] is v less a sixth of that.
+    """
+    nodes = np.arange(values.shape[axis])
+    v = np.moveaxis(values, axis, 0)
+    c = v - CubicSpline(nodes, v)(nodes, 2) / 6.0
+    ends = 6.0 * v[[0, -1]] - 4.0 * c[[0, -1]] - c[[1, -2]]
+    return np.asarray(np.moveaxis(np.concatenate([ends[:1], c, ends[1:]]), 0, axis))

@@ -96,14 +96,12 @@ NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it
 
 def with_plate(table: Array, pair: PairConstants) -> Array:
     """Copy a table and put in the constants of a pair."""
-    table, plate, yielding = table.copy(), pair.plate, pair.yield_compression
-    unit = table[Axes._fields.index("unit")]
-    table[PAIR:PLATE] = (pair.time / (unit * yielding)) ** 0.25 if yielding < math.inf else 0.0, 0.0, 0.0
+    table, plate, yielding, slope, log_rate = table.copy(), pair.plate, pair.yield_compression, 0.0, 0.0
+    scale = (pair.time / (table[Axes._fields.index("unit")] * yielding)) ** 0.25
     if plate.rate.slope > 0.0:
-        table[PAIR + 1 : PLATE] = plate.rate.slope, math.log(plate.rate.per_speed / yielding)
-    table[PLATE:WAVES] = plate.inelasticity, plate.transit, plate.x_at_one, plate.saturated
-    table[WAVES:GROWTH] = plate.corrections
-    table[GROWTH:ELASTIC] = plate.growth._replace(log_time=plate.growth.log_time - math.log(pair.time))
+        slope, log_rate = plate.rate.slope, math.log(plate.rate.per_speed / yielding)
+    growth = plate.growth._replace(log_time=plate.growth.log_time - math.log(pair.time))
+    table[PAIR:ELASTIC] = [scale, slope, log_rate, *plate[:4], *plate.corrections, *growth]
     return table
 
 
@@ -374,18 +372,12 @@ def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: fl
 
 
 @kernel(inline=True)
-def field(table: Array, axes: Axes, which: int, rung: int, between: float, row: float, column: float) -> float:
+def field(table: Array, axes: Axes, which: int, at: Place, on: Rung) -> float:
     """Interpolate a field at a place and between two rungs."""
     size, stride, rungs = np.uint64(int(axes.size)), np.uint64(int(axes.stride)), int(axes.rungs)
-    at = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + rung) * size
-    low = value(table, at, stride, row, column)
-    return low + between * (value(table, at + size, stride, row, column) - low) if rungs > 1 else low
-
-
-@kernel(inline=True)
-def field_at(table: Array, axes: Axes, which: int, at: Place, on: Rung) -> float:
-    """Interpolate a field of one impact."""
-    return field(table, axes, which, on.lower, on.between, at.row, at.column)
+    begin = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + on.lower) * size
+    low = value(table, begin, stride, at.row, at.column)
+    return low + on.between * (value(table, begin + size, stride, at.row, at.column) - low) if rungs > 1 else low
 
 
 @kernel(inline=True)
@@ -395,9 +387,9 @@ def cor_from(lost: float) -> float:
 
 
 @kernel(inline=True)
-def cor_of(table: Array, at: Place, on: Rung) -> float:
+def cor_of(table: Array, axes: Axes, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
-    return cor_from(field_at(table, axes_of(table), 0, at, on)) if at.inside else math.nan
+    return cor_from(field(table, axes, 0, at, on)) if at.inside else math.nan
 
 
 @kernel(cache=True)
@@ -406,16 +398,9 @@ def restitution_on_plate(table: Array, speed: float, radius: float, thickness: f
 
     The mass is over that of a solid sphere.
     """
-    if not is_valid(speed, radius, thickness):
-        return math.nan
-    at, on, _ = place_of(table, head_of(table), speed, radius, thickness, mass)
-    return cor_of(table, at, on)
-
-
-@kernel(cache=True)
-def solid_on_plate(table: Array, speed: float, radius: float, thickness: float) -> float:
-    """`restitution_on_plate` of a solid sphere."""
-    return restitution_on_plate(table, speed, radius, thickness, 1.0)
+    head = head_of(table)
+    at, on, _ = place_of(table, head, speed, radius, thickness, mass)
+    return cor_of(table, head.axes, at, on)
 
 
 # Where the numbers of a chunk of impacts begin in their scratch memory. It is one array: compilers
@@ -483,6 +468,14 @@ def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
         s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
 
 
+@kernel(inline=True)
+def _found(axes: Axes, k: Array, s: Array, i: int) -> tuple[Place, Rung]:
+    """Place of impact i of a chunk, and that of its strength."""
+    row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
+    at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
+    return at, Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
+
+
 @kernel(cache=True)
 def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, mass: Array, out: Array) -> int:
     """Write the COR of many spheres on plates into out; return how many are NaN.
@@ -494,9 +487,8 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
         hit = _part(_Impacts(speed, radius, thickness, mass), start)
         _find(table, head, hit, k, s)
         for i in range(hit.speed.size):
-            row, column = s[_ROW + i], s[_COLUMN + i]
-            lost = field(table, head.axes, 0, int(k[_LOWER + i]), k[_BETWEEN + i], row, max(column, 0.0))
-            out[start + i] = cor_from(lost) if column >= 0.0 else math.nan
+            at, on = _found(head.axes, k, s, i)
+            out[start + i] = cor_of(table, head.axes, at, on)
         for i in range(hit.speed.size):
             bad += s[_COLUMN + i] < 0.0
     return bad
@@ -516,9 +508,7 @@ def outcomes(
         hit = _part(_Impacts(speed, radius, thickness, mass), start)
         _find(table, head, hit, k, s)
         for i in range(hit.speed.size):
-            row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
-            at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
-            on = Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
+            at, on = _found(axes, k, s, i)
             log_strength = log(k[_STRENGTH + i]) if axes.rungs > 1.0 else 0.0
             _write(table, axes, at, on, log_strength, at.inside, out, start + i)
             root[start + i] = at.root
@@ -550,12 +540,12 @@ def _write(
     table: Array, axes: Axes, at: Place, on: Rung, log_strength: float, known: bool, out: Outcome, n: int
 ) -> None:
     """Write the fields of impact n; those that are not known are NaN."""
-    lost, ratio = field_at(table, axes, 0, at, on), at.w / at.p
+    lost, ratio = field(table, axes, 0, at, on), at.w / at.p
     values = (
         cor_from(lost),
-        1.0 / field_at(table, axes, 1, at, on),
-        field_at(table, axes, 2, at, on),
-        field_at(table, axes, 3, at, on),
+        1.0 / field(table, axes, 1, at, on),
+        field(table, axes, 2, at, on),
+        field(table, axes, 3, at, on),
         (at.w * at.w) * (at.w * at.w),
         STRETCH * at.x / (1.0 - at.x),
         (ratio * ratio) * (ratio * ratio) / axes.unit,

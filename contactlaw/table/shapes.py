@@ -27,7 +27,7 @@ from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import Grid, ladder_of
-from contactlaw.table.lookup import field_at
+from contactlaw.table.lookup import field
 
 STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
@@ -64,9 +64,9 @@ def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
             left = force.unloading(own, top / y).residual * y
         at, on = lookup.place_at(shapes, head, lam, y, found.strength[n])
         for k in range(SIZE):
-            t[k + 1] = field_at(shapes, head.axes, k, at, on)
-            u[k + 1] = field_at(shapes, head.axes, SIZE + k, at, on)
-            f[k + 1] = field_at(shapes, head.axes, 2 * SIZE + k, at, on)
+            t[k + 1] = field(shapes, head.axes, k, at, on)
+            u[k + 1] = field(shapes, head.axes, SIZE + k, at, on)
+            f[k + 1] = field(shapes, head.axes, 2 * SIZE + k, at, on)
         for k in range(STATES):
             square = SHARES[k] * SHARES[k]
             d[k + 1], d[SIZE - k] = top * square, left + (top - left) * square

@@ -26,7 +26,7 @@ from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import ladder_of, spline_coefficients
-from contactlaw.table.lookup import Place, Rung, axes_of, field_at, weights
+from contactlaw.table.lookup import Place, Rung, axes_of, field, weights
 from contactlaw.table.table import Table
 
 _NODES = 49  # of each range of psi
@@ -93,7 +93,7 @@ def change(slides: Array, at: Place, on: Rung, e: float, psi: float) -> float:
     cell, axes, value = min(int(along), _NODES - 2), axes_of(slides), 0.0
     first, c = cell + (_NODES + 2 if second else 0), weights(along - cell)
     for k in range(4):
-        value += c[k] * field_at(slides, axes, first + k, at, on) / 6.0
+        value += c[k] * field(slides, axes, first + k, at, on) / 6.0
     return math.copysign(min(size * value, full), psi)
 
 

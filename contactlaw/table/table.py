@@ -12,7 +12,7 @@ from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, sweep
-from contactlaw.table.certificate import CORNERED, Certificate, bounds, compare_histories, compare_outcomes
+from contactlaw.table.certificate import CORNERED, Certificate, bounds, measured
 from contactlaw.table.grid import Grid, Settings
 
 POINTS = 2000  # points of the certificate of a table that is built on demand
@@ -168,7 +168,5 @@ def certify(table: Table, points: int = 20_000, seed: int = 0) -> Certificate:
     ValueError
         If there are too few or too many points, or the seed is negative.
     """
-    looked, errors = compare_outcomes(table.law, table.settings.rtol, table.packed, points, seed)
-    if table.histories is not None:
-        errors["force_history"] = compare_histories(table.law, table.settings.rtol, table.histories, looked)
-    return Certificate.of(errors, looked.restitution.size, seed)
+    errors = measured(table.law, table.settings.rtol, table.packed, table.histories, points, seed)
+    return Certificate.of(errors, points, seed)
