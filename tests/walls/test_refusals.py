@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import contactlaw as cl
 from contactlaw.walls import (
     Cone,
     Cylinder,
@@ -31,6 +32,7 @@ OF_EVERY_WALL = [
     ("thickness", math.nan, "thickness: got nan; must"),
     ("model", "glass", "model: expected a contactlaw.ImpactModel"),
     ("model", {0: None}, "atom types are integers from 1 on"),
+    ("model", {1: "steel"}, "expected a contactlaw.ImpactModel or None for atom type 1"),
     ("motion", UP, "motion: expected a Translation"),
     ("edges", "loose", "edges: got 'loose'; must be one of free, supp"),
     ("edges", [None] * 5, "edges: got .*expected one kind for all or one for each of"),
@@ -44,6 +46,9 @@ REFUSED = [
     (PLATE, "edge_b", (1, 1, 0), "edge_a, edge_b: got .*perpendicular"),
     (PLATE, "corner", (0, 0, math.nan), "corner: got .*three numbers"),
     (PLATE, "corner", (0, 0), "corner: got .*three numbers"),
+    (PLATE, "thickness", cl.Foundation(1e-3, [1.0, 2.0]), "stiffness: .*one number"),
+    (PLATE, "thickness", cl.Shell(-1.0, 1.0), "thickness: got -1"),
+    (CYLINDER, "thickness", cl.Foundation(1e-3, 1e12), "a round wall is a shell"),
     (MESH, "vertices", [ORIGIN, X, (0, math.nan, 0)], "vertices: .*element 2.*finite"),
     (MESH, "vertices", [ORIGIN, FAR, Y], "vertices: .*element 1.*beyond"),
     (MESH, "vertices", [(0, 0), (1, 0), (0, 1)], r"vertices: .*an array of shape \(n, 3\)"),

@@ -22,17 +22,6 @@ def hull(points, out):
     return Mesh(points * (1.0 + out)[:, None], ConvexHull(points).simplices.astype(np.int64), math.inf)
 
 
-def hole(corners, radius):
-    """Make a plane disc with a hole, both polygons."""
-    angle = np.arange(corners) * 2 * math.pi / corners
-    rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
-    here = np.arange(corners)
-    there = np.roll(here, -1)
-    lower = np.column_stack((here, there, here + corners))
-    upper = np.column_stack((there, there + corners, here + corners))
-    return Mesh(np.vstack((radius * rim, 0.015 * rim)), np.vstack((lower, upper)), math.inf)
-
-
 def random_points(count):
     points = np.random.default_rng(1).normal(size=(count, 3))
     return points * 3.0 * R / np.linalg.norm(points, axis=1)[:, None]
@@ -41,8 +30,8 @@ def random_points(count):
 SCENES = {
     "cylinder of 360": Mesh.cylinder((0, 0, 0), (0, 0, 0.02), 0.02, math.inf, facets=360),
     "spike": Mesh.cone((0, 0, 0), (0, 0, 0.02), 0.006, 0.0, math.inf, facets=24),
-    "hole of 4, 0.6 R": hole(4, 0.6 * R),
-    "hole of 16, 1.2 R": hole(16, 1.2 * R),
+    "hole of 4, 0.6 R": box.hole(4, 0.6 * R),
+    "hole of 16, 1.2 R": box.hole(16, 1.2 * R),
     "cube": hull(np.array(list(itertools.product((0, 1), repeat=3))) * 3.0 * R, np.zeros(8)),
     "star of 60": hull(random_points(60), np.random.default_rng(2).uniform(-0.4, 0.4, 60)),
 }
