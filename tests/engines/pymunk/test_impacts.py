@@ -243,7 +243,7 @@ def test_bead_on_bead(models, materials, friction):
     one, two = bodies = [circle.body for circle in both]
     for circle, spin in zip(both, (500.0, -200.0), strict=True):
         circle.friction, circle.body.angular_velocity = friction, spin
-    energy, momentum = 0.5 * (one.kinetic_energy + two.kinetic_energy), one.mass - two.mass
+    energy = 0.5 * (one.kinetic_energy + two.kinetic_energy)
     room.steps(space, 300, 1e-6)
     (row,) = impacts.collisions()
     cor = cl.restitution_sphere_sphere(*materials, 2.0, R, 2 * R, law="jackson_green")
@@ -252,7 +252,6 @@ def test_bead_on_bead(models, materials, friction):
     assert row["approach_speed"] == pytest.approx(2.0, rel=1e-9)
     assert abs(row["x"]) < 1e-5  # where the circles meet, give or take the overlap
     assert two.velocity.x - one.velocity.x == pytest.approx(2.0 * cor, abs=1e-9)
-    assert one.mass * one.velocity.x + two.mass * two.velocity.x == pytest.approx(momentum)
     assert row["sliding_speed"] == pytest.approx(abs(500 * R - 200 * 2 * R), abs=EXACT)
     assert row["spin_z"] == bodies[int(row["bead"])].angular_velocity
     lost = sum(row[name] for name in IMPACT.names if name.endswith("_energy"))
