@@ -161,11 +161,3 @@ def test_a_header_that_grows_too_large_is_not_written(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=r"table: the header would have \d+ bytes, above 100000"):
         cl.export.header(tmp_path / "out.h", cl.ImpactModel(PAIR))
     assert list(tmp_path.iterdir()) == []
-
-
-def test_files_of_a_folder_are_replaced_and_others_stay(tmp_path):
-    (tmp_path / "in.rain").write_text("mine")
-    (tmp_path / "build.sh").write_text("old")
-    cl.export.liggghts(tmp_path, cl.ImpactModel(PAIR))
-    found = contents(tmp_path)
-    assert len(found) == 8 and found["in.rain"] == b"mine" and b"old" not in found["build.sh"]
