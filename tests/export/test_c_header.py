@@ -171,6 +171,10 @@ def test_all_functions_answer_as_the_package(library):
     kept = found[:, 0] ** 2 + found[:, 6:9].sum(axis=1)
     assert kept == pytest.approx(np.ones(len(rows)), abs=1e-6)
     assert len(set(found[:, 10])) > 1
+    solid = rows[:, 5] <= header.HEAVY
+    for row, loading in zip(rows[solid][:3, :3], found[solid][:3, 2], strict=True):
+        history = model.force_history(*row)
+        assert abs(history.time[history.compression.argmax()] - loading) <= history.time[1]
     (away,) = compiled.answers([[-1.0, 1e-3, 1e-3, 1, 1e-3, 0.3, 1e-7]])
     assert away[-7:] == pytest.approx([-0.4, -0.1, 1.0, 3.0, 5.0, 7.0, 0.0])  # a bead that recedes is left alone
 
