@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pymunk
 import pytest
-from pymunk_room import make_bead, make_plate, make_space, steps
+from pymunk_room import G, make_bead, make_plate, make_space, steps
 
 import contactlaw as cl
 from contactlaw import style
@@ -38,7 +38,7 @@ def struck(count):
 @pytest.fixture(scope="module")
 def run():
     """Beads that fall slantwise on three plates."""
-    space = make_space()
+    space = make_space(G)
     models = [cl.ImpactModel(cl.Pair("gamma-alumina", one)) for one in dict.fromkeys(PLATES.values())]
     impacts = attach(space, models)
     rng = np.random.default_rng(1)
