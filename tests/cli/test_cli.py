@@ -60,17 +60,13 @@ def test_several_values_are_every_combination(model, answer):
     assert len(answer(f"{IMPACT} --csv").rows) == 1
 
 
-def test_a_table_has_a_row_per_impact_and_units(answer):
-    question, names, units, *rows = answer(f"{MANY} --speed 1,70").out.splitlines()
-    assert question == "gamma-alumina on glass, law myc, radius 0.9 mm"
-    assert names.split() == "speed thickness COR 68 % time force plastic wave other flags".split()
-    assert units.split() == "[m/s] [mm] [-] [-] [us] [N] [%] [%] [%]".split()
-    sizes = [row.split()[:2] for row in rows[:6]]
-    assert sizes == [["1", "0.5"], ["70", "0.5"], ["1", "1"], ["70", "1"], ["1", "inf"], ["70", "inf"]]
+def test_flags_of_a_table_are_letters_that_are_explained_below_it(answer):
+    """The other columns are those of the pages of docs, which tests/test_readme.py compares."""
+    _, names, _, *rows = answer(f"{MANY} --speed 1,70").out.splitlines()
+    assert names.split()[-1] == "flags"
     assert [row.endswith("  a") for row in rows[:6]] == [False, True] * 3
-    assert rows[6] == ""
     (words,) = cl.explain(cl.Validity.FAST_IMPACT)
-    legend = " ".join(" ".join(rows[7:]).split())
+    legend = " ".join(" ".join(rows[6:]).split())
     assert legend.startswith(f"a: FAST_IMPACT, 3 of 6: {words} 68 %: two in three real impacts lie here")
 
 

@@ -14,7 +14,7 @@ from command_line import run
 from rains import write_rain
 
 import contactlaw as cl
-from contactlaw.cli.constant.records import completed, read
+from contactlaw.cli.constant.records import read
 from contactlaw.engines.record import IMPACT
 
 PAIR = "--sphere gamma-alumina --plate glass"
@@ -112,6 +112,8 @@ def test_what_is_no_impact_is_left_out_and_said(answer, capsys):
     assert words in answer(f"constant a.npy {PAIR}").err
     np.save("a.npy", recorded([0, 0]))
     assert answer(f"constant a.npy {PAIR}").err == ""
+    words = "--radius: the record has its own: leave this one out"
+    assert words in run(f"constant a.npy {PAIR} --radius 1mm", capsys).err
     np.save("a.npy", recorded([1, 1]))
     words = "it has no impact on a plate: Of 2 contacts, 100 % slid on from another wall; their COR"
     assert words in run(f"constant a.npy {PAIR}", capsys).err
@@ -130,17 +132,6 @@ def test_rows_with_beads_of_two_materials_are_refused(answer, capsys):
     np.save("a.npy", rows)
     words = "a.npy: it has beads of several materials: save the record as .h5"
     assert words in run(f"constant a.npy {PAIR}", capsys).err
-
-
-def test_sizes_that_a_record_lacks_are_combined_with_its_impacts():
-    every = completed({"speed": np.array([1.0, 2.0])}, radius=[1e-3, 2e-3], thickness=[5e-4])
-    assert every["speed"].tolist() == [1, 2, 1, 2]
-    assert every["radius"].tolist() == [1e-3, 1e-3, 2e-3, 2e-3]
-    assert every["thickness"].tolist() == [5e-4] * 4
-    run = {"speed": np.array([1.0, 2.0]), "radius": np.array([1e-3, 2e-3])}
-    assert completed(run, radius=None, thickness=[5e-4, 2e-3])["radius"].tolist() == [1e-3, 2e-3] * 2
-    with pytest.raises(ValueError, match="radius: the record has its own: leave this one out"):
-        completed(run, radius=[1e-3])
 
 
 GOOD = {
