@@ -1,6 +1,5 @@
 """ImpactModel: SI in, SI out, from the table and from the solver."""
 
-import dataclasses
 import math
 import pickle
 import subprocess
@@ -12,10 +11,6 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import laws, table
-from contactlaw.equation import zener
-from contactlaw.equation.numbers import Impact
-from contactlaw.physical.bodies import TwoSpheres
-from contactlaw.physical.law import law_of
 
 R, H = 0.9e-3, 1e-3
 ALUMINA = cl.Pair("gamma-alumina", "glass")  # of the fixture `model`
@@ -213,22 +208,6 @@ def test_sphere_on_sphere(model):
     forth = cl.restitution_sphere_sphere("gamma-alumina", "glass", 20.0, 1e-3, 2e-3)
     back = cl.restitution_sphere_sphere("glass", "gamma-alumina", 20.0, 2e-3, 1e-3)
     assert 0 < forth == back < 1
-
-
-def test_two_spheres_have_the_law_that_was_named(pair, model):
-    """A law that depends on E*/sigma_Y has other numbers for two spheres than for the pair."""
-    own = "jackson_green(23.1922,0.21)"
-    # tables are one below yield
-    taking = cl.ImpactModel(pair, law="jackson_green", table=dataclasses.replace(model.table, law=laws.law(own)))
-    assert taking.law == own
-    law = law_of(cl.Pair(pair.sphere, pair.sphere), "jackson_green")
-    assert law.name.startswith("jackson_green(13.5")
-    units = TwoSpheres(cl.Pair(pair.sphere, pair.sphere), law).numbers(Impact(25.0, 0.5 * R, math.inf, 4.0))
-    exact = zener.solve(law.data, 0.0, units.yield_ratio.item(), 1e-11).restitution
-    for same in (taking, pickle.loads(pickle.dumps(taking))):
-        assert same.lookup_sphere_sphere(25.0, R, R).restitution == pytest.approx(exact, abs=1e-6)
-        assert same.sphere_sphere_curve(R, R)(25.0) == pytest.approx(exact, abs=1e-6)
-    assert abs(exact - taking.solve(25.0, R, math.inf).restitution) > 0.02  # of the other law
 
 
 def test_batches_of_every_length(model):
