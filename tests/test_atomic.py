@@ -3,6 +3,7 @@
 import os
 import stat
 from errno import ENOSPC
+from unittest.mock import Mock
 
 import pytest
 
@@ -27,7 +28,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(error, call, tmp_pa
     assert names(tmp_path) == ["table.h"] and (tmp_path / "table.h").read_text() == "before"
 
 
-def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path):
+def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path, monkeypatch):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     end = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)
@@ -35,6 +36,10 @@ def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path):
     assert os.read(end, 99) == b"a line\n"
     assert stat.S_ISFIFO(os.lstat(pipe).st_mode) and names(tmp_path) == ["pipe"]
     os.close(end)
+    full = OSError(ENOSPC, os.strerror(ENOSPC))  # as of /dev/full, which root would lose if a file replaced it
+    monkeypatch.setattr(_atomic, "open", Mock(side_effect=full), raising=False)
+    with pytest.raises(OSError, match="No space left"):
+        _atomic.write(pipe, b"another\n")
 
 
 @pytest.mark.parametrize("there", [True, False], ids=["to a file", "to nothing yet"])

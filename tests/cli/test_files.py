@@ -57,14 +57,6 @@ def test_oblique_impacts_and_histories_are_csv_alone(more, folder, answer, capsy
     assert [path.name for path in folder.iterdir()] == ["a.csv"]
 
 
-def test_a_file_has_the_band(folder, answer):
-    answer(f"{HIT},6 --law fem --out a.h5")
-    band = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")).uncertainty([5.0, 6.0], 0.9e-3, 1e-3).contact_time
-    with h5py.File("a.h5") as file:
-        assert file["contact_time_high"][0, 0].tolist() == pytest.approx(band.high)
-        assert file["contact_time_high"].attrs["units"] == "s"
-
-
 @pytest.mark.parametrize(
     "line",
     [
