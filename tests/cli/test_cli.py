@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 from command_line import parsers, run
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw import cli, table
@@ -181,6 +182,7 @@ def test_materials(answer):
 def test_tables_are_described_and_checked(answer, capsys, monkeypatch):
     monkeypatch.setattr("secrets.randbits", lambda bits: 5)
     assert re.search("law myc:.*restitution", answer("table info").text)
+    assert answer(f"table info {ROOT}/contactlaw/data/myc.h5") == answer("table info")
     pair = "--sphere stainless-steel-304 --plate glass"  # whose numbers the law takes
     assert "law fem:" in answer(f"table info --law fem {pair}").out
     assert "seed 5" in answer("table check --points 1000").out
