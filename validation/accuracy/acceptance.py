@@ -30,7 +30,7 @@ from validation.fem import census, fit, store
 
 LAW = "fem"
 _UNLIKE = "bodies_unlike", "bodies_stiff"
-STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", census.THIN, *census.SEEDS, *_UNLIKE
+STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", census.THIN, *census.SETS, *_UNLIKE
 ENOUGH = 0.95  # share of the impacts that has to be within the bound of each number
 YIELDING = ("none", "sphere", "plate", "both")
 
