@@ -186,5 +186,6 @@ def _derivation(name: str) -> Markup:
     """Make a derivation from Markdown, with its headings two levels down."""
     text = (_FOLDER / "derivations" / f"{name}.md").read_text(encoding="utf-8")
     made = re.sub(r"(</?h)([1-3])", lambda found: f"{found[1]}{int(found[2]) + 2}", _html(text))
-    wide = "<div class='wide' tabindex='0' role='region' aria-label='table'>"
-    return Markup(made.replace("<table>", f"{wide}<table>").replace("</table>", "</table></div>"))
+    wide = "<div class='wide' tabindex='0' role='region' aria-label='table or formula'>"
+    made = re.sub(r"<(table|math display=.block.).*?</(table|math)>", rf"{wide}\g<0></div>", made, flags=re.DOTALL)
+    return Markup(made)

@@ -125,7 +125,7 @@ def test_the_report_has_its_parts_in_order_with_their_figures_and_formulas(drawn
         words = re.findall(r"<img [^>]*alt='([^']*)'", part)
         assert all(len(alt) > 40 and not re.search(r"[_<>^$]", alt) for alt in words)
     practice = re.sub(r"<code>.*?</code>|<[^>]*(?:alt|aria-label)='[^']*'[^>]*>", "", parts["practice"])
-    assert re.findall(r"<math|[\u0370-\u03ff]|\bd_?Y\b|MYC", practice) == []
+    assert re.findall(r"[\u0370-\u03ff]|\bd_?Y\b|MYC", practice) == []
     typed = re.sub(r"<(style|math|code)\b.*?</\1>|<[^>]*>", "", text, flags=re.DOTALL)
     assert re.findall(r"\w*[\^_`$\\]\w*|\b(?:lambda|sigma|rho|chi)\b|\d[.\d]*e-?\d+", typed) == []
 
@@ -169,11 +169,12 @@ def test_each_part_of_the_report_can_be_made_alone(tmp_path, monkeypatch, capsys
     monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
     monkeypatch.setattr("contactlaw.style.png", blank)
     for parts, drawn, judged in ((figures.PARTS, few, 1), (["finite-elements"], few[1:], 0)):
-        assert main([*parts, "--out", str(tmp_path)]) == 0
-        text = (tmp_path / "index.html").read_text()
+        out = tmp_path / parts[0]
+        assert main([*parts, "--out", str(out)]) == 0
+        text = (out / "index.html").read_text()
         assert re.findall(r"<section id=\"([a-z-]*)\">", text) == list(parts)
         assert sorted(re.findall(r"<figure id='(\w*)'", text)) == drawn
-        assert sorted(path.stem for path in tmp_path.glob("*.png")) == drawn
+        assert sorted(path.stem for path in out.glob("*.png")) == drawn
         assert text.count("7 claims; verdicts:") == judged
         assert not re.search("{{|{%|&amp;#|&lt;code", text)  # all is filled in, and escaped once
         assert re.search(r"index.html, in \d+ s", capsys.readouterr().out)

@@ -320,7 +320,7 @@ def fig20_limits() -> chart.Drawn:
         "largest error at R/H = 2.5 up to 7 yield speeds": largest(off[thin & ~fast]),
         "largest error at R/H = 2.5 up to 14 yield speeds": largest(off[thin]),
         "largest error at 10 and 14 yield speeds, R/H up to 1.8": largest(off[~thin & fast]),
-        "change of the COR by an edge from edge_distance on": change[ratio > 0.99].max(),
+        "change of the COR by an edge from `edge_distance` on": change[ratio > 0.99].max(),
         "change at two thirds of it": change[np.isclose(ratio, 2 / 3, atol=0.01)][0],
     }
 

@@ -353,7 +353,7 @@ def fig28_edges() -> chart.Drawn:
         off.append(np.abs(here - found).max())
         change.append(np.abs(near[s > reach] / cor - 1.0).max())
     numbers["largest difference from the finite elements"] = max(off)
-    numbers["largest change of the COR from edge_distance on"] = max(change)
+    numbers["largest change of the COR from `edge_distance` on"] = max(change)
     chart.note(axes, 0.5, 0.66, "flagged:\nnearer than\nthe plate\nis thick", MUTED, ha="center")
     chart.note(axes, reach - 0.1, 0.04, "cl.edge_distance", MUTED, ha="right")
     chart.note(axes, 7.0, cor - 0.05, f"far from edges: {cor:.2f}")
