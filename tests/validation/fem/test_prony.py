@@ -47,7 +47,6 @@ def test_weak_viscosity_is_kuwabaras_and_konos():
     """
     beta = math.gamma(0.6) * math.gamma(1.5) / math.gamma(2.1)
     first = 2.0 * 1.25**0.6 * 0.4 * beta
-    assert first == pytest.approx(1.15344, abs=2e-4)
     loss = []
     for x in (0.01, 0.02):
         # errors of the first order in the step: the dashpot's force is that of half a step before

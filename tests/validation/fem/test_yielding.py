@@ -34,15 +34,6 @@ def plastic_pressures(found, size):
     return a[full] / RADIUS, p[full] / SOFT.yield_strength
 
 
-def test_stored_indentations_are_slow_and_only_the_right_body_flows():
-    """The kinetic energy is that of hemispheres which move as a whole, far from the contact."""
-    for name, job in JOBS.items():
-        found = stored(name)
-        assert found.kinetic < (0.1 if name.startswith(("pair", "mirror")) else 0.01), name
-        assert (found.work_sphere > 0.0) == job.get("yields", True), name
-        assert (found.work_block > 0.0) == job.get("plate_yields", False), name
-
-
 def test_tabors_mean_pressure_on_a_block():
     """The pressure is about 3 yield strengths; perfectly plastic blocks reach 2.8 to 3.2."""
     means = {}
