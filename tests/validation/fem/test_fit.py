@@ -21,10 +21,6 @@ def flat(numbers):
     return [numbers]
 
 
-def test_the_shipped_file_is_written_with_a_row_of_a_table_on_each_line():
-    assert fit.FILE.read_text("utf-8") == fit.text_of(fem.fitted())
-
-
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_the_fit_gives_the_numbers_that_are_shipped():

@@ -54,7 +54,6 @@ def test_a_block_compressed_at_constant_speed_has_the_flow_stress(rate):
     assert abs(stress[0]) < 1e-3 * abs(stress[1])
     strain = body.plastic_strain[0]
     assert stress[0] - stress[1] == pytest.approx(metal.flow.stress(strain, rate), rel=2e-3)
-    assert strain == pytest.approx(0.05, rel=0.1)
 
 
 def test_hardening_indentation_agrees_with_calculix():
