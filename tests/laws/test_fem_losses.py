@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import contactlaw as cl
-from contactlaw.equation import zener
+from contactlaw.equation import force, tangential, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.laws.fem import friction_loss
 from contactlaw.physical.scaling import modulus_growth
@@ -54,3 +54,15 @@ def test_a_plate_takes_as_much_as_of_a_body_with_memory(loss, lossy_plate):
         ours = solved(loss, lam, plate_loss).restitution
         assert ours == pytest.approx(memory, rel=0.01, abs=0.004)
         assert memory < 0.97 * without and (held > memory) == lossy_plate
+
+
+@pytest.mark.parametrize(("loss", "strength"), [(1e-3, 1e3), (0.1, 80e3), (0.7, 20e3), (1.0, 1e3)])
+def test_the_springs_of_friction_are_those_of_the_same_flow_without_losses(loss, strength):
+    bead = replace(SOFT, yield_strength=strength, loss_factor=(loss, 1e3))
+    law = cl.ImpactModel(cl.Pair(bead, HARD)).force_law
+    given = cl.laws.fem.Given(**law.parameters)
+    ratio = given.sphere_ratio * math.exp(-cl.laws.fem.fitted()["pressure"] * given.relaxation)
+    pair = law, cl.laws.fem.law(*given._replace(sphere_ratio=ratio, loss_factor=0.0))
+    for d in [law.range[1] / 1.7**n for n in range(30)]:
+        ours, same = (tangential.stiffness_at(force.alone(one.data), 1.0, math.inf, d, d, 1.0) for one in pair)
+        assert (ours[0] / same[0], 1 / ours[1] - 1 / same[1]) == pytest.approx((1, 0), abs=0.016)

@@ -36,13 +36,6 @@ def test_the_solver_agrees_with_an_independent_integration(model):
         assert hit.peak_force == pytest.approx(force, rel=1e-9)
 
 
-def test_laws_are_equal_by_their_data():
-    one, other = own(), own(name="the same", source="somewhere else")
-    assert one == other and hash(one) == hash(other)
-    for different in (own(yield_coefficient=0.6), measured(), "mine"):
-        assert one != different
-
-
 def loading(*branches):
     return {"loading": [Loading(0.0, HERTZ), *branches]}
 
