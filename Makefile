@@ -76,8 +76,8 @@ package: $(VENV)/dev.done  ## build the wheel and use it in an environment of it
 	cd dist && env/bin/contactlaw table check
 	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
 
-validation: $(VENV)/validation.done  ## write the report on accuracy and on the paper: validation/report/index.html
-	$(BIN)/python -m validation
+validation: $(VENV)/validation.done  ## write the report, validation/report/index.html, in a minute; of a part: PART=paper
+	$(BIN)/python -m validation $(PART)
 
 bench: $(VENV)/bench.done  ## measure each performance target beside a comparable program
 	$(BIN)/python -m validation.bench
