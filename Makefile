@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
-PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
+PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal --durations=10
 
 test: $(VENV)/test.done  ## run the tests, but for those of `test-long`; of a part: PART=tests/laws
 	$(PYTEST) -m "not long" $(PART)
@@ -76,8 +76,8 @@ package: $(VENV)/dev.done  ## build the wheel and use it in an environment of it
 	cd dist && env/bin/contactlaw table check
 	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
 
-validation: $(VENV)/validation.done  ## write the report on accuracy and on the paper: validation/report/index.html
-	$(BIN)/python -m validation
+validation: $(VENV)/validation.done  ## write the report, validation/report/index.html, in a minute; of a part: PART=paper
+	$(BIN)/python -m validation $(PART)
 
 bench: $(VENV)/bench.done  ## measure each performance target beside a comparable program
 	$(BIN)/python -m validation.bench

@@ -27,6 +27,7 @@ import pytest  # noqa: E402
 pytest.register_assert_rewrite(*(path.stem for path in (Path(__file__).parent / "shared").glob("*.py")))
 
 from browser import CHROMIUM, browser  # noqa: E402
+from command_line import run  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import _jit, _kept  # noqa: E402
@@ -69,6 +70,25 @@ def pair():
 @pytest.fixture(scope="session")
 def model(pair):
     return cl.ImpactModel(pair, law="myc")
+
+
+@pytest.fixture
+def answer(capsys):
+    """Run a command line that is answered, and give what it printed."""
+
+    def answered(line):
+        made = run(line, capsys)
+        assert made.status == 0, made.err
+        return made
+
+    return answered
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder to work in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.fixture

@@ -18,58 +18,54 @@ from contactlaw import _kept
 
 ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
-LAYERS = [
-    {"_version"},
-    {"_arrays", "_folder", "_atomic", "_template", "_content", "_errors", "_escaped", "_readable", "parser"},
-    {"quantities", "style"},
-    {"_numba", "_kept"},
-    {"_jit"},
-    {"emit"},  # kernels in other languages; knows none of them
-    {"equation"},  # no units
-    {"laws"},
-    {"table"},
-    {"physical"},  # SI units
-    {"record"},  # of impacts, and its file
-    {"answers"},  # by a table or by the solver
-    {"fitting"},
-    {"model"},  # where the towers meet
-    {"comparison", "dashpot", "walls"},
-    {"stepping"},  # the contacts of a time step; no engine
-    {"softsphere"},
-    {"export", "reporting"},
-    {"engines"},
-    {"cli"},
-]
-# Within a folder without units, the same: the order of its files.
-FILES = {
-    "equation": (
-        "force outcome elastic tangential corrections edge recall numbers legs losses motion notes integrator "
-        "near_edge zener"
-    ),
-    "table": "lookup grid sweep shapes certificate table slides file cache",
-    "answers": (
-        "few backend solver tabulated yields edges beads compiled constant loads oblique derivatives "
-        "sensitivity speed_table law_errors uncertainty find"
-    ),
-    "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",
-    "stepping": "edge spring energy friction rigid bounce softened plate_rows trouble contact bead step",
-    "fitting": "drops measurements unknowns predictions errors search identify notes fit",
-    "emit": "types languages program function",
-    "export": "functions page_functions c_header liggghts_wall scene_file lammps_fix web_page",
-    "record": "columns hdf5 file",
-    "reporting": "limits page surface meshes run summary charts figures files",
-    "engines/lammps": "beads bodies memory callback attachment",
-    "engines/pymunk": "friction handlers models record registry edges lookahead contacts impacts attachment",
-    "cli/parts": "wording table columns impacts bands options figure own rebounds chosen measured",
-    "cli/constant": "records walls",
-    "cli/cor": "tables figures files",
-    "cli/fit": "printed",
-    "physical": (
-        "arguments flight kind hardness flow materials plates pair impacts rate responses law strengths "
-        "scaling measured validity history bodies rebound oblique"
-    ),
-}
-FILES = {folder: names.split() for folder, names in FILES.items()}
+LAYERS = """
+_version
+_arrays _folder _atomic _template _content _errors _escaped _readable parser
+quantities style
+_numba _kept
+_jit
+emit  # kernels in other languages; knows none of them
+equation  # no units
+laws
+table
+physical  # SI units
+record  # of impacts, and its file
+answers  # by a table or by the solver
+fitting
+model  # where the towers meet
+comparison dashpot walls
+stepping  # the contacts of a time step; no engine
+softsphere
+export reporting
+engines
+cli
+"""
+LAYERS = [{*line.partition("#")[0].split()} for line in LAYERS.strip().splitlines()]
+# Within a folder, the same: the order of its files.
+FILES = """
+equation: force outcome elastic tangential corrections edge recall numbers legs losses motion notes integrator
+  near_edge zener
+table: lookup grid sweep shapes certificate table slides file cache
+answers: few backend solver tabulated yields edges beads compiled constant loads oblique derivatives
+  sensitivity speed_table law_errors uncertainty find
+walls: memory profile edges motion plate round mesh facet grid frame surface rest
+stepping: edge spring energy friction rigid bounce softened plate_rows trouble contact bead step
+fitting: drops measurements unknowns predictions errors search identify notes fit
+emit: types languages program function
+export: functions page_functions c_header liggghts_wall scene_file lammps_fix web_page
+record: columns hdf5 file
+reporting: limits page surface meshes run summary charts figures files
+engines/lammps: beads bodies memory callback attachment
+engines/pymunk: friction handlers models record registry edges lookahead contacts impacts attachment
+cli/parts: wording table columns impacts bands options figure own rebounds chosen measured
+cli/constant: records walls
+cli/cor: tables figures files
+cli/fit: printed
+physical: arguments flight kind hardness flow materials plates pair impacts rate responses law strengths
+  scaling measured validity history bodies rebound oblique
+"""
+ENTRIES = (entry.partition(":") for entry in re.split(r"\n(?! )", FILES.strip()))  # a line of spaces goes on
+FILES = {folder: names.split() for folder, _, names in ENTRIES}
 KERNELS = [*(ROOT / "equation").glob("[a-z]*.py"), *(ROOT / f"table/{name}.py" for name in ("lookup", "grid"))]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # The size of each room, which may only fall. Of Python tokens count, without comments, docstrings and

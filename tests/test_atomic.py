@@ -3,11 +3,11 @@
 import os
 import stat
 from errno import ENOSPC
+from unittest.mock import Mock
 
 import pytest
 
 from contactlaw import _atomic
-from contactlaw.cli import main
 
 
 def names(folder):
@@ -28,7 +28,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(error, call, tmp_pa
     assert names(tmp_path) == ["table.h"] and (tmp_path / "table.h").read_text() == "before"
 
 
-def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path):
+def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path, monkeypatch):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     end = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)
@@ -36,6 +36,10 @@ def test_what_is_no_file_passes_the_content_on_and_stays_one(tmp_path):
     assert os.read(end, 99) == b"a line\n"
     assert stat.S_ISFIFO(os.lstat(pipe).st_mode) and names(tmp_path) == ["pipe"]
     os.close(end)
+    full = OSError(ENOSPC, os.strerror(ENOSPC))  # as of /dev/full, which root would lose if a file replaced it
+    monkeypatch.setattr(_atomic, "open", Mock(side_effect=full), raising=False)
+    with pytest.raises(OSError, match="No space left"):
+        _atomic.write(pipe, b"another\n")
 
 
 @pytest.mark.parametrize("there", [True, False], ids=["to a file", "to nothing yet"])
@@ -74,19 +78,6 @@ def test_a_folder_may_be_a_link(tmp_path):
     assert names(tmp_path) == ["disk", "out"]
 
 
-def test_a_full_device_is_an_error_in_words(tmp_path, monkeypatch, capsys):
-    """A stand-in for /dev/full, which root would lose if this failed."""
-
-    def full(*_):
-        raise OSError(ENOSPC, os.strerror(ENOSPC))
-
-    monkeypatch.setattr(_atomic, "open", full, raising=False)
-    os.mkfifo(tmp_path / "full")
-    pair = "--sphere gamma-alumina --plate glass --law myc --table none"
-    assert main(["export", "header", *pair.split(), "--out", str(tmp_path / "full")]) == 1
-    assert f"--out: cannot write {tmp_path}/full: No space left" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("blocked", ["c", "f"])
 def test_a_folder_is_replaced_as_a_whole_or_not_at_all(blocked, tmp_path, monkeypatch):
     for name in "abcde":
@@ -108,20 +99,15 @@ def test_a_folder_is_replaced_as_a_whole_or_not_at_all(blocked, tmp_path, monkey
     assert {path.read_text() for path in (tmp_path / "out").iterdir()} == {"before"}
 
 
-def test_a_folder_in_the_way_of_a_file_is_named(tmp_path, capsys):
+def test_a_folder_in_the_way_of_a_file_is_named(tmp_path):
     (tmp_path / "out" / "wall.h").mkdir(parents=True)
     with pytest.raises(IsADirectoryError, match="out/wall.h"), _atomic.folder(tmp_path / "out") as made:
         (made / "a.h").write_text("after")
         (made / "wall.h").write_text("after")
     assert names(tmp_path) == ["out"] and names(tmp_path / "out") == ["wall.h"]
-    command = "export liggghts --sphere gamma-alumina --plate glass --law myc --out"
-    assert main([*command.split(), str(tmp_path / "other")]) == 0
-    one = names(tmp_path / "other")[0]
-    (tmp_path / "other" / one).unlink()
-    (tmp_path / "other" / one).mkdir()
-    capsys.readouterr()
-    assert main([*command.split(), str(tmp_path / "other")]) == 1
-    assert f"--out: cannot write {tmp_path}/other/{one}: Is a directory" in capsys.readouterr().err
+    with pytest.raises(IsADirectoryError, match="new"), _atomic.folder(tmp_path / "new") as made:
+        (made / "sub").mkdir()
+    assert names(tmp_path) == ["out"]
 
 
 def test_a_full_disk_names_the_folder_and_leaves_nothing(tmp_path):
@@ -132,24 +118,17 @@ def test_a_full_disk_names_the_folder_and_leaves_nothing(tmp_path):
     assert names(tmp_path) == []
 
 
-def test_a_folder_replaces_no_device_and_no_file_twice(tmp_path):
+@pytest.mark.parametrize(
+    ("links", "reason"), [({"a": "pipe"}, "no file that can be replaced"), ({"a": "one", "b": "one"}, "links to one")]
+)
+def test_a_folder_replaces_no_device_and_no_file_twice(links, reason, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "one").write_text("old")
-    out = tmp_path / "out"
-    out.mkdir()
-    for links, reason in (({"a": "pipe"}, "no file that can be replaced"), ({"a": "one", "b": "one"}, "links to one")):
-        for name, target in links.items():
-            (out / name).symlink_to(tmp_path / target)
-        with pytest.raises(FileExistsError, match=reason) as refused, _atomic.folder(out) as made:
-            for name in links:
-                (made / name).write_text(name)
-        assert "None" not in str(refused.value)
-        assert (tmp_path / "pipe").is_fifo() and (tmp_path / "one").read_text() == "old"
+    (tmp_path / "out").mkdir()
+    for name, target in links.items():
+        (tmp_path / "out" / name).symlink_to(tmp_path / target)
+    with pytest.raises(FileExistsError, match=reason) as refused, _atomic.folder(tmp_path / "out") as made:
         for name in links:
-            (out / name).unlink()
-
-
-def test_a_new_folder_that_fails_is_not_left_behind(tmp_path):
-    with pytest.raises(IsADirectoryError, match="new"), _atomic.folder(tmp_path / "new") as made:
-        (made / "sub").mkdir()
-    assert list(tmp_path.iterdir()) == []
+            (made / name).write_text(name)
+    assert "None" not in str(refused.value)
+    assert (tmp_path / "pipe").is_fifo() and (tmp_path / "one").read_text() == "old"

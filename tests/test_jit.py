@@ -44,20 +44,15 @@ def answers(**oblique):
         "lookup": [getattr(model.lookup(*IMPACT), name) for name in VALUES],
         "spheres": model.lookup_sphere_sphere(12.0, 1e-3, 1e-3).restitution,
         "solve": [getattr(model.solve(*IMPACT), name) for name in VALUES],
-        "half-space": model.solve(5.0, 1e-3, math.inf).contact_time,
         "elastic": cl.ImpactModel(pair, law="hertz").solve(*IMPACT).restitution,
         "beyond the table": solver.restitution(900.0, 1e-3, 1e-3),
         "history": model.force_history(*IMPACT, samples=5).force,
-        "history by solver": model.force_history(*IMPACT, samples=5, method="solve").force,
         "sensitivity": [moved.speed, moved.thickness, moved.yield_strength],
         "yield speed": model.yield_speed(0.9e-3, [1e-3, math.inf]),
         "curve": model.curve(0.9e-3, 1e-3)(12.0),
-        "sphere curve": model.sphere_sphere_curve(1e-3, 1e-3)(12.0),
-        "kernel": model.kernel(*IMPACT),
-        "oblique": model.oblique(12.0, 5.0, 0.9e-3, 1e-3, 0.3, method="solve").sliding_speed,
-        "sliding": model.oblique(2.0, 1.0, 1e-3, 3e-3, 0.2, **oblique).sliding_speed,
+        "kernel": [model.kernel(*IMPACT), math.isnan(model.kernel(1e4, 0.9e-3, 1e-3))],
+        "oblique": model.oblique(2.0, 1.0, 1e-3, 3e-3, 0.2, **oblique).sliding_speed,
         "collide": model.collide([[1.0, 0, -2.0], [1.0, 0, 2]], 0, [0, 0, 1], 1e-3, 3e-3, 0.2)[0],
-        "outside, from the kernel": int(math.isnan(model.kernel(1e4, 0.9e-3, 1e-3))),
         "steps": [contacts.advance(np.array([depth]), 1e-7)[0] for depth in (1e-6, 5e-6, 9e-6, 5e-6)],
     }
     return {name: np.ravel(value).tolist() for name, value in found.items()}
@@ -111,7 +106,7 @@ def test_without_the_compiler_all_answers_are_there_and_c_functions_are_refused(
     assert interpreted.keys() == compiled.keys()
     for name, values in compiled.items():
         # Here both integrate; but `collide` has a table when compiled, with an error of its own.
-        exact = {"sliding": 1e-6, "collide": 1e-3}.get(name, 1e-9)
+        exact = {"oblique": 1e-6, "collide": 1e-3}.get(name, 1e-9)
         assert interpreted[name] == pytest.approx(values, rel=exact, abs=exact), name
     assert list(tmp_path.rglob("home/*")) == []
     assert len(refusals) == 2 + needs.has_lammps()

@@ -27,68 +27,64 @@ def of_mass(law):
 
 
 def assert_alike(one, other, rel):
-    for name, values in vars(one).items():
-        np.testing.assert_allclose(values, getattr(other, name), rtol=rel, atol=1e-14, err_msg=name)
+    """Compare the fields of answers, or numbers."""
+    ours, theirs = (vars(answer) if hasattr(answer, "__dict__") else {"": answer} for answer in (one, other))
+    for name, values in ours.items():
+        np.testing.assert_allclose(values, theirs[name], rtol=rel, atol=1e-14, err_msg=name)
+
+
+# What is asked with the mass of the bead, and how far the answers of two tables may be apart.
+EDGE = {"edge": "clamped", "edge_distance": 1e-3}
+ASKED = {
+    "solve": (lambda m, **mass: m.solve(*AT, **mass), 1e-9),
+    "lookup": (lambda m, **mass: m.lookup(*AT, **mass), 1e-6),
+    "restitution": (lambda m, **mass: m.restitution(*AT, **mass), 1e-6),
+    "near an edge": (lambda m, **mass: m.solve(2.0, RADIUS, 1e-3, **EDGE, **mass), 1e-9),
+    "yield speed": (lambda m, **mass: m.yield_speed(RADIUS, THICKNESS, **mass), 1e-6),
+    "oblique": (lambda m, **mass: m.oblique(3.0, [0.3, 2.0], RADIUS, 2e-3, 0.2, "solve", **mass), 1e-9),
+    "history": (lambda m, **mass: np.abs(m.force_history(*AT, 9, "solve", **mass)).max(axis=-1), 1e-8),
+}
+OF_ONE_LAW = {
+    "elasticities": (lambda m, **mass: m.sensitivity(*AT, **mass), 1e-5),
+    "range": (lambda m, **mass: m.uncertainty(*AT, **mass).restitution.low, 1e-4),
+    "time step": (lambda m, **mass: time_step(m, 5.0, RADIUS, 1e-3, **mass), 1e-5),
+    "collide": (
+        lambda m, **mass: np.array(
+            m.collide((3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0, 0, 1.0), RADIUS, 3e-3, 0.2, **mass)
+        ),
+        1e-5,
+    ),
+    "curve": (lambda m, **mass: m.curve(RADIUS, 1e-3, *mass.values())(3.0), 1e-12),
+    "kernel": (lambda m, **mass: m.kernel(3.0, RADIUS, 1e-3, *mass.values()), 1e-12),
+    "edge kernel": (lambda m, **mass: m.edge_kernel("free")(3.0, RADIUS, 1e-3, 1e-3, *mass.values()), 1e-9),
+}
 
 
 @pytest.mark.parametrize("law", laws.names())
 def test_it_is_as_a_sphere_of_another_density(law):
     """Whatever is asked; tables of laws with numbers of the pair differ by their errors."""
     own, heavy = of_mass(law)
-    assert_alike(own.solve(*AT, mass=MASS), heavy.solve(*AT), 1e-9)
-    assert_alike(own.lookup(*AT, mass=MASS), heavy.lookup(*AT), 1e-6)
-    assert own.restitution(*AT, mass=MASS) == pytest.approx(heavy.restitution(*AT), rel=1e-6)
-    near = {"edge": "clamped", "edge_distance": 1e-3}
-    assert_alike(own.solve(2.0, RADIUS, 1e-3, **near, mass=MASS), heavy.solve(2.0, RADIUS, 1e-3, **near), 1e-9)
-    yields = own.yield_speed(RADIUS, THICKNESS, MASS)
-    assert yields == pytest.approx(heavy.yield_speed(RADIUS, THICKNESS), rel=1e-6)
-    angled = 3.0, [0.3, 2.0], RADIUS, 2e-3, 0.2, "solve"
-    assert_alike(own.oblique(*angled, mass=MASS), heavy.oblique(*angled), 1e-9)
-    one, two = own.force_history(*AT, 9, "solve", mass=MASS), heavy.force_history(*AT, 9, "solve")
-    for values, others in zip(one, two, strict=True):
-        np.testing.assert_allclose(values, others, rtol=1e-8, atol=1e-8 * np.abs(others).max())
+    for ask, rel in (ASKED | (OF_ONE_LAW if law == "myc" else {})).values():
+        assert_alike(ask(own, mass=MASS), ask(heavy), rel)
 
 
 def test_steps_are_as_those_of_a_sphere_of_another_density():
-    own, heavy = of_mass("myc")
-    step = time_step(own, 5.0, RADIUS, 1e-3, mass=MASS)
-    assert step == pytest.approx(time_step(heavy, 5.0, RADIUS, 1e-3), rel=1e-5)
     forces = []
-    for contacts in (Contacts(own, RADIUS, 1e-3, mass=MASS), Contacts(heavy, RADIUS, 1e-3)):
+    for model, mass in zip(of_mass("myc"), ({"mass": MASS}, {}), strict=True):
+        contacts = Contacts(model, RADIUS, 1e-3, **mass)
         assert contacts.mass == pytest.approx([MASS])
-        forces.append([contacts.advance(np.array([x]), step)[0] for x in np.linspace(0, 1e-5, 9)])
+        forces.append([contacts.advance(np.array([x]), 1e-7)[0] for x in np.linspace(0, 1e-5, 9)])
     assert forces[0] == pytest.approx(forces[1], rel=1e-6)
 
 
-def test_velocities_after_a_collision():
+def test_compiled_functions_answer_a_mass_out_of_range_with_nan():
     own, heavy = of_mass("myc")
-    at = RADIUS, 3e-3, 0.2
-    given = (3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0.0, 0.0, 1.0), *at
-    still, expected = (0.0, 0.0, 0.0), heavy.collide(*given)
-    for found in (own.collide(*given, mass=MASS), own.collide_kernel(*given, still, MASS)):
-        for one, other in zip(found, expected, strict=True):
-            np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-9)
-    assert math.isnan(own.collide_kernel(*given, still, 0.3 * MASS)[0][0])
-
-
-def test_compiled_functions():
-    own, heavy = of_mass("myc")
-    at = 3.0, RADIUS, 1e-3
-    assert own.kernel(*at, MASS) == pytest.approx(heavy.kernel(*at), abs=1e-12)
-    assert own.kernel(*at) != own.kernel(*at, MASS)
-    assert own.curve(*at[1:], MASS)(3.0) == pytest.approx(heavy.kernel(*at), abs=1e-12)
-    near, other = (one.edge_kernel("free") for one in (own, heavy))
-    assert near(*at, 1e-3, MASS) == pytest.approx(other(*at, 1e-3), abs=1e-9)
+    at, near, still = (3.0, RADIUS, 1e-3), own.edge_kernel("free"), (0.0, 0.0, 0.0)
+    falling = (3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0.0, 0.0, 1.0), RADIUS, 3e-3, 0.2
+    np.testing.assert_allclose(own.collide_kernel(*falling, still, MASS), heavy.collide(*falling), rtol=1e-5, atol=1e-9)
+    assert math.isnan(own.collide_kernel(*falling, still, 0.3 * MASS)[0][0])
     for mass in (0.0, -MASS, 0.3 * MASS, 1e4 * MASS, math.nan):
         assert math.isnan(own.kernel(*at, mass)) and math.isnan(near(*at, 1e-3, mass))
-
-
-def test_ranges_and_elasticities():
-    """A mass that was weighed has no error; as a multiple of a solid one it moves the COR alike."""
-    own, heavy = of_mass("myc")
-    one, other = own.uncertainty(*AT, mass=MASS), heavy.uncertainty(*AT)
-    assert one.restitution.low == pytest.approx(other.restitution.low, rel=1e-4)
-    assert_alike(own.sensitivity(*AT, mass=MASS), heavy.sensitivity(*AT), 1e-5)
 
 
 @pytest.mark.parametrize("share", [0.7, 1.0, 6.0])
@@ -100,28 +96,23 @@ def test_the_equation_in_si_units(share):
     mobility = math.sqrt(3 * plate.density / plate.plane_modulus) / (4 * plate.density * thickness**2)
     e, time = series(mass, spring, mobility, speed)
     hit = cl.ImpactModel(pair, "hertz").solve(speed, RADIUS, thickness, mass=mass)
-    assert hit.restitution == pytest.approx(e, rel=1e-5)
-    assert hit.contact_time == pytest.approx(time, rel=1e-5)
+    assert (hit.restitution, hit.contact_time) == pytest.approx((e, time), rel=1e-5)
 
 
 @pytest.mark.parametrize("mass", [None, MASS / 1.7])
 def test_yield_speeds_know_the_end_of_a_table_that_was_given(mass):
-    pair = cl.Pair(ALUMINA, "glass")
-    small = Settings(largest_inelasticity=0.5)
+    pair, small = cl.Pair(ALUMINA, "glass"), Settings(largest_inelasticity=0.5)
     for table in (small, cl.ImpactModel(pair, table=small).table):
         heavy = "m the" if mass is None else f"m and mass={mass:g} kg the"
         with pytest.raises(ValueError, match=f"{heavy} inelasticity .*above 0.5"):
             cl.ImpactModel(pair, table=table).yield_speed(RADIUS, 0.27e-3, mass)
 
 
-def test_an_impact_beyond_the_table_is_named_by_its_place():
+def test_an_impact_beyond_the_table_is_named_by_its_place_and_mass():
+    model, at = of_mass("myc")[0], (5.0, RADIUS, 1e-4)
     falling = np.array([(0, 0, 1.0), (0, 0, 1.0), (0, 0, -2.0)])
     with pytest.raises(ValueError, match="thickness: impact 2 is outside"):
-        of_mass("myc")[0].collide(falling, 0, (0, 0, 1.0), 1e-3, [3e-3, 3e-3, 0.02e-3], 0.2)
-
-
-def test_a_plate_too_thin_for_a_mass_is_refused_with_that_mass():
-    model, at = of_mass("myc")[0], (5.0, RADIUS, 1e-4)
+        model.collide(falling, 0, (0, 0, 1.0), 1e-3, [3e-3, 3e-3, 0.02e-3], 0.2)
     for ask in (model.lookup, model.restitution, partial(time_step, model)):
         with pytest.raises(ValueError, match="thickness, mass=1e-05: impact 0 is outside"):
             ask(*at, mass=1e-5)
@@ -129,30 +120,17 @@ def test_a_plate_too_thin_for_a_mass_is_refused_with_that_mass():
         model.oblique(5.0, 1.0, RADIUS, [1e-2, 1e-4], 0.2, mass=[4e-6, 1e-5])
 
 
-@pytest.mark.parametrize("law", ["fem", "myc"])
-def test_the_mass_of_the_solid_sphere_changes_nothing(law):
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-2024-t351"), law)
-    mass = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
+def test_each_impact_has_its_own_and_a_hollow_bead_is_flagged():
+    """Of the mass of a solid sphere all is as without; a heavier bead loses more to the plate."""
+    model = cl.ImpactModel(cl.Pair("carbon-steel-1020", "glass"))
+    solid = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
+    shares = np.array([0.66, 0.94, 0.96, 1.0, 3.0])
+    hits = model.lookup(3.0, RADIUS, 2e-3, mass=solid * shares)
+    alone = [model.restitution(3.0, RADIUS, 2e-3, mass=share * solid) for share in shares]
+    assert hits.restitution == pytest.approx(alone, rel=1e-12) and (np.diff(alone) < 0).all()
     for ask in (model.solve, model.lookup):
-        assert_alike(ask(*AT, mass=mass), ask(*AT), 1e-9)
-
-
-def test_each_impact_has_its_own():
-    model = cl.ImpactModel(cl.Pair("carbon-steel-1020", "glass"))
-    solid = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
-    shares = np.array([[0.7], [1.0], [4.0]])
-    found = model.restitution(3.0, RADIUS, [1e-3, 2e-3], mass=shares * solid)
-    for n, share in enumerate(shares[:, 0]):
-        alone = [model.restitution(3.0, RADIUS, h, mass=share * solid) for h in (1e-3, 2e-3)]
-        assert found[n] == pytest.approx(alone, rel=1e-12)
-    assert (np.diff(found[:, 0]) < 0).all()  # a heavier bead loses more to the plate
-
-
-def test_a_hollow_bead_is_flagged():
-    model = cl.ImpactModel(cl.Pair("carbon-steel-1020", "glass"))
-    solid = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
-    flags = model.lookup(1.0, RADIUS, 2e-3, mass=solid * np.array([0.66, 0.94, 0.96, 3.0])).flags
-    assert ((flags & cl.Validity.NOT_SOLID) > 0).tolist() == [True, True, False, False]
+        assert_alike(ask(*AT, mass=solid), ask(*AT), 1e-9)
+    assert ((hits.flags & cl.Validity.NOT_SOLID) > 0).tolist() == [True, True, False, False, False]
     assert cl.explain(cl.Validity.NOT_SOLID)[0].startswith("lighter than a solid sphere")
 
 
@@ -161,19 +139,17 @@ def test_a_hollow_bead_is_flagged():
     [
         (0.3 * MASS, "a thin shell, which bends under the contact"),
         (1e4 * MASS, "is it in grams"),
-        (0.0, "mass: got 0.0; must lie between"),
         (-MASS, "mass: got -.* kilograms"),
         (math.nan, "mass: got nan; must lie between"),
-        (math.inf, "mass: got inf; must lie between"),
         ([MASS, 0.0], r"\(element 1\)"),
         ("1 g", "mass: got '1 g'; expected a number"),
     ],
 )
 def test_masses_that_are_none(mass, words):
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    model, at = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), (3.0, RADIUS, 1e-3)
     for ask in (model.restitution, model.lookup, model.solve, model.force_history):
         with pytest.raises(ValueError, match=words):
-            ask(3.0, RADIUS, 1e-3, mass=mass)
+            ask(*at, mass=mass)
     with pytest.raises(ValueError, match=words):
         model.oblique(3.0, 1.0, RADIUS, 1e-3, 0.2, mass=mass)
     with pytest.raises(ValueError, match=words):

@@ -4,7 +4,6 @@ Moduli are drawn over six decades, Poisson's ratios to 0.49, strengths from E*/5
 body is the weaker one, or the strengths are equal but for 2e-4.
 """
 
-import ctypes
 import dataclasses
 import itertools
 import math
@@ -17,7 +16,6 @@ from hypothesis import strategies as st
 
 import contactlaw as cl
 from contactlaw import Validity
-from contactlaw.answers.backend import UnsolvedError
 from contactlaw.laws.fem import RATIOS
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* as of no solid")  # strengths are drawn up to E*/5
@@ -134,14 +132,12 @@ def test_a_thicker_plate_takes_less(case):
     st.sampled_from(("fem", "myc", "hertz")),
     st.integers(0, 2**32 - 1),
 )
-def test_every_interface_answers_alike_or_refuses(sphere, plate, law, seed):
+def test_every_interface_answers_alike(sphere, plate, law, seed):
     """Speeds and sizes are drawn over twelve decades and more."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            models = {
-                how: cl.ImpactModel(cl.Pair(sphere, plate), law, outside=how) for how in ("raise", "clamp", "solve")
-            }
+            model, clamping = (cl.ImpactModel(cl.Pair(sphere, plate), law, outside=how) for how in ("raise", "clamp"))
     except (ValueError, UserWarning):  # the law has no such pair; the table says that it is less exact
         return
     random, count = np.random.default_rng(seed), 1000
@@ -150,39 +146,18 @@ def test_every_interface_answers_alike_or_refuses(sphere, plate, law, seed):
     h = np.maximum(r / 10.0 ** random.uniform(-3, 3, count), 1e-9)
     h[random.random(count) < 0.01] = math.inf
     foil = cl.table.lookup.THINNEST * r > h
-    model = models["raise"]
     cor = np.array([model.kernel(*impact) for impact in zip(v, r, h, strict=True)])
-    by_address = ctypes.CFUNCTYPE(*[ctypes.c_double] * 4)(model.address)
-    np.testing.assert_array_equal([by_address(*impact) for impact in zip(v, r, h, strict=True)], cor)
     inside = ~np.isnan(cor)
     assert not inside[foil].any() and ((cor[inside] >= 0.0) & (cor[inside] <= 1.0)).all()
     known = v[inside], r[inside], h[inside]
     np.testing.assert_allclose(model.restitution(*known), cor[inside], rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(model.lookup(*known).restitution, cor[inside], rtol=0.0, atol=1e-12)
-    hit = models["clamp"].lookup(v[~foil], r[~foil], h[~foil])
+    hit = clamping.lookup(v[~foil], r[~foil], h[~foil])
     np.testing.assert_array_equal((hit.flags & int(Validity.CLAMPED)) != 0, ~inside[~foil])
     for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
         assert -1e-6 <= getattr(hit, name).min() <= getattr(hit, name).max() <= 1.0 + 1e-4
     for name in ("contact_time", "peak_force", "peak_compression", "inelasticity"):
         assert ((getattr(hit, name) >= 0.0) & (getattr(hit, name) < math.inf)).all()
-    for n in random.choice(np.flatnonzero(~inside), min(10, int((~inside).sum())), replace=False):
-        beyond(models, foil[n], float(v[n]), float(r[n]), float(h[n]))
-
-
-def beyond(models, foil, v, r, h):
-    """Ask beyond the table: an error, its border or the equation, as `outside` says; a foil is refused."""
-    for (outside, model), method in itertools.product(models.items(), ("restitution", "lookup", "solve")):
-        solved = method == "solve" or outside == "solve"
-        try:
-            answer = getattr(model, method)(v, r, h)
-        except UnsolvedError:
-            assert solved and not foil
-        except ValueError as error:
-            assert any(name in str(error) for name in ("speed", "radius", "thickness", "lambda"))
-            assert foil or (outside == "raise" and method != "solve")
-        else:
-            assert not foil and (solved or outside == "clamp")
-            assert 0.0 <= getattr(answer, "restitution", answer) <= 1.0
 
 
 @settings(few, max_examples=20)

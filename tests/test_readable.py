@@ -42,34 +42,26 @@ def test_common_sizes_have_no_exponent(size, share):
         assert "e" not in with_error(value, share * value, unit).replace("GPa", "")
 
 
-@given(st.floats(0.0, 1e300), st.floats(0.0, 1e300))
-def test_any_size_is_written(value, error):
-    assert "nan" not in with_error(value, error, "Pa")
-    assert len(with_error(value, error, "Pa")) < 40
-
-
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [
-        (852e6, 190e6, "850 +- 190 MPa"),  # the lines of issue 23
+        (852e6, 190e6, "850 +- 190 MPa"),
         (3130e6, 290e6, "3130 +- 290 MPa"),
         (99.6e6, 9.96e6, "100 +- 10 MPa"),  # 9.96 has its second digit before the point
         (203.4e9, 2.1e9, "203.4 +- 2.1 GPa"),
         (793e-6, 12e-6, "0.793 +- 0.012 mm"),
         (3e-6, 0.4e-6, "3.00 +- 0.40 um"),
         (20e6, 1900e6, "0 +- 1900 MPa"),
+        (2700.0, 0.0, "2700 +- 0 kg/m3"),
+        (0.0, 0.0, "0 +- 0 nm"),
+        (0.0, 5e-324, "0 +- 0 kg/m3"),
+        (2700.0, 1e-9, "2700.0000 +- 0.0027 kg/m3"),
+        (1e9, math.inf, "1000 +- inf MPa"),
     ],
 )
 def test_as_one_would_write_it(value, error, text):
-    assert with_error(value, error, "m" if text.endswith("m") else "Pa") == text
-
-
-def test_without_an_error_or_with_an_infinite_one():
-    assert with_error(2700.0, 0.0, "kg/m3") == "2700 +- 0 kg/m3"
-    assert with_error(0.0, 0.0, "m") == "0 +- 0 nm"
-    assert with_error(0.0, 5e-324, "kg/m3") == "0 +- 0 kg/m3"
-    assert with_error(2700.0, 1e-9, "kg/m3") == "2700.0000 +- 0.0027 kg/m3"
-    assert with_error(1e9, math.inf, "Pa") == "1000 +- inf MPa"
+    unit = text.split()[-1]
+    assert with_error(value, error, unit.lstrip("MGumn") or "m") == text
 
 
 @given(SIGNED)

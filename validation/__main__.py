@@ -1,4 +1,4 @@
-"""Judge the model and reproduce the paper: ``python -m validation [--out DIR]``.
+"""Judge the model and reproduce the paper: ``python -m validation [PART ...] [--out DIR]``.
 
 What takes long to import is imported inside `_write`, where Ctrl-C is already caught.
 """
@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import collections
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
 from contactlaw import _atomic
 from contactlaw.parser import Parser
 from dem_demo.kit.signals import Interrupted, interruptible
+from validation.figures import PAPER, PARTS
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,29 +32,39 @@ def main(argv: Sequence[str] | None = None) -> int:
         "numbers, and what holds of its claims.",
     )
     parser.add_argument(
+        "parts",
+        nargs="*",
+        default=PARTS,
+        metavar="PART",
+        help=f"parts of the report: {', '.join(PARTS)} (default: all)",
+    )
+    parser.add_argument(
         "--out",
         type=Path,
         metavar="DIR",
         default=Path(__file__).parent / "report",
         help="folder for index.html and the PNGs (default: %(default)s)",
     )
-    out = parser.parse_args(argv).out
+    options = parser.parse_args(argv)
+    if wrong := set(options.parts) - set(PARTS):
+        parser.error(f"no such part: {', '.join(wrong)}; there are {', '.join(PARTS)}")
+    start = time.perf_counter()
     try:
-        with interruptible(), _atomic.folder(out) as folder:
-            verdicts = _write(folder)
+        with interruptible(), _atomic.folder(options.out) as folder:
+            verdicts = _write(folder, options.parts)
     except OSError as error:
-        print(f"validation: {error}; nothing was written to --out {out}", file=sys.stderr)
+        print(f"validation: {error}; nothing was written to --out {options.out}", file=sys.stderr)
         return 1
     except Interrupted as stop:
         print("\nvalidation: interrupted; nothing was written", file=sys.stderr)
         return stop.exit_status
     for verdict, count in verdicts.items():
         print(f"{count:3d} claims: {verdict}")
-    print(out / "index.html")
+    print(f"{options.out / 'index.html'}, in {time.perf_counter() - start:.0f} s")
     return 0
 
 
-def _write(folder: Path) -> collections.Counter[str]:
+def _write(folder: Path, parts: Sequence[str]) -> collections.Counter[str]:
     """Draw, judge and write; count the verdicts."""
     from tqdm import tqdm
 
@@ -62,17 +74,18 @@ def _write(folder: Path) -> collections.Counter[str]:
     from validation.paper.verdicts import judge
     from validation.report import Picture, page
 
-    drawn = []
+    chosen = {name: drawing for name, drawing in figures.drawings().items() if drawing.part in parts}
+    pictures = []
     with style.applied():
-        for name, (part, caption, draw) in tqdm(figures.drawings().items(), "validation: figures", disable=None):
-            figure, numbers = draw()
+        for name, drawing in tqdm(chosen.items(), "validation: figures", disable=None):
+            figure, numbers = drawing.draw()
             numbers = {key: float(number) for key, number in numbers.items()}
-            one = Picture(name, part, caption, numbers, style.png(figure))
-            (folder / one.file).write_bytes(one.png)
-            drawn.append(one)
-    found = tuple(judge(row) for row in tqdm(ROWS, "validation: claims", disable=None))
-    (folder / "index.html").write_text(page(found, drawn), encoding="utf-8")
-    return collections.Counter(claim.verdict for claim in found)
+            pictures.append(Picture(name, drawing.part, drawing.caption, numbers))
+            (folder / pictures[-1].file).write_bytes(style.png(figure))
+    rows = ROWS if PAPER in parts else ()
+    claims = tuple(judge(row) for row in tqdm(rows, "validation: claims", disable=None))
+    (folder / "index.html").write_text(page(parts, claims, pictures), encoding="utf-8")
+    return collections.Counter(claim.verdict for claim in claims)
 
 
 if __name__ == "__main__":

@@ -6,28 +6,25 @@
 from __future__ import annotations
 
 import datetime
-import html
 import re
-import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import markdown
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from l2m4m import LaTeX2MathMLExtension
 from markupsafe import Markup
 
 import contactlaw as cl
+from validation import figures
 from validation.accuracy import compare, trust
 from validation.accuracy.trust import Score
-from validation.figures.practice import oblique_points
-from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
-from validation.typeset import typeset
+from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim, scientific
 
 _FOLDER = Path(__file__).parent
 _DERIVATIONS = "errata", "turning_point", "fem_law", "mobility", "losses", "edges"
 _COLOURS = {HOLDS: "#007A5A", MISPRINT: "#B34E00", LIMITED: "#8F6400", FAILS: "#B34E00", OPEN: "#6E6E6E"}
-_SIZE = "(size)"  # stands for the size of the page until it is known
 
 
 class Picture(NamedTuple):
@@ -35,9 +32,8 @@ class Picture(NamedTuple):
 
     name: str
     part: str  # part of the report
-    caption: str
+    caption: str  # the first paragraph says what is drawn, the second what it shows
     numbers: dict[str, float]
-    png: bytes
 
     @property
     def file(self) -> str:
@@ -50,20 +46,14 @@ class Picture(NamedTuple):
         return self.caption.partition(": ")[0]
 
     @property
-    def text(self) -> Markup:
+    def text(self) -> str:
         """The caption after its title."""
-        return _formula(" ".join(self.caption.split()).partition(": ")[2])
+        return " ".join(self.caption.split()).partition(": ")[2]
 
     @property
-    def alt(self) -> Markup:
-        """What is drawn: the first paragraph of the caption; what it shows comes after it."""
-        first = self.caption.split("\n\n")[0]
-        return Markup(re.sub("<[^>]*>", "", _formula(" ".join(first.split()))).replace("'", "&#39;"))
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
-        return struct.unpack(">II", self.png[16:24])
+    def alt(self) -> str:
+        """What is drawn, without formulas."""
+        return " ".join(self.caption.split("\n\n")[0].split())
 
 
 class Table(NamedTuple):
@@ -74,30 +64,30 @@ class Table(NamedTuple):
     rows: list[tuple[str, ...]]
 
 
-def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
+def page(parts: Sequence[str], claims: tuple[Claim, ...], pictures: Sequence[Picture]) -> str:
     """Write the page.
 
     Parameters
     ----------
+    parts : sequence of str
+        Parts of the report, of `figures.PARTS`.
     claims : tuple of Claim
-        What `validation.paper.claims.claims` returned.
-    pictures : iterable of Picture
-        Figures, which are files beside the page.
+        What `validation.paper.claims.claims` returned; none without the part on the paper.
+    pictures : sequence of Picture
+        Figures of these parts, which are files beside the page.
 
     Returns
     -------
     str
         HTML.
     """
-    pictures = tuple(pictures)
     environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True, undefined=StrictUndefined)
-    environment.filters |= {"formula": _formula, "code": _code, "percent": _percent, "number": _number}
-    text = environment.get_template("page.html").render(
+    environment.filters |= {"text": _text, "percent": _percent, "number": _number}
+    return environment.get_template("page.html").render(
         style=Markup((_FOLDER / "page.css").read_text(encoding="utf-8")),
-        size=_SIZE,
+        parts=parts,
         pictures=pictures,
-        weight=f"{1e-6 * sum(len(one.png) for one in pictures):.1f}",
-        **_practice(),
+        **(_practice() if figures.PRACTICE in parts else {}),
         mesh={name: float(found.max()) for name, found in compare.discretisation().items()},
         claims=claims,
         colours=_COLOURS,
@@ -105,7 +95,6 @@ def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
         version=cl.__version__,
         today=datetime.datetime.now(datetime.UTC).date().isoformat(),
     )
-    return text.replace(_SIZE, f"{1e-3 * len(text.encode()):.0f}")
 
 
 def _practice() -> dict[str, Any]:
@@ -126,23 +115,21 @@ def _practice() -> dict[str, Any]:
         "where": _scores("everyday impacts", trust.where()),
         "misses": _misses(),
         "materials": _scores("bead on plate", trust.materials()),
-        "oblique": _oblique(),
     }
 
 
-def _code(text: str) -> Markup:
-    """Escape plain text, and set what stands in backticks as code."""
-    if isinstance(text, Markup):
-        return text
-    return Markup(re.sub("`([^`]*)`", r"<code>\1</code>", html.escape(text, quote=False)))
+def _html(text: str) -> str:
+    """Make HTML of Markdown, with formulas in LaTeX between dollar signs as MathML."""
+    return markdown.markdown(text, extensions=["tables", LaTeX2MathMLExtension()])  # type: ignore[no-any-return]
 
 
-def _formula(text: str) -> Markup:
-    return Markup(typeset(_code(text)))
+def _text(text: str) -> Markup:
+    """Make HTML of a paragraph of Markdown, without the paragraph."""
+    return Markup(_html(text).removeprefix("<p>").removesuffix("</p>").strip())
 
 
 def _number(value: float | None) -> Markup:
-    return Markup("-" if value is None else typeset(f"{value:.4g}"))
+    return Markup("-") if value is None else _text(scientific(value, 4))
 
 
 def _percent(share: float, digits: int = 0) -> str:
@@ -151,18 +138,6 @@ def _percent(share: float, digits: int = 0) -> str:
 
 def _signed(share: float) -> str:
     return f"{100.0 * share:+.1f} %".replace("-", "\N{MINUS SIGN}")
-
-
-def _oblique() -> Table:
-    """Make a table of the measured oblique impacts of Fig. 26 beside the model."""
-    return Table(
-        "oblique impacts, measured and by the model",
-        ("quantity", "reading", "angle [°]#", "measured#", "model#", "model off#"),
-        [
-            (name, f"{source}", f"{angle:.2f}", _number(value), _number(model), _signed(model / value - 1.0))
-            for name, source, angle, value, model in oblique_points()
-        ],
-    )
 
 
 def _scores(title: str, found: Mapping[str, list[Score]]) -> Table:
@@ -210,7 +185,7 @@ def _misses() -> Table:
 def _derivation(name: str) -> Markup:
     """Make a derivation from Markdown, with its headings two levels down."""
     text = (_FOLDER / "derivations" / f"{name}.md").read_text(encoding="utf-8")
-    made = typeset(markdown.markdown(text, extensions=["tables"]))
-    made = re.sub(r"(</?h)([1-3])", lambda found: f"{found[1]}{int(found[2]) + 2}", made)
-    wide = "<div class='wide' tabindex='0' role='region' aria-label='table'>"
-    return Markup(made.replace("<table>", f"{wide}<table>").replace("</table>", "</table></div>"))
+    made = re.sub(r"(</?h)([1-3])", lambda found: f"{found[1]}{int(found[2]) + 2}", _html(text))
+    wide = "<div class='wide' tabindex='0' role='region' aria-label='table or formula'>"
+    made = re.sub(r"<(table|math display=.block.).*?</(table|math)>", rf"{wide}\g<0></div>", made, flags=re.DOTALL)
+    return Markup(made)

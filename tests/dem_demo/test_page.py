@@ -1,4 +1,4 @@
-"""The page of a rain: whole in one file, and in a browser what it should be."""
+"""The pages of rain and sieve: whole in one file, and in a browser what they should be."""
 
 import re
 
@@ -20,21 +20,30 @@ def folder(request):
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.parametrize("folder", ["rain", "oblique", "sieve"], indirect=True)
 def test_the_page_needs_nothing_else_and_is_small(folder):
     text = (folder / "index.html").read_text()
     assert len(text.encode()) < 5e6
     sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
-    assert sources
+    assert len(sources) >= text.count("<figure") > 0
     assert all(source.startswith("data:") for source in sources)
-    assert "url(" not in text
-    assert "http:" not in text and "https:" not in text
+    assert not any(words in text for words in ("url(", "http:", "https:"))
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_of_a_sieve_fits_the_screen(sieve, page, width):
+    page.complaints.clear()
+    page.open(sieve / "index.html", width)
+    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
+    assert page.value("document.documentElement.scrollWidth") <= width
+    assert page.complaints == []
 
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_page_fits_the_screen_and_moves(folder, page, width):
     page.complaints.clear()
     page.open(folder / "index.html", width)
-    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
+    assert page.value("innerWidth") == width
     assert page.value(WIDE) == []
     assert page.wait_for_change(PICTURE)
     assert page.wait_for_change(CONTACT)
@@ -83,7 +92,9 @@ def test_a_bead_turns_on_from_piece_to_piece(folder):
     np.testing.assert_allclose(two["angle"], np.where(one["bead"] == two["bead"], turned, 0.0), atol=1e-6)
 
 
-def test_a_page_of_an_empty_rain(tmp_path, page, monkeypatch):
+def test_a_rain_that_never_lands(tmp_path, page, monkeypatch, capfd):
+    """Without a terminal it is quiet."""
+
     def laid_out(figure):
         figure.draw_without_rendering()
         return blank(figure)
@@ -91,6 +102,9 @@ def test_a_page_of_an_empty_rain(tmp_path, page, monkeypatch):
     monkeypatch.setattr("contactlaw.style.png", laid_out)
     few = "rain --law myc --beads 2 --speed 0.5,0.6 --duration 0.01".split()
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
+    said, errors = capfd.readouterr()
+    assert "Written to" in said and errors == ""
+    assert "All impacts on walls are inside" in (tmp_path / "summary.txt").read_text()
     page.complaints.clear()
     page.open(tmp_path / "index.html", 390)
     assert page.value(WIDE) == []

@@ -1,4 +1,4 @@
-"""What any scene leaves when it ends, is stopped, or is refused by the disk; see `test_stop.py`."""
+"""What any scene leaves when it ends, is stopped, or is refused by the disk."""
 
 import resource
 import signal
@@ -140,23 +140,26 @@ def test_an_error_that_a_dropped_interrupt_leaves_is_an_interrupt(while_it_runs,
     assert main(tmp_path / "out") == 130
     errors = capsys.readouterr().err
     assert "interrupted by SIGINT" in errors and "no compiled object" not in errors
+    assert names(tmp_path) == ({"out"} if while_it_runs else set())
 
 
 @pytest.mark.parametrize("error", [KeyError("drawing"), signal.SIGINT])
 def test_what_fails_while_figures_are_drawn_keeps_the_record_apart(error, dust, tmp_path, capsys):
-    """The page in the folder stays that of the record beside it, until a run comes to its end."""
+    """The page in the folder stays that of the record beside it, until a run comes to its end; other files stay."""
     out, draw = tmp_path / "out", dust.draw
     assert main(out) == 0
+    (out / "notes.txt").write_text("mine")
     before = (out / "rain.h5").read_bytes()
     raise_it = signal.raise_signal if isinstance(error, int) else fails(error)
     dust.draw = lambda: raise_it(error)
     assert main(out) == (130 if isinstance(error, int) else 1)
     assert "dem-demo: stopped: " in capsys.readouterr().err
-    assert names(out) == FILES | {"rain-partial.h5"} and (out / "rain.h5").read_bytes() == before
+    assert names(out) == FILES | {"rain-partial.h5", "notes.txt"} and (out / "rain.h5").read_bytes() == before
     assert cl.read_record(out / "rain-partial.h5").rows.size == IMPACTS
     dust.draw = draw
     assert main(out) == 0
-    assert names(out) == FILES
+    assert names(out) == FILES | {"notes.txt"} and (out / "notes.txt").read_text() == "mine"
+    assert (out / "rain.h5").read_bytes() != before
 
 
 def test_a_run_that_stops_before_its_first_frame_keeps_its_contacts(dust, tmp_path, capsys):
@@ -176,17 +179,6 @@ def test_files_that_may_not_grow_keep_the_impacts_without_the_frames(dust, tmp_p
     assert "dem-demo: stopped: [Errno 27] File too large" in capsys.readouterr().err
     assert names(tmp_path) == {"out"} and names(tmp_path / "out") == {"rain-partial.h5"}
     assert cl.read_record(tmp_path / "out/rain-partial.h5").rows.size == IMPACTS
-
-
-def test_an_earlier_run_is_replaced_and_other_files_stay(dust, tmp_path):
-    out = tmp_path / "out"
-    assert main(out) == 0
-    (out / "notes.txt").write_text("mine")
-    before = (out / "rain.h5").read_bytes()
-    assert main(out) == 0
-    assert names(out) == FILES | {"notes.txt"}
-    assert (out / "notes.txt").read_text() == "mine"
-    assert (out / "rain.h5").read_bytes() != before
 
 
 def test_a_file_in_the_way(dust, tmp_path, capsys):

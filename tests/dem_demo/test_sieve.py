@@ -20,7 +20,6 @@ from lammps_box import ALIKE  # noqa: E402
 from verlet import fallen  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
-from contactlaw.reporting.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo.sieve import engine  # noqa: E402
 from dem_demo.sieve import scene as scenes  # noqa: E402
@@ -48,26 +47,12 @@ def test_the_deck_is_a_tray_with_round_openings(opening, tmp_path):
     sheet = deck.length * deck.width - 7 * 4 * hole
     walls = 2.0 * (deck.length + deck.width) * deck.wall
     assert found.area * 1e-6 == pytest.approx(sheet + walls, rel=1e-5)
-    assert areas(triangles).sum() == pytest.approx(sheet + walls)
     found.merge_vertices()
     # one piece, whose free edges are those of the openings and the upper rim of the walls
     assert found.body_count == 1
     edges = found.edges_sorted[trimesh.grouping.group_rows(found.edges_sorted, require_count=1)]
     assert len(edges) == 7 * 4 * 16 + 4 * 2 * (9 + 6)
     assert set(np.unique(found.vertices[edges][..., 2].round(6))) == {0.0, 1e3 * deck.wall}
-
-
-def test_impacts_lie_on_their_triangles_where_the_deck_is_then(runs):
-    for run in runs:
-        rows, scene = run.contacts, run.scene
-        assert rows.size > 10
-        end = rows["time"] + rows["contact_time"]
-        moved = displaced(scene, end)
-        assert np.abs(moved[:, 2]).max() > 0.5 * scene.vibration[2]
-        point = np.column_stack([rows[name] for name in "xyz"]) - moved
-        corners = run.scene.deck.triangles()[rows["triangle"]]
-        nearest = trimesh.triangles.closest_point(corners, point)
-        assert np.linalg.norm(point - nearest, axis=1).max() < 5e-6
 
 
 def displaced(scene, time):
@@ -84,38 +69,6 @@ def from_rims(deck, x, y):
     away = (x + 1j * y)[:, None] - start
     share = np.clip((away / side).real, 0.0, 1.0)
     return np.abs(away - share * side).min(axis=1)
-
-
-def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(tmp_path):
-    p, r = 10e-3, 2.5e-3
-    # beside three openings, amid four, and in closed corners of the deck
-    places = [((n + 1.5) * p + r + s, 1.5 * p) for n, s in enumerate((0.5e-3, 1.5e-3, 2.5e-3))]
-    places += [(2.0 * p, 2.0 * p), (2e-3, 2e-3), (78e-3, 3e-3)]
-    scene = dataclasses.replace(
-        scenes.sieve(
-            beads=6, thickness=1e-3, sphere="gamma-alumina", plate="glass", amplitude=0.0, friction=0.0, softening=1.0
-        ),
-        radius=np.full(6, 0.9e-3),
-        position=np.array([(x, y, 2e-3) for x, y in places]),
-        velocity=np.tile([0.0, 0.0, -2.0], (6, 1)),
-    )
-    write_stl(tmp_path / FORM, scene.deck.triangles())
-    model = cl.ImpactModel(PAIR, LAW, outside="clamp")
-    simulation = engine.Simulation(scene, model, 1e-3, engine.time_step(scene, model), tmp_path)
-    simulation.advance()
-    rows = np.sort(simulation.record().rows, order="bead")
-    simulation.lmp.close()
-    assert rows["bead"].tolist() == list(range(6)) and not rows["kind"].any()
-    rim = from_rims(scene.deck, rows["x"], rows["y"])
-    sizes = rows["approach_speed"], 0.9e-3, 1e-3
-    endless = model.restitution(*sizes)
-    expected = model.restitution(*sizes, edge_distance=rim, hole_radius=HOLE)
-    # steps take the response of the nearest of a few radii of holes, which costs up to 1 %
-    assert rows["restitution"] == pytest.approx(expected, rel=0.01)
-    assert endless[0] - rows["restitution"][0] > 0.01
-    assert rows["restitution"][4:] == pytest.approx(endless[4:], abs=5e-4)
-    flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
-    assert flagged.tolist() == (rim < 1e-3).tolist()
 
 
 def test_impacts_on_the_flat_have_the_cor_of_the_law_near_an_opening(runs):
@@ -156,6 +109,7 @@ def test_beads_below_the_deck_have_passed(runs):
     assert found["undersize beads that have passed"] == "100.0%"
 
 
+@pytest.mark.long  # those of LAMMPS have it, too
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
     mpirun = Path(sys.executable).with_name("mpirun")
     command = [mpirun, "-np", "2", *unrendered.UNDRAWN, *SIEVE, "--out", tmp_path / "o"]
@@ -175,24 +129,18 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
 
 def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
     """OVITO reads a text format with a header for each frame, and one row per bead."""
-    text = (sieve / "sieve.lammpstrj").read_text()
-    assert text.count("ITEM: TIMESTEP") == runs[0].time.size
-    assert text.count("ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution") == (runs[0].time.size)
-    lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
-    head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
-    columns = lines[head].split()[2:]
-    rows = np.array([line.split() for line in lines[head + 1 :]], dtype=float)
-    impacts, last = runs[0].impacts, dict.fromkeys(range(12), 0.0)
-    for bead in set(impacts["bead"].tolist()):
-        where = np.flatnonzero(impacts["bead"] == bead)
-        one_by_one = np.diff(impacts["time"][where]).min(initial=1.0) > 1e-4  # not so at a rim
-        last[bead] = impacts["restitution"][where[-1]] if one_by_one else math.nan
-    expected = np.array([last[n] for n in range(12)])
-    known = ~np.isnan(expected)
-    found = rows[:, columns.index("d_contactlaw_restitution")]
-    assert known.sum() >= 6
-    assert found[known] == pytest.approx(expected[known], rel=1e-5)
-    assert rows[:, columns.index("radius")] == pytest.approx(runs[0].scene.radius)
+    run, text = runs[0], (sieve / "sieve.lammpstrj").read_text()
+    head = "ITEM: ATOMS id type x y z vx vy vz radius d_contactlaw_restitution\n"
+    assert text.count("ITEM: TIMESTEP") == text.count(head) == run.time.size
+    rows = np.loadtxt(text.rpartition(head)[2].splitlines())
+    assert rows[:, 8] == pytest.approx(run.scene.radius)
+    known = 0
+    for bead, found in enumerate(rows[:, 9]):
+        own = run.impacts[run.impacts["bead"] == bead]
+        if np.diff(own["time"]).min(initial=1.0) > 1e-4:  # else at a rim
+            known += 1
+            assert found == pytest.approx(own["restitution"][-1] if own.size else 0.0, rel=1e-5)
+    assert known >= 6
 
 
 def test_a_feed_has_two_sizes_and_no_overlap():

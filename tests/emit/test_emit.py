@@ -57,17 +57,6 @@ def listed(x):
     return [x, x][0]
 
 
-def formatted(x):
-    return float(f"{x}")
-
-
-def caught(x):
-    try:
-        return 1.0 / x
-    except ZeroDivisionError:
-        return 0.0
-
-
 def early(x):
     return y + x  # noqa: F821
 
@@ -92,8 +81,6 @@ def every(x):
     ("kernel", "where", "remedy"),
     [
         (listed, 1, "use numbers, NamedTuples, arrays"),
-        (formatted, 1, "use numbers, NamedTuples, arrays"),
-        (caught, 1, "use assignments, if, while, for in a range"),
         (early, 1, "give the variable a value before it is read"),
         (changed, 2, "a variable has one type, not double and tuple"),
         (powered, 1, "use + - "),

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from scipy.special import kv, sici
+from scipy.special import sici
 
 from contactlaw import laws
-from contactlaw.equation import force, near_edge, outcome, zener
+from contactlaw.equation import outcome, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS, SIZE, Edges
 from contactlaw.equation.force import HERTZ
@@ -45,12 +45,6 @@ def error_of_work(kind, poisson, radius=math.inf):
     return np.abs((exact.work(added) - wanted) / np.maximum(1.0 + wanted, 0.3)).max()
 
 
-def test_a_supported_edge_is_an_image_of_opposite_sign():
-    p = np.array([0.1, 3.0, 2.0 + 5.0j])
-    image = 2.0 / (1j * math.pi) * (kv(0, 2.0 * np.sqrt(-1j * p)) - kv(0, 2.0 * np.sqrt(1j * p)))
-    np.testing.assert_allclose(exact.reflected(p, "supported", 0.3), -image, rtol=1e-8)
-
-
 @pytest.mark.parametrize(("poisson", "ratio"), AT_THE_EDGE.items())
 def test_the_mobility_at_a_free_edge(poisson, ratio):
     """The closed form by the derivation, and by the weights of all rates."""
@@ -60,14 +54,6 @@ def test_the_mobility_at_a_free_edge(poisson, ratio):
         turns = part[2:12:4] != 0.0  # the imaginary part of a steady z is 0
         total += part[12::2].sum() + part[13::2][~turns].sum()
     assert total == pytest.approx(ratio, rel=0.01)
-
-
-def test_a_large_hole_has_a_straight_rim():
-    p = np.array([0.3, 2.0, 1.0 + 8.0j])
-    straight = exact.reflected(p, "free", 0.3)
-    errors = [abs(exact.around_hole(p, 0.3, radius) - straight).max() for radius in (25.0, 50.0)]
-    assert errors[1] < 0.04
-    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.1)  # of first order in s/a
 
 
 # between those of the fit; at a clamped and at a supported edge they make no difference
@@ -90,23 +76,6 @@ def test_the_fitted_response_does_the_work_of_the_exact_one(kind, poisson):
 )
 def test_the_fitted_response_near_holes(radius):
     assert error_of_work("free", 0.3, radius) < 0.01
-
-
-@pytest.mark.parametrize(("size", "least"), [("equation", -1e-4), ("steps", 0.0)])
-def test_no_force_is_driven_by_the_plate(size, least):
-    """The real part of the mobility is not negative at any frequency: the plate makes no energy."""
-    omega = 1j * np.geomspace(1e-8, 1e4, 600)
-    cases = [(kind, nu, 0.0) for kind in KINDS for nu in (0.0, 0.3, 0.5)]
-    cases += [("free", nu, 1.0 / (1.0 + radius)) for nu in (0.0, 0.5) for radius in exact.RADII[1:]]
-    for kind, nu, share in cases:
-        mobility = 1.0
-        for part in response_of(kind, nu, share, size).reshape(-1, SIZE):
-            for (a, b, turn, _), (c, d) in zip(part[:12].reshape(3, 4), part[12:].reshape(3, 2), strict=True):
-                first, second = (a, b) if turn == 0.0 else (a + 1j * turn, a - 1j * turn)
-                x, y = first / (omega + first), second / (omega + second)
-                x, y = (x, y) if turn == 0.0 else (0.5 * (x + y), -0.5j * (x - y))
-                mobility = mobility + c * x + d * y
-        assert mobility.real.min() > least, (kind, nu, share)
 
 
 def solved(law, lam, y, edges):
@@ -166,31 +135,6 @@ def test_impacts_near_a_supported_edge_are_as_by_a_convolution_in_time(lam, boun
     assert np.abs(found - expected).max() < bound
 
 
-def followed(error, lam, y, edges):
-    """Restitution, contact time and peak force of impacts, with this error of a step."""
-    none = zener.Notes(*np.empty((5, 0, 0)))
-    found = []
-    for n, one in enumerate(lam):
-        law, response = force.alone(MYC), edges.response[n]
-        contact = near_edge.follow(law, response, one, y, 1.0, edges.rate[n], error, none, 0)
-        found.append((contact.restitution, contact.duration, force.deepest(law, contact.largest).force))
-    return np.array(found).T
-
-
-@pytest.mark.parametrize("y", [0.1, 1.0])
-def test_the_errors_of_steps_fall_with_their_tolerance(y):
-    """Beside a tolerance of 1e-9, of solutions and of the jitted function for loops."""
-    lam, s = (each.ravel() for each in np.meshgrid([0.1, 0.3, 1.0], [0.4, 1.0, 3.0]))
-    for kind in KINDS:
-        edges = near(kind, 0.3, s**-2)
-        exact, fine, quick = (followed(error, lam, y, edges) for error in (1e-9, near_edge.FINE, near_edge.QUICK))
-        assert np.abs(fine[0] - exact[0]).max() < 3e-5
-        assert np.abs(fine[2] / exact[2] - 1.0).max() < 1e-4
-        left = exact[0] > 0.02  # a sphere that hardly rebounds takes long to leave
-        assert np.abs(fine[1] / exact[1] - 1.0)[left].max() < 5e-4
-        assert np.abs(quick[0] - exact[0]).max() < 5e-4
-
-
 def test_an_edge_that_is_far_away_is_none():
     """The implicit steps beside the integrator of endless plates, with all fields."""
     lam, y = np.array([0.02, 0.1, 0.5, 1.5]), 0.2
@@ -205,17 +149,6 @@ def histories(law, lam, y, time, edges):
     out = History(time, *np.empty((3, *time.shape)))
     zener.histories(law, outcome.at(lam, y), 1e-9, out, edges)
     return out
-
-
-def test_points_of_a_path_are_those_of_finer_steps():
-    edges, lam, y = near("supported", 0.3, 1.0), np.array([0.6]), np.array([0.2])
-    time = np.linspace(0.0, solved(MYC, lam, y, edges).contact_time[0], 301)
-    found = histories(MYC, lam, y, time[None], edges)
-    notes = zener.Notes(time[None], *np.empty((4, 1, 301)))
-    near_edge.follow(force.alone(MYC), edges.response[0], 0.6, 0.2, 1.0, 1.0, 1e-10, notes, 0)
-    pairs = (found.force, notes.force), (found.compression, notes.compression), (1.0 - found.impulse, notes.speed)
-    for ours, fine in pairs:
-        assert np.abs(ours - fine).max() < 1e-4 * np.abs(fine).max()
 
 
 def test_a_plate_gives_no_more_energy_than_it_was_given():

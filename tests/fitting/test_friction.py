@@ -71,7 +71,7 @@ def test_the_error_of_the_model_is_that_of_the_sliding_speed_beside_finite_eleme
 def test_the_stated_error_of_the_sliding_speed_is_the_rms_beside_finite_elements():
     off = [
         cases.model(case).sliding_speed / (case.friction * case.speed) - outcome["psi_after"]
-        for name in cases.SEEDS
+        for name in cases.SETS
         for case, outcome in cases.results(name).items()
     ]
     assert np.sqrt(np.mean(np.square(off))) == pytest.approx(errors.SLIDING_ERROR, rel=0.02)

@@ -1,9 +1,7 @@
 """The law fem where people meet it: flags of other laws, energies, tables, engines, two beads."""
 
 import dataclasses
-import functools
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -15,27 +13,6 @@ from validation.fem import census
 
 R = 1e-3
 ENERGIES = ("plastic_fraction", "wave_fraction", "other_fraction")
-
-
-@pytest.fixture(autouse=True, scope="module")
-def no_folder():
-    """Keep the tables of the many pairs here out of the user's cache."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("CONTACTLAW_NO_CACHE", "1")
-        yield
-
-
-@functools.cache
-def model_of(sphere, plate, law="fem"):
-    return cl.ImpactModel(cl.Pair(sphere, plate), law=law)
-
-
-@functools.cache
-def solver_of(pair):
-    """A model that only solves: its table belongs to another law and is not used."""
-    spans = model_of("gamma-alumina", "glass").table
-    table = dataclasses.replace(spans, law=law_of(pair, "fem"), certificate=None)
-    return cl.ImpactModel(pair, law="fem", table=table)
 
 
 # Pairs and speeds for which a user chose a law that does not suit them.
@@ -60,9 +37,8 @@ def test_what_is_as_soft_and_light_as_a_polymer_is_taken_for_one(modulus, densit
     assert bool(flags & Validity.RATE_DEPENDENT) == depends
 
 
-@pytest.mark.parametrize("law", ["fem", "hertz"])
-def test_glass_may_break_under_alumina(law):
-    model = model_of("alumina", "soda-lime-glass", law)
+def test_glass_may_break_under_alumina():
+    model = cl.ImpactModel(cl.Pair("alumina", "soda-lime-glass"))
     assert not model.lookup(1.0, R, 5e-3).flags & Validity.DAMAGE
     hard = model.lookup(10.0, R, 5e-3).flags
     assert hard & Validity.DAMAGE and not hard & Validity.DAMAGE & Validity.ACCURACY
@@ -81,33 +57,6 @@ def test_it_takes_its_numbers_from_the_pair():
     numbers = (*ratios, share, pair.sphere.poissons_ratio, pair.plate.poissons_ratio)
     assert law.name == f"fem({','.join(f'{number:.6g}' for number in numbers)})"
     assert law == laws.law(law.name)
-
-
-@pytest.mark.parametrize("pair", [("alumina", "soda-lime-glass"), ("copper-c11000", "alumina")])
-def test_it_is_stiffer_than_hertz_and_gives_back_no_more(pair):
-    law = law_of(cl.Pair(*pair), "fem")
-    deepest = law.range[1]
-    end = 1.0 if law.yields else deepest
-    d = np.geomspace(1e-4 * end, end, 50)
-    stiffer = np.array([law.loading(math.sqrt(one)) for one in d]) / d**1.5
-    assert (stiffer > 1.0).all() and (np.diff(stiffer) > 0.0).all()
-    assert stiffer[-1] < 1.5
-    for dm in np.geomspace(1e-3 * end, deepest, 30):
-        assert law.dissipation(dm) >= 0.0
-        assert 0.0 <= law.residual(dm) < dm
-        assert law.residual(dm) == 0.0 or dm > 1.0
-
-
-def test_slow_impacts_on_thin_plates_are_those_of_zener():
-    """In small, long contacts the difference from Zener's goes as lambda h, or V^(2/5)."""
-    glass = cl.Pair("soda-lime-glass", "soda-lime-glass")
-    ours, zener = solver_of(glass), cl.ImpactModel(glass, law="hertz")
-    off = [
-        ours.solve(v, R, R, rtol=1e-13).restitution - zener.solve(v, R, R, rtol=1e-13).restitution
-        for v in (1e-10, 1e-15)
-    ]
-    assert 1e-7 < abs(off[0]) < 1e-5
-    assert off[1] / off[0] == pytest.approx(0.01, rel=0.02)
 
 
 # Between bodies alike, and beyond the campaign.
@@ -180,38 +129,6 @@ def test_untried_strengths_are_flagged_once_a_body_yields(strength, speed, yield
     assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
 
 
-@pytest.mark.filterwarnings("ignore:.* as of no solid")
-def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
-    """Steels with strengths of E*/12, and of less than 1/0.36 of that, hit each other."""
-    steel = cl.Material("a", 200e9, 0.3, 7850)
-    strength = cl.Pair(steel, steel).effective_modulus / 12.0
-    for share, flagged in ((1.05, False), (1.2, True), (2.7, True), (2.9, False)):
-        bodies = [dataclasses.replace(steel, yield_strength=one) for one in (strength, strength * share)]
-        hit = answered(cl.Pair(*bodies), np.array([900.0]))
-        assert hit.plastic_fraction[0] > 0.0
-        assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
-
-
-@pytest.mark.parametrize(
-    "strength", [pytest.param(1.0, marks=pytest.mark.long), 1e6]
-)  # the longest table, and an everyday one
-def test_every_soft_body_makes_a_model(strength):
-    """Some tables once exceeded the settings; their errors are like those of any pair."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        model = cl.ImpactModel(soft(strength))
-        assert model.table.law.yields
-    speed = np.geomspace(1e-3, 1.0, 7) * math.sqrt(strength / 1e6)
-    looked, exact = (ask(speed, R, 5 * R).restitution for ask in (model.lookup, model.solve))
-    assert looked == pytest.approx(exact, abs=1e-5)
-
-
-def test_the_weakest_material_has_a_law():
-    body = cl.Material("weakest", 1e9, 0.0, 1000, yield_strength=1e-3)
-    law = law_of(cl.Pair(body, "alumina"), "fem")
-    assert law.range[1] * law.scale == pytest.approx(0.1)
-
-
 def test_nothing_jumps_where_a_body_is_so_strong_that_it_does_not_yield():
     """A body that would yield near the end of the law is elastic; the other side hardly differs."""
     steel = cl.Material("a", 200e9, 0.3, 7800)
@@ -231,9 +148,9 @@ def test_nothing_jumps_where_a_body_is_so_strong_that_it_does_not_yield():
 
 
 def test_energies_sum_to_one():
-    """The shares sum to one in 200 impacts of random pairs."""
-    for case in census.draw(71, 200):
-        model = solver_of(cl.Pair(case.sphere, case.plate))
+    """The shares sum to one in 100 impacts of random pairs."""
+    for case in census.draw(71, 100):
+        model = cl.ImpactModel(cl.Pair(case.sphere, case.plate))
         hit = model.solve(case.speed, case.radius, case.thickness, rtol=1e-10)
         lost = [getattr(hit, name) for name in ENERGIES]
         assert hit.restitution**2 + sum(lost) == pytest.approx(1.0, abs=1e-8), case
@@ -242,45 +159,16 @@ def test_energies_sum_to_one():
         assert (hit.plastic_fraction > 0.0) == yields, case
 
 
-PAIRS = [(case.sphere, case.plate) for case in census.draw(72, 20)]
-
-
-@pytest.mark.parametrize(
-    "pair", [*PAIRS[:5], *(pytest.param(pair, marks=pytest.mark.long) for pair in PAIRS[5:])], ids="-".join
-)
-def test_tables_are_near_the_solver(pair):
-    model = model_of(*pair)
-    rng = np.random.default_rng(73)
-    speed, thickness = (np.exp(rng.uniform(*np.log(limits), 50)) for limits in (census.SPEED, census.THICKNESS))
-    looked, exact = (ask(speed, R, thickness) for ask in (model.lookup, model.solve))
-    assert looked.restitution == pytest.approx(exact.restitution, abs=1e-5)
-    assert model.restitution(speed, R, thickness) == pytest.approx(looked.restitution, abs=1e-10)
-    for name in ("contact_time", "peak_force", "peak_compression", "wave_fraction"):
-        assert getattr(looked, name) == pytest.approx(getattr(exact, name), rel=5e-4), name
-    # Lambda by formulas that share no code with the table.
-    assert looked.inelasticity == pytest.approx(exact.inelasticity, rel=1e-10)
-    assert looked.overload == pytest.approx(exact.overload, rel=1e-7)  # by a polynomial for w_m
-    assert np.array_equal(looked.flags, exact.flags)
-
-
 # Two beads.
 
 
 def test_equal_beads_both_yield():
     """Their law is that of two equal bodies, whatever the plate of the pair is made of."""
-    steel = "carbon-steel-1020"
-    model = model_of(steel, "soda-lime-glass")
-    beads = model._beads(None)
-    twins, law = beads.pair, beads.law
-    assert (twins.sphere, twins.plate) == (cl.material(steel),) * 2
-    assert law == law_of(twins, "fem") and law != model.force_law
-    speed = np.array([0.1, 1.0, 5.0])
-    hit = model.lookup_sphere_sphere(speed, R, R)
+    steel, speed = "carbon-steel-1020", np.array([0.1, 1.0, 5.0])
+    hit = cl.ImpactModel(cl.Pair(steel, "soda-lime-glass")).lookup_sphere_sphere(speed, R, R)
     same = cl.restitution_sphere_sphere(steel, steel, speed, R, R, law="fem")
     assert hit.restitution.tolist() == same.tolist()
-    assert model.sphere_sphere_curve(R, R)(1.0) == pytest.approx(same[1], abs=1e-12)
     assert (hit.plastic_fraction > 0.1).all() and (hit.wave_fraction == 0.0).all()
-    assert (np.diff(hit.restitution) < 0.0).all()
     lost = hit.plastic_fraction + hit.other_fraction
     assert hit.restitution**2 + lost == pytest.approx(np.ones(3), abs=1e-4)  # the table's
     # beside one that is as stiff but does not yield, one flows where two did
@@ -288,13 +176,3 @@ def test_equal_beads_both_yield():
     alone = [cl.restitution_sphere_sphere(*pair, speed[:2], R, R, law="fem") for pair in ((steel, hard), (hard, steel))]
     assert alone[0].tolist() == alone[1].tolist()
     assert (alone[0] > same[:2] + 0.005).all()
-
-
-def test_radii_matter_by_the_yield_speed_alone():
-    """V_Y^2 goes as R*^3/m*, and there is no wave."""
-    steel = "carbon-steel-1020"
-    for other in (0.3 * R, 3.0 * R):
-        share = math.sqrt((R**3 + other**3) / (R + other) ** 3)
-        ours = cl.restitution_sphere_sphere(steel, steel, share, R, other, law="fem")
-        equal = cl.restitution_sphere_sphere(steel, steel, 0.5, R, R, law="fem")
-        assert ours == pytest.approx(equal, rel=1e-9)

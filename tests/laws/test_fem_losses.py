@@ -66,9 +66,3 @@ def test_the_springs_of_friction_are_those_of_the_same_flow_without_losses(loss,
     for d in [law.range[1] / 1.7**n for n in range(30)]:
         ours, same = (tangential.stiffness_at(force.alone(one.data), 1.0, math.inf, d, d, 1.0) for one in pair)
         assert (ours[0] / same[0], 1 / ours[1] - 1 / same[1]) == pytest.approx((1, 0), abs=0.016)
-
-
-def test_given_and_typed_numbers_make_the_same_law():
-    law = cl.ImpactModel(cl.Pair(replace(SOFT, loss_factor=(0.1, 1e3)), "glass")).force_law
-    assert cl.laws.law(law.name).follows(law)
-    assert law.parameters["loss_factor"] == pytest.approx(0.1, rel=1e-3)

@@ -12,7 +12,6 @@ from oracle import ALL_LAWS, NUMBERS
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.laws import HERTZ, Law, Loading, jackson_green
 
 PAIRS = list(itertools.product(cl.materials(), repeat=2))
 # polymers give way before these spheres yield: E*/sigma_Y is 2.4, 2.0, 2.3 and 0.002
@@ -116,36 +115,23 @@ def test_every_registered_law_has_a_reference():
     assert {law.family for law in REFERENCED} == reference_laws.FAMILIES <= set(laws.names())
 
 
-def test_a_pair_gives_its_numbers(pair):
-    model = cl.ImpactModel(pair, law="jackson_green")
-    ratio = pair.effective_modulus / pair.sphere.yield_strength
-    assert model.law == f"jackson_green({ratio:.6g},0.21)"
-    assert laws.law(model.law) == laws.law("jackson_green", **NUMBERS) == model.force_law
-    assert model.force_law.from_pair == ("modulus_ratio", "poissons_ratio")
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [
         ("hertzz", "law: got 'hertzz'; unknown law.*'hertz'.*hertz, jackson_green"),
-        ("thornton)", "law: got 'thornton\\)'; unknown law"),
         ("kogut_etsion(x)", "unknown law"),
         ("_etsion", "unknown law"),
-        ("jackson_green", "name it as jackson_green\\(modulus_ratio,poissons_ratio\\)"),
-        ("jackson_green(100)", "name it as jackson_green\\(modulus_ratio,poissons_ratio\\)"),
+        ("jackson_green(100)", r"name it as jackson_green\(modulus_ratio,poissons_ratio\)"),
+        ("myc(3)", r"law: got 'myc\(3\)'; takes no numbers"),
+        ("kogut_etsion(0.9)", "poissons_ratio must lie between 0 and 0.5, not '0.9'"),
+        ("jackson_green(5,0.3)", r"law: got 'jackson_green'; E\*/sigma_Y is 5, must be 10 or more"),
+        ("jackson_green(1e400,0.3)", "modulus_ratio must lie between"),
+        ("jackson_green(20,0.5)", "Poisson's ratio 0.5"),
     ],
 )
-def test_unknown_laws_and_missing_numbers_say_what_there_is(name, message):
+def test_names_of_no_law_are_refused_and_told_what_there_is(name, message):
     with pytest.raises(ValueError, match=message):
         laws.law(name)
-
-
-def test_jackson_green_refuses_what_its_fit_cannot_do():
-    for ratio in (5.0, 2.0, 1e-3):  # the exponent B of the last is beyond all floats
-        with pytest.raises(ValueError, match="law: got 'jackson_green'; E"):
-            jackson_green.law(ratio, 0.3)
-    with pytest.raises(ValueError, match="Poisson's ratio 0.5"):
-        jackson_green.law(20.0, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -166,42 +152,10 @@ def test_pairs_of_the_catalogue_have_an_answer_or_are_told_what_to_take(name, pa
             assert ((cor > 0.0) & (cor < 1.0)).all(), pair
 
 
-def test_a_law_holds_its_parameters_with_all_digits():
+def test_a_law_holds_its_parameters_with_all_digits_and_its_name_six():
     number = 0.3 + 1e-9
     law = laws.exact("kogut_etsion", poissons_ratio=number)
     assert (law.family, law.parameters) == ("kogut_etsion", {"poissons_ratio": number})
-    assert law.name == "kogut_etsion(0.3)"
-    typed, taken = laws.law("jackson_green(150,0.3)"), laws.law("jackson_green", **NUMBERS)
-    assert typed.parameters == {"modulus_ratio": 150.0, "poissons_ratio": 0.3}
+    assert law.name == laws.law("kogut_etsion(0.30000004)").name == "kogut_etsion(0.3)"
+    taken = laws.law("jackson_green", **NUMBERS)
     assert taken.parameters == {name: NUMBERS[name] for name in taken.from_pair}
-    assert laws.law("myc").parameters == {}
-
-
-def test_the_name_of_a_law_of_ones_own_is_not_read():
-    law = Law.of(name="spring(3)", source="", yield_coefficient=None, loading=[Loading(0.0, HERTZ)])
-    assert (law.family, law.name, law.parameters) == ("spring(3)", "spring(3)", {})
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("myc(3)", r"law: got 'myc\(3\)'; takes no numbers"),
-        ("thornton(1.6)", "takes no numbers"),
-        ("kogut_etsion(0.9)", "poissons_ratio must lie between 0 and 0.5, not '0.9'"),
-        ("kogut_etsion(e)", "poissons_ratio must lie between"),
-        ("jackson_green(0,0.3)", "E\\*/sigma_Y is 0, must be 10 or more"),
-        ("jackson_green(1e400,0.3)", "modulus_ratio must lie between"),
-    ],
-)
-def test_wrong_numbers_of_a_law(name, message):
-    with pytest.raises(ValueError, match=message):
-        laws.law(name)
-
-
-def test_numbers_of_a_law_count_as_they_are_written():
-    assert laws.law("kogut_etsion(0.30000004)").name == "kogut_etsion(0.3)"
-    assert laws.law("kogut_etsion(0.30000004)").yield_coefficient == (
-        laws.law("kogut_etsion", poissons_ratio=0.3).yield_coefficient
-    )
-    with pytest.raises(ValueError, match="poissons_ratio must lie"):
-        laws.law("kogut_etsion", poissons_ratio=float("nan"))

@@ -1,14 +1,11 @@
 """Laws that users bring: made of plain functions, or of measured points."""
 
-import dataclasses
 import math
 
 import numpy as np
 import pytest
-from numpy.polynomial import Polynomial
 from oracle import impact
-from own_laws import CUT_OFF, PAIR, H, R, measured, own, points, residual
-from verlet import fallen
+from own_laws import CUT_OFF, PAIR, R, measured, own, points, residual
 
 import contactlaw as cl
 from contactlaw import laws
@@ -16,7 +13,6 @@ from contactlaw.equation.numbers import Impact
 from contactlaw.laws import HERTZ, Loading, Unloading
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import yield_scales
-from contactlaw.softsphere import Contacts, time_step
 
 
 @pytest.fixture(scope="module", params=[own, measured], ids=["own", "measured"])
@@ -40,29 +36,6 @@ def test_the_solver_agrees_with_an_independent_integration(model):
         assert hit.peak_force == pytest.approx(force, rel=1e-9)
 
 
-def test_a_drop_step_by_step(model):
-    for speed in (5.0, 25.0):
-        found = fallen(Contacts(model, R, H), speed, time_step(model, speed, R, H, error=1e-4))
-        assert found == pytest.approx(model.solve(speed, R, H).restitution, abs=1e-4)
-
-
-def test_laws_are_equal_by_their_data():
-    one, other = own(), own(name="the same", source="somewhere else")
-    assert one == other
-    assert hash(one) == hash(other)
-    assert len({one, other}) == 1
-    assert one != own(yield_coefficient=0.6)
-    assert one != own(unloading=[Unloading(1.0, lambda dm: 0.5 * residual(dm))])
-    assert one != measured()
-    assert one != "mine"
-    assert one == dataclasses.replace(one, data=one.data.copy())
-
-
-def test_what_is_no_law_is_refused():
-    with pytest.raises(TypeError, match="law: expected the name of a law or a contactlaw.laws.Law"):
-        cl.ImpactModel(PAIR, law=own)
-
-
 def loading(*branches):
     return {"loading": [Loading(0.0, HERTZ), *branches]}
 
@@ -79,34 +52,22 @@ def unloading(*arguments, **options):
             loading(CUT_OFF, Loading(3.0, lambda d: 4.0 + np.sin(d - 3.0))),
             r"loading force of 'mine' does not rise at 4\.5",
         ),  # 3 + pi/2
-        (
-            loading(CUT_OFF, Loading(3.0, lambda d: 4.0 * np.exp(3.0 - d))),
-            r"loading force of 'mine' does not rise at 3 d_Y",
-        ),
         (loading(Loading(1.0, lambda d: np.sqrt(2.0 - d))), r"'mine'; its loading force is nan at 2\.0\d+ d_Y"),
         (
             loading(Loading(1.0, lambda d: math.sqrt(d))),
             "'mine'; its loading force has to take an array, as numpy's functions do",
         ),
-        (loading(Loading(1.0, lambda d: d[:3])), "return one number for each element"),
         (
             loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
             "branches have to begin one after the other, below 100000 d_Y",
         ),
-        (loading(CUT_OFF, Loading(1e6, CUT_OFF.force)), "branches have to begin one after"),
         (loading(Loading(0.5, CUT_OFF.force)), "follow Hertz's curve up to yield, 1 d_Y"),
         (
             {"loading": [Loading(0.0, lambda d: d**1.5), CUT_OFF]},
             "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ",
         ),
-        (
-            {"loading": [Loading(0.0, Polynomial([0.0, 0.0, 0.0, 2.0])), CUT_OFF]},
-            "'mine'; its first branch has to begin at 0 with a polynomial, HERTZ",
-        ),
         ({"loading": [CUT_OFF]}, "'mine'; its first branch has to begin at 0"),
-        ({"loading": []}, "'mine'; its first branch has to begin at 0"),
         (unloading(residual, 1.2), r"'mine'; its loss is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy"),
-        (unloading(lambda dm: 0.1 * dm), "its residual compression jumps at 1 d_Y.* to 0.1"),
         (
             {"unloading": [Unloading(1.0, residual), Unloading(4.0, lambda d: 0.5 * residual(d))]},
             "'mine'; its residual compression jumps at 4 d_Y, from 1.35 to 0.675",
@@ -122,19 +83,16 @@ def unloading(*arguments, **options):
         ),
         ({"unloading": [Unloading(2.0, residual)]}, "the first of unloading begins there"),
         ({"yield_coefficient": None}, "must be a positive number: the law yields, got None"),
-        ({"yield_coefficient": -0.5}, "must be a positive number: the law yields, got -0.5"),
         (loading() | {"unloading": []}, "must be None: it never yields, got 0.5"),
+        (
+            loading(Loading(1.0, lambda d: 1.5 * d - 0.5 + 1e-3 * np.floor(7.0 * d - 7.0))),
+            r"'mine'; it is not smooth near .* d_Y; give each kink",
+        ),
     ],
 )
 def test_wrong_laws_are_refused_and_the_message_says_where(wrong, message):
     with pytest.raises(ValueError, match=message):
         own(**wrong)
-
-
-def test_a_formula_that_is_not_smooth():
-    steps = Loading(1.0, lambda d: 1.5 * d - 0.5 + 1e-3 * np.floor(7.0 * d - 7.0))
-    with pytest.raises(ValueError, match=r"'mine'; it is not smooth near .* d_Y; give each kink"):
-        own(**loading(steps))
 
 
 class TestMeasured:
@@ -160,36 +118,6 @@ class TestMeasured:
         for x in (1.5, 5.0, 30.0):
             assert law.residual(x) == pytest.approx(0.7 * (x - 1.0) ** 2 / x, rel=1e-6)
 
-    def test_too_few_points(self):
-        compression, force = points(laws.law("myc"), count=4)
-        with pytest.raises(ValueError, match=r"compression: 3 points lie beyond yield, .* at least 4"):
-            measured(compression=compression, force=force)
-
-    def test_points_that_fall(self):
-        compression, force = points(laws.law("myc"))
-        for wrong in (compression[::-1], np.full_like(compression, np.nan)):
-            with pytest.raises(ValueError, match="have to be positive and finite, and to rise"):
-                measured(compression=wrong)
-        force[20] = force[19]
-        with pytest.raises(ValueError, match="have to be positive and finite, and to rise"):
-            measured(force=force)
-
-    def test_a_wild_point(self):
-        compression, force = points(laws.law("myc"), count=20)
-        force[12:] *= 1.8  # a range of the gauge was changed
-        with pytest.raises(ValueError, match=r"force: point \d+ beyond yield is off any smooth curve"):
-            measured(compression=compression, force=force)
-        compression, force = points(laws.law("myc"), count=8)
-        force[5] *= 1.7
-        with pytest.raises(ValueError, match=r"force: point \d beyond yield is off any smooth curve"):
-            measured(compression=compression, force=force)
-        compression, force = points(laws.law("myc"), count=20)
-        d_y, _ = yield_scales(PAIR, 0.68, R)
-        left = np.array([laws.law("myc").residual(d) for d in compression / d_y]) * d_y
-        left[15] *= 0.2
-        with pytest.raises(ValueError, match=r"residual: point \d+ beyond yield is off any smooth"):
-            measured(compression=compression, force=force, residual=left)
-
     def test_a_size_scales(self):
         """Points of a sphere twice as large, at twice the compression and four times the force."""
         compression, force = points(laws.law("myc"))
@@ -201,8 +129,36 @@ class TestMeasured:
                 assert of(large) == pytest.approx(of(small), rel=1e-9)
             assert large.dissipation(dm) == pytest.approx(small.dissipation(dm), rel=1e-9, abs=1e-12)
 
-    def test_arguments(self):
-        with pytest.raises(TypeError, match=r"pair: expected a contactlaw\.Pair"):
-            cl.measured_law("glass", R, [1e-6], [1.0])
-        with pytest.raises(ValueError, match="radius"):
-            measured(radius=-1.0)
+    @pytest.mark.parametrize(
+        ("count", "change", "message"),
+        [
+            (4, lambda d, f: {}, r"compression: 3 points lie beyond yield, .* at least 4"),
+            (30, lambda d, f: {"compression": d[::-1]}, "have to be positive and finite, and to rise"),
+            (30, lambda d, f: {"force": np.full_like(f, np.nan)}, "have to be positive and finite, and to rise"),
+            # a range of the gauge was changed
+            (
+                20,
+                lambda d, f: {"force": np.append(f[:12], 1.8 * f[12:])},
+                r"force: point \d+ beyond yield is off any smooth",
+            ),
+            (
+                8,
+                lambda d, f: {"force": f * (1.0 + 0.7 * (np.arange(8) == 5))},
+                r"force: point \d beyond yield is off any",
+            ),
+            (30, lambda d, f: {"radius": -1.0}, "radius"),
+        ],
+    )
+    def test_wrong_points_are_refused(self, count, change, message):
+        compression, force = points(laws.law("myc"), count=count)
+        wrong = {"compression": compression, "force": force} | change(compression, force)
+        with pytest.raises(ValueError, match=message):
+            measured(**wrong)
+
+    def test_a_wild_residual_is_refused(self):
+        compression, force = points(laws.law("myc"), count=20)
+        d_y, _ = yield_scales(PAIR, 0.68, R)
+        left = np.array([laws.law("myc").residual(d) for d in compression / d_y]) * d_y
+        left[15] *= 0.2
+        with pytest.raises(ValueError, match=r"residual: point \d+ beyond yield is off any smooth"):
+            measured(compression=compression, force=force, residual=left)

@@ -1,12 +1,10 @@
 """A page in headless Chromium, driven by its DevTools protocol."""
 
-import base64
 import json
 import shutil
 import subprocess
 import time
 from contextlib import contextmanager
-from pathlib import Path
 
 from websockets.sync.client import connect
 
@@ -80,13 +78,6 @@ class Page:
                 return True
             time.sleep(0.1)
         return False
-
-    def screenshot(self, file, whole=True):
-        """Save what the page looks like."""
-        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        clip = {**{k: size[k] for k in ("x", "y", "width", "height")}, "scale": 1}
-        more = {"clip": clip, "captureBeyondViewport": True} if whole else {}
-        Path(file).write_bytes(base64.b64decode(self.call("Page.captureScreenshot", **more)["data"]))
 
 
 @contextmanager

@@ -1,33 +1,46 @@
 """What several tests ask of the command line."""
 
 import argparse
-
-import pytest
+import csv
+import json
+import shlex
+from typing import NamedTuple
 
 from contactlaw.cli import main
 
 
-def refused(argv, *messages, capsys):
-    """Sentence on stderr, behind warnings alone, with which a command is refused."""
-    assert main(argv) == 1
-    said = capsys.readouterr()
-    *warnings, sentence = said.err.splitlines()
-    assert said.out == "" and sentence.startswith("contactlaw: ")
-    assert all(line.startswith("contactlaw: warning: ") for line in warnings)
-    for message in messages:
-        assert message in sentence
-    for word in ("ImpactModel", "Material(", 'law="', "materials()"):  # for Python
-        assert word not in sentence
-    return sentence
+class Run(NamedTuple):
+    """Exit status of a command line, and what it printed."""
+
+    status: int
+    out: str
+    err: str
+
+    @property
+    def values(self):
+        """Values of a command with ``--json``; NaN and infinity are no JSON."""
+        return json.loads(self.out, parse_constant=lambda name: 1 / 0)
+
+    @property
+    def rows(self):
+        """Rows of a command with ``--csv``."""
+        return [*csv.DictReader(self.out.splitlines())]
+
+    @property
+    def text(self):
+        """What a person reads, without line breaks."""
+        return " ".join(self.out.split())
 
 
-def misused(argv, message, capsys):
-    """Wrong usage is said beside the right one."""
-    with pytest.raises(SystemExit) as stop:
-        main(argv)
-    assert stop.value.code == 2
-    said = capsys.readouterr().err
-    assert "usage:" in said and message in said
+def run(line, capsys):
+    """Run a command line in this process; neither a usage nor a refusal shows a traceback."""
+    try:
+        status = main(shlex.split(line))
+    except SystemExit as stop:
+        status = stop.code
+    made = Run(status, *capsys.readouterr())
+    assert "Traceback" not in made.err
+    return made
 
 
 def parsers(parser, name="contactlaw"):

@@ -15,7 +15,7 @@ def names(folder):
 
 def runs_of(folder):
     """Runs of which a fixture of `conftest.py` has made a folder."""
-    return pickle.loads(folder.parent.with_suffix(".pickle").read_bytes())
+    return pickle.loads(folder.with_name("runs").read_bytes())
 
 
 def files(name, figures, *more):

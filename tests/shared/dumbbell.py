@@ -29,11 +29,6 @@ class Dumbbell(NamedTuple):
         along = momentum @ axis
         return momentum / self.across + (1.0 / self.along - 1.0 / self.across) * along * axis
 
-    def energy(self, axis, velocity, spin):
-        along = spin @ axis
-        turning = self.across * (spin @ spin - along**2) + self.along * along**2
-        return 0.5 * (self.mass * velocity @ velocity + turning)
-
     def response(self, axis):
         """1/mass that answers at the lower sphere to a force along `UP` [1/kg]."""
         arm = np.cross(self.radius * axis, UP)

@@ -5,15 +5,17 @@ import math
 import subprocess
 
 import numpy as np
-import uncompiled
 
 from contactlaw.export import functions
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 FIELDS = functions.Answer._fields[:-1]  # but for the mass
-GIVEN, WIDTH = 7, len(FIELDS) + 3 + 5 * uncompiled.STEPS + 7
-# The same as `uncompiled.answers`; in CUDA and OpenCL, too.
+STEPS = 45
+MASS, HEAVY = 5e4, 0.3  # kg/m3 of beads that are no solid spheres, those with more friction
+NORMAL, LEANING = (0.0, 0.6, 0.8), (0.1, 0.0, 1.0)
+GIVEN, WIDTH = 7, len(FIELDS) + 3 + 5 * STEPS + 7
+# All fields of a rebound, flags, COR near an edge, steps with friction, a collision; in CUDA and OpenCL, too.
 SOURCE = f"""
 #include "contactlaw.h"
 #ifdef __OPENCL_VERSION__
@@ -30,9 +32,9 @@ CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
     const double leaning[3] = {{ 0.1, 0.0, 1.0 }};
     const double surface[3] = {{ 0.3 * v, -0.7 * v, 0.1 * v }};
     double velocity[3] = {{ 0.4 * v, 0.1 * v, -v }}, spin[3] = {{ 3.0, 5.0, 7.0 }};
-    const double mass = {uncompiled.MASS} * r * r * r;
+    const double mass = {MASS} * r * r * r;
     const contactlaw_impact heavy = contactlaw_rebound_with_mass(v, r, h, mass);
-    const contactlaw_impact hit = mu > {uncompiled.HEAVY} ? heavy : contactlaw_rebound(v, r, h);
+    const contactlaw_impact hit = mu > {HEAVY} ? heavy : contactlaw_rebound(v, r, h);
     contactlaw_spring bead = contactlaw_spring_of(r, h);
     contactlaw_state state = CONTACTLAW_APART;
     contactlaw_sliding row = CONTACTLAW_STILL;
@@ -44,9 +46,9 @@ CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
     *out++ = contactlaw_restitution(v, r, h);
     *out++ = contactlaw_restitution_near(v, r, h, edge, in[4]);
     contactlaw_set_edge(&bead, edge, in[4]);
-    if (mu > {uncompiled.HEAVY})
+    if (mu > {HEAVY})
         bead.mass = mass;
-    for (step = 0; step < {uncompiled.STEPS}; ++step) {{
+    for (step = 0; step < {STEPS}; ++step) {{
         u -= 0.5 * dt * state.force / bead.mass;
         x += dt * u;
         *out++ = contactlaw_step(&bead, &state, x, dt);
@@ -105,7 +107,7 @@ class Library:
         self._compiled = ctypes.CDLL(build(folder, SOURCE, "-O2", "-shared", "-fPIC", *WARNINGS, *flags, out=out))
 
     def answers(self, rows):
-        """All answers for impacts, which are rows as `uncompiled` has them."""
+        """All answers for impacts: speed, radius, thickness, kind and distance of an edge, friction, time step."""
         rows, out = np.ascontiguousarray(rows, float), np.full((len(rows), WIDTH), -2.0)
         places = [ctypes.c_void_p(one.ctypes.data) for one in (rows, out)]
         self._compiled.contactlaw_answers(len(rows), *places)
@@ -134,7 +136,7 @@ def errors(given, found, expected):
     """
     off, (v, r, mu) = np.abs(found - expected), given.T[[0, 1, 5], :, None]
     time, force, depth = found.T[[1, 3, 4], :, None]
-    change, normal = (found - expected)[:, -7:-4], np.array(uncompiled.LEANING) / math.sqrt(1.01)
+    change, normal = (found - expected)[:, -7:-4], np.array(LEANING) / math.sqrt(1.01)
     up = (change @ normal)[:, None]
     along = np.abs(change - up * normal) + r * off[:, -4:-1]
     parts = {
@@ -144,7 +146,7 @@ def errors(given, found, expected):
         "flags": off[:, 10],
         "cor": off[:, 11],
         "near": off[:, 12],
-        "steps": off[:, 13:-7] / np.tile(np.hstack([force, depth, *3 * [force]]), uncompiled.STEPS),
+        "steps": off[:, 13:-7] / np.tile(np.hstack([force, depth, *3 * [force]]), STEPS),
         "up": up / v,
         "sliding": along / (mu * v),
         "status": off[:, -1],

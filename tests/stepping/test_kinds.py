@@ -2,47 +2,41 @@
 
 import math
 
+import lammps_box as box
 import numpy as np
 import pytest
-from loops import fly
 
 import contactlaw as cl
-from contactlaw.engines.record import IMPACT, Kind
-from contactlaw.stepping import WallContacts
+from contactlaw.engines.record import Kind
 from contactlaw.walls import Mesh, Plate
 
-pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
-
-R = 1e-3
-MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-MASS = 4 / 3 * math.pi * R**3 * MODEL.pair.sphere.density
-DT = 1e-7
-WIDE = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
+R, MODEL = 1e-3, cl.ImpactModel(box.PAIR)
+WIDE = box.flat(1e-3)
 
 
-def kinds(walls, x, v, *, slope=None, kick=(0.0, 0.0, 0.0), when=-1, friction=0.2, steps=2000):
+def kinds(walls, x, v, *, kick=None, when=0, slope=None, friction=0.2, steps=2000):
     """Kinds in the record of a bead at x with a velocity v, and the record.
 
-    With a slope [degrees] there is gravity, and x points down the slope.
+    The kick is added to its velocity after step `when`. With a slope [degrees] there is gravity, and x
+    points down the slope.
     """
-    gravity = np.zeros(3)
+    lmp, walls = box.scene(MODEL, walls, x, v, friction=friction, radius=R)
     if slope is not None:
         angle = math.radians(slope)
-        gravity[:] = 9.81 * math.sin(angle), 0.0, -9.81 * math.cos(angle)
-    contacts = WallContacts(walls, MODEL, R, np.zeros(999, IMPACT), friction=friction)
-    (rows,), (springs,) = contacts.memory(1)
-    x, v, kick = (np.array(vector, dtype=float) for vector in (x, v, kick))
-    start = rows, springs, x, v, np.zeros(3)
-    fly(contacts.scene, *start, MASS, R, gravity, DT, steps, kick, when)
-    found = contacts.collisions()
-    return [Kind(kind).name for kind in found["kind"]], found
+        lmp.command(f"fix gravity all gravity 9.81 vector {math.sin(angle)} 0 {-math.cos(angle)}")
+    lmp.command(f"run {when + 1}")
+    lmp.numpy.extract_atom("v")[0, 2] += kick or 0.0
+    lmp.command(f"run {steps}")
+    rows = walls.collisions()
+    lmp.close()
+    return [Kind(kind).name for kind in rows["kind"]], rows
 
 
 LINE = np.linspace(-0.02, 0.02, 401)
 CORNERS = np.array([(x, y, 0.0) for x in LINE for y in (-0.02, 0.02)])
 STRIPS = Mesh(CORNERS, [(n, n + 1, n + 2) for n in range(2 * LINE.size - 2)], 1e-3)
 DRUM = Mesh.cylinder((0, -0.02, 0), (0, 0.02, 0), 0.02, 1e-3, facets=72)
-SHEET = Plate((-0.05, -0.05, 0.0), (0.05, 0.0, 0.0), (0.0, 0.1, 0.0), 0.3e-3)
+SHEET = box.flat(0.3e-3, width=0.05)  # whose edge is at x = 0
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
@@ -78,24 +72,21 @@ def test_a_bead_that_slides_over_an_edge(slope):
 
 def test_a_bead_that_slides_on_to_another_wall():
     rising = Plate((0.0, -0.05, 0.0), (0.03, 0.0, 0.03), (0.0, 0.1, 0.0), 1e-3)
-    start = (-2 * R, 0.0, R + 1e-9)
-    found, rows = kinds([SHEET, rising], start, (0.5, 0, -1e-4), slope=0.0, steps=60_000)
+    found, rows = kinds([SHEET, rising], (-2 * R, 0.0, R + 1e-9), (0.5, 0, -1e-4), slope=0.0, steps=60_000)
     assert found[list(rows["plate"]).index(1)] == "SLIDING_ON"
 
 
 @pytest.mark.parametrize("kick", [-0.5, 0.5])
 @pytest.mark.parametrize("when", range(6, 60, 9))
 def test_a_bead_that_is_struck_in_contact(when, kick):
-    start, kick = (0.0, 0.0, R + 1e-9), (0.0, 0.0, kick)
-    found, _ = kinds([WIDE], start, (1.0, 0.0, -1.0), kick=kick, when=when)
+    found, _ = kinds([WIDE], (0.0, 0.0, R + 1e-9), (1.0, 0.0, -1.0), kick=kick, when=when)
     assert found == ["STRUCK"]
 
 
 def test_a_bead_that_leaves_faster_than_it_came_was_struck():
     """A neighbour's push of 0.8 % of its energy is less than what else counts as a strike."""
-    block = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), math.inf)
-    push = {"kick": (0.0, 0.0, 4e-5), "when": 150}
-    found, rows = kinds([block], (0.0, 0.0, R + 1e-9), (0.0, 0.0, -0.01), **push)
+    block = box.flat(math.inf)
+    found, rows = kinds([block], (0.0, 0.0, R + 1e-9), (0.0, 0.0, -0.01), kick=4e-5, when=150)
     assert found == ["STRUCK"] and 1.0 < rows["restitution"] < 1.005
 
 
@@ -106,6 +97,6 @@ def test_a_bead_in_a_groove_presses_on_both_sides():
 
 
 def test_a_bead_that_rests_and_is_taken_away():
-    start, lift = (-0.02, 0.0, R + 1e-9), (0.0, 0.0, 0.1)
-    found, rows = kinds([SHEET], start, (0, 0, -1e-3), slope=0.0, kick=lift, when=50_000, steps=60_000)
+    still = (-0.02, 0.0, R + 1e-9), (0, 0, -1e-3)
+    found, rows = kinds([SHEET], *still, slope=0.0, kick=0.1, when=50_000, steps=60_000)
     assert found[-1] == "RESTING" and rows["restitution"][-1] > 100.0

@@ -74,24 +74,3 @@ def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
     for x in (0.1, 0.4, 0.65, 1.0):
         h = x * 0.5 / math.sqrt(ratio(poisson))
         assert phi(one, h) == pytest.approx(energy(h, poisson), rel=1.2e-2)
-
-
-@pytest.mark.parametrize("poisson", RATIOS)
-def test_a_thicker_plate_never_takes_more(poisson: float) -> None:
-    """The factor over h^2 falls to that of the half-space, and never below it."""
-    one = corrections.plate_corrections(poisson)
-    h = np.linspace(1e-3, 1.5, 1500)
-    over = np.array([phi(one, each) / each**2 for each in h])
-    assert (np.diff(over) <= 1e-12 * over[1:]).all()
-    assert over.min() >= one.bulk_factor * (1.0 - 1e-12)
-
-
-@pytest.mark.parametrize("poisson", RATIOS)
-@pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 2.0])  # lambda of a half-space
-def test_lambda_falls_with_the_thickness(poisson: float, far: float) -> None:
-    """Lambda falls for any sphere, although losses lengthen only contacts with thin plates."""
-    one = corrections.plate_corrections(poisson)
-    h = np.geomspace(0.02, 30.0, 1000)
-    thin = far / one.bulk_factor / h**2
-    lam = [corrections.with_corrections(one, t, each, t * each**2, 0.0) for t, each in zip(thin, h, strict=True)]
-    assert (np.diff(lam) <= 1e-12 * np.array(lam[1:])).all()

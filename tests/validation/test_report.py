@@ -11,7 +11,7 @@ from unrendered import blank
 
 from validation import figures, report
 from validation.__main__ import main
-from validation.accuracy import acceptance, trust
+from validation.accuracy import trust
 from validation.paper.claims import ROWS, claims
 from validation.paper.verdicts import (
     AT_MOST,
@@ -27,10 +27,10 @@ from validation.paper.verdicts import (
     within,
 )
 
+FOLDER = Path(__file__).parent
 # Our recorded numbers of each figure, checked by eye when printed; null is an error of table or
 # solver below 5e-6.
-NUMBERS = json.loads((Path(__file__).parent / "figures.json").read_text())
-PARTS = {name: drawing.part for name, drawing in figures.drawings().items()}
+NUMBERS = json.loads((FOLDER / "figures.json").read_text())
 # Elements that reach beyond the screen, but for those in a container that scrolls sideways.
 TOO_WIDE = """[...document.querySelectorAll("*")]
   .filter((e) => !e.parentElement?.closest(".wide, pre"))
@@ -49,7 +49,7 @@ SQUEEZED = """[...document.querySelectorAll("td")].filter((cell) => {
   return lines >= 5 && cell.innerText.trim().split(/\\s+/).length < 1.75 * lines;
 }).map((cell) => cell.innerText)"""
 # Verdict on each claim and our number, to the digits given.
-CLAIMS = json.loads((Path(__file__).parent / "claims.json").read_text())
+CLAIMS = json.loads((FOLDER / "claims.json").read_text())
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +58,9 @@ def drawn(tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
     numbers, original = {}, report.page
 
-    def watched(found, pictures):
+    def watched(parts, found, pictures):
         numbers.update({one.name: one.numbers for one in pictures})
-        return original(found, pictures)
+        return original(parts, found, pictures)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(report, "page", watched)
@@ -69,14 +69,7 @@ def drawn(tmp_path_factory):
 
 
 @pytest.mark.long
-def test_every_figure_is_drawn_and_checked(drawn):
-    numbers, out = drawn
-    assert set(numbers) == set(NUMBERS) == set(PARTS)
-    assert {path.stem for path in out.glob("*.png")} == set(NUMBERS)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("name", figures.drawings())
 def test_numbers_of_figures(drawn, name):
     assert drawn[0][name] == {
         key: pytest.approx(0.0, abs=5e-6) if value is None else pytest.approx(value, rel=2e-3)
@@ -84,17 +77,12 @@ def test_numbers_of_figures(drawn, name):
     }
 
 
-def only(monkeypatch, *names):
-    few = {name: figures.drawings()[name] for name in names}
-    monkeypatch.setattr(figures, "drawings", lambda: few)
-
-
 @pytest.fixture(scope="module")
 def judged():
     return {claim.name: claim for claim in claims()}
 
 
-@pytest.mark.parametrize("name", CLAIMS)
+@pytest.mark.parametrize("name", dict.fromkeys([*CLAIMS, *(row.name for row in ROWS)]))
 def test_claims(judged, name):
     claim, (verdict, ours) = judged[name], CLAIMS[name]
     assert claim.verdict == verdict
@@ -105,72 +93,41 @@ def test_claims(judged, name):
     assert claim.note or claim.verdict == HOLDS  # whatever does not hold says why
 
 
-def test_no_claim_is_lost_or_named_twice():
-    assert [claim.name for claim in claims()] == list(CLAIMS)
-
-
-def test_a_verdict_can_be_another():
-    def verdict(printed, agreement, ours, otherwise=FAILS):
-        return judge(Row("", "", "", printed, agreement, lambda: ours, "", otherwise)).verdict
-
-    assert verdict(1.0, within(0.2), 1.1) == HOLDS
-    assert verdict(1.0, within(0.2), 1.3, MISPRINT) == MISPRINT
-    assert verdict(0.012, AT_MOST, 0.0121) == FAILS
-    assert verdict(0.012, at_most_rounded(3), 0.0121) == HOLDS
-    assert verdict(0.012, at_most_rounded(3), 0.0126) == FAILS
-    assert verdict(7.0, MORE_THAN, 7.0, LIMITED) == LIMITED
-    assert verdict(7.0, None, 7.0) == OPEN
-
-
-def test_a_note_quotes_the_numbers_of_its_row():
-    row = Row(
-        "", "", "", None, within(1.0), lambda: {"ours": 1, "printed": 1.1, "off": 0.1}, "{off:.0%} off; 5 % is allowed"
-    )
-    assert (judge(row).printed, judge(row).note) == (1.1, "10 % off; 5 % is allowed")
+@pytest.mark.parametrize(
+    ("printed", "agreement", "ours", "otherwise", "verdict"),
+    [
+        (1.0, within(0.2), 1.1, FAILS, HOLDS),
+        (1.0, within(0.2), 1.3, MISPRINT, MISPRINT),
+        (0.012, AT_MOST, 0.0121, FAILS, FAILS),
+        (0.012, at_most_rounded(3), 0.0121, FAILS, HOLDS),
+        (0.012, at_most_rounded(3), 0.0126, FAILS, FAILS),
+        (7.0, MORE_THAN, 7.0, LIMITED, LIMITED),
+        (7.0, None, 7.0, FAILS, OPEN),
+    ],
+)
+def test_a_verdict_can_be_another_and_a_note_quotes_its_numbers(printed, agreement, ours, otherwise, verdict):
+    numbers = {"ours": ours, "printed": printed, "off": 0.1}
+    claim = judge(Row("", "", "", None, agreement, lambda: numbers, "{off:.0%} off in $V_{Y0}$", otherwise))
+    assert (claim.verdict, claim.printed, claim.note) == (verdict, printed, "10 % off in $V_{Y0}$")
 
 
 @pytest.mark.long
-def test_the_report_needs_no_file_but_its_figures(drawn):
+def test_the_report_has_its_parts_in_order_with_their_figures_and_formulas(drawn):
+    """Readers who simulate come first, and meet no symbols of the paper."""
     text = (drawn[1] / "index.html").read_text()
     sources = re.findall(r"<(?:img|script|link)[^>]*(?:src|href)=['\"](?!data:)([^'\"]*)", text)
-    assert sorted(sources) == sorted(path.name for path in drawn[1].glob("*.png"))
-    assert "http" not in text
-    assert text.count("<img") == text.count("loading='lazy'") == len(NUMBERS)
-    assert text.count("<tr>") > len(claims())
-
-
-@pytest.mark.long
-def test_the_parts_of_the_report_come_in_order(drawn):
-    """Parts for people who simulate come first; each figure is in its part, with an alt text."""
-    text = (drawn[1] / "index.html").read_text()
-    parts = re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL)
-    assert [name for name, _ in parts] == ["practice", "finite-elements", "paper", "derivations"]
-    for name, part in parts[:3]:
-        expected = [one for one, drawing in figures.drawings().items() if drawing.part == name.replace("-", " ")]
+    assert sorted(sources) == sorted(path.name for path in drawn[1].glob("*.png")) == [f"{one}.png" for one in NUMBERS]
+    parts = dict(re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL))
+    assert tuple(parts) == figures.PARTS
+    for name, part in parts.items():
+        expected = [one for one, drawing in figures.drawings().items() if drawing.part == name]
         assert re.findall(r"<figure id='(\w*)'", part) == expected
         words = re.findall(r"<img [^>]*alt='([^']*)'", part)
-        assert len(words) == len(expected) and all(len(alt) > 40 for alt in words)
-        assert not [alt for alt in words if re.search(r"[_<>^]", alt)]
-
-
-@pytest.mark.long
-def test_a_table_has_the_points_of_the_oblique_figure(drawn):
-    """Its largest difference in each quantity is that of the figure's numbers."""
-    text = (drawn[1] / "index.html").read_text().partition("Oblique impacts beside")[2]
-    rows = re.findall(r"<tr><td>(tangential restitution|spin)</td>.*?([^ >]+) %</td></tr>", text)
-    assert len(rows) == 35
-    for name in ("tangential restitution", "spin"):
-        off = [float(one.replace("\N{MINUS SIGN}", "-")) for kind, one in rows if kind == name]
-        expected = drawn[0]["fig26_oblique"][f"{name}, sticking: largest error"]
-        assert max(off, key=abs) == pytest.approx(100.0 * expected, abs=0.051)
-
-
-@pytest.mark.long
-def test_people_who_simulate_meet_no_symbols_of_the_paper(drawn):
-    text = (drawn[1] / "index.html").read_text()
-    part = re.search(r"<section id=\"practice\">(.*?)</section>", text, flags=re.DOTALL)[1]
-    part = re.sub(r"<code>.*?</code>|<[^>]*(?:alt|aria-label)='[^']*'[^>]*>", "", part)
-    assert re.findall(r"<sub>|[\u0370-\u03ff]|\bd_?Y\b|MYC", part) == []
+        assert all(len(alt) > 40 and not re.search(r"[_<>^$]", alt) for alt in words)
+    practice = re.sub(r"<code>.*?</code>|<[^>]*(?:alt|aria-label)='[^']*'[^>]*>", "", parts["practice"])
+    assert re.findall(r"[\u0370-\u03ff]|\bd_?Y\b|MYC", practice) == []
+    typed = re.sub(r"<(style|math|code)\b.*?</\1>|<[^>]*>", "", text, flags=re.DOTALL)
+    assert re.findall(r"\w*[\^_`$\\]\w*|\b(?:lambda|sigma|rho|chi)\b|\d[.\d]*e-?\d+", typed) == []
 
 
 @pytest.mark.long
@@ -178,42 +135,15 @@ def test_people_who_simulate_meet_no_symbols_of_the_paper(drawn):
 def test_the_report_fits_the_screen(drawn, page, width):
     page.complaints.clear()
     page.open(drawn[1] / "index.html", width)
-    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
-    assert page.value(TOO_WIDE) == []
     page.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
-    assert page.value("document.querySelector('details').open")
-    assert (page.value("innerWidth"), page.value(TOO_WIDE)) == (width, [])
-    assert page.value(SQUEEZED) == []
-    # the last figure is loaded when it is scrolled to, not before
-    last = "[...document.images].at(-1)"
-    assert page.value(f"{last}.naturalWidth") == 0
-    page.value(f"{last}.scrollIntoView()")
-    page.wait_for_change(f"{last}.naturalWidth")
-    assert page.value(f"{last}.naturalWidth") > 1000
+    # a phone zooms out until all of a page is seen
+    assert (page.value("innerWidth"), page.value(TOO_WIDE), page.value(SQUEEZED)) == (width, [], [])
     assert page.complaints == []
 
 
-@pytest.mark.long
-def test_no_formula_of_the_report_is_left_as_typed(drawn):
-    text = (drawn[1] / "index.html").read_text()
-    text = re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL)
-    text = re.sub(r"(?<!<pre>)<code>.*?</code>", "", text, flags=re.DOTALL)
-    words = re.sub(r"<[^>]*>", "", text)
-    assert re.findall(r"\w*[\^_`]\w*", words) == []
-    letters = "lambda|alpha|tau|chi|rho|sigma|omega|Omega|kappa"
-    assert re.findall(rf"\b[dr]?(?:{letters})\b", words) == []
-    assert re.findall(r"\d[.\d]*e-?\d+", words) == []
-    # an asterisk is E*'s or a product's: markdown has not taken it for emphasis
-    assert "E*/E<sub>2</sub>'" in text
-    assert not re.search(r"<em>[^<]*(?:<sub>|=)", text)
-
-
-def test_a_folder_that_is_a_file_is_refused(tmp_path, capsys):
-    path = tmp_path / "report"
-    path.write_text("mine")
-    assert main(["--out", str(path)]) == 1
-    assert "is a file, not a folder: name another" in capsys.readouterr().err
-    assert path.read_text() == "mine"
+def only(monkeypatch, *names):
+    few = {name: figures.drawings()[name] for name in names}
+    monkeypatch.setattr(figures, "drawings", lambda: few)
 
 
 @pytest.mark.parametrize(
@@ -227,30 +157,29 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path, capsys):
 def test_an_unfinished_report_leaves_nothing(tmp_path, monkeypatch, capsys, stop, status, message):
     only(monkeypatch, "fig09b_energy")
     monkeypatch.setattr(report, "page", stop)  # the picture is there by then
-    assert main(["--out", str(tmp_path / "report")]) == status
+    assert main(["paper", "--out", str(tmp_path / "report")]) == status
     assert list(tmp_path.iterdir()) == []
     assert re.search(message, capsys.readouterr().err)
 
 
-def test_captions_name_their_figure():
-    for name, drawing in figures.drawings().items():
-        number, letter = re.match(r"fig0?(\d+)([ab]?)_", name).groups()
-        assert drawing.caption.startswith(f"Fig. {number}{letter.upper()}: "), name
-
-
-def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
-    """One figure of each part and the first claims make a whole page in seconds."""
-    few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
+def test_each_part_of_the_report_can_be_made_alone(tmp_path, monkeypatch, capsys):
+    """A figure of some parts and the first claims make whole pages in seconds."""
+    few = ["fig09b_energy", "fig20_limits"]
     only(monkeypatch, *few)
     monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
     monkeypatch.setattr("contactlaw.style.png", blank)
-    assert main(["--out", str(tmp_path)]) == 0
-    text = (tmp_path / "index.html").read_text()
-    assert sorted(re.findall(r"<figure id='(\w*)'", text)) == few
-    assert sorted(path.stem for path in tmp_path.glob("*.png")) == few
-    assert "7 claims; verdicts:" in text
-    assert not re.search("{{|{%|&amp;#|&lt;code", text)  # all is filled in, and escaped once
-    assert str(tmp_path / "index.html") in capsys.readouterr().out
+    for parts, drawn, judged in ((figures.PARTS, few, 1), (["finite-elements"], few[1:], 0)):
+        out = tmp_path / parts[0]
+        assert main([*parts, "--out", str(out)]) == 0
+        text = (out / "index.html").read_text()
+        assert re.findall(r"<section id=\"([a-z-]*)\">", text) == list(parts)
+        assert sorted(re.findall(r"<figure id='(\w*)'", text)) == drawn
+        assert sorted(path.stem for path in out.glob("*.png")) == drawn
+        assert text.count("7 claims; verdicts:") == judged
+        assert not re.search("{{|{%|&amp;#|&lt;code", text)  # all is filled in, and escaped once
+        assert re.search(r"index.html, in \d+ s", capsys.readouterr().out)
+    with pytest.raises(SystemExit):
+        main(["everything"])
 
 
 def counted(score):
@@ -268,43 +197,21 @@ def test_how_right_the_laws_are():
 
 
 def test_parts_of_the_everyday_impacts_are_all_of_them():
-    """Each impact is in one row by thickness, one by speed, one by body, one by material."""
+    """Each impact is in one row by thickness, speed, body and material; errors are on thin plates alone."""
     whole = trust.score("fem", trust.EVERYDAY)
     where = [scores[0] for scores in trust.where().values()]
+    assert all(one.right == one.impacts for one in where[1:3])
     for rows in (where[:3], where[3:6], where[6:], [s[0] for s in trust.materials().values()]):
         assert sum(one.impacts for one in rows) == whole.impacts
         assert sum(one.right for one in rows) == whole.right
-        squares = sum(one.impacts * one.rms**2 for one in rows)
-        assert squares == pytest.approx(whole.impacts * whole.rms**2)
         assert max((one.largest for one in rows), key=abs) == whole.largest
 
 
-def test_law_fem_is_right_on_plates_that_are_not_thin():
-    """The report states these numbers in words."""
-    thin, *thick = (fem for fem, _ in list(trust.where().values())[:3])
-    assert thin.right < thin.impacts
-    assert all(one.right == one.impacts for one in thick)
-
-
 def test_what_is_wrong_is_listed():
-    listed = trust.misses()
-    whole = trust.score("fem", trust.EVERYDAY)
-    assert len(listed) == whole.impacts - whole.right == 3
-    row = acceptance.Row(trust.EVERYDAY, acceptance.members(trust.EVERYDAY))
-    assert whole.silent == len(row.silent) == 2  # on thin plates, within the bounds of those
-    for one in row.silent:
-        assert 1.4 < one.slenderness < 1.6 and abs(one.law - one.fem) < 0.008
-        bounds = acceptance.TARGETS["thin plates"].bounds._replace(restitution=1.0)
-        assert acceptance.within(one.errors, bounds)
+    """Three are beyond a bound, two of them without a flag."""
+    listed, whole = trust.misses(), trust.score("fem", trust.EVERYDAY)
+    assert len(listed) == whole.impacts - whole.right == 3 and whole.silent == 2
     carbide = next(one for one in listed if "titanium" in one.what)
     assert carbide.what == "tungsten-carbide on 0.64 mm of titanium-ti-6al-4v at 3.7 m/s"
     assert (round(carbide.fem, 3), round(carbide.law, 3)) == (0.047, 0.039)
-    assert carbide.beyond["COR"] == pytest.approx((carbide.law - carbide.fem) / 0.3)
     assert list(carbide.beyond) == ["COR", "contact time"]
-    alumina = next(one for one in listed if "alumina" in one.what)
-    assert list(alumina.beyond) == ["COR", "plastic share"]  # not the force, 3 % off of 4
-
-
-def test_a_law_without_answers_has_no_score():
-    with pytest.raises(ValueError, match="law: got 'myc', which answers none"):
-        trust.score("myc", trust.EVERYDAY, lambda one: one.sphere == "glass")

@@ -30,7 +30,7 @@ from validation.fem import census, fit, store
 
 LAW = "fem"
 _UNLIKE = "bodies_unlike", "bodies_stiff"
-STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", census.THIN, *census.SEEDS, *_UNLIKE
+STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", census.THIN, *census.SETS, *_UNLIKE
 ENOUGH = 0.95  # share of the impacts that has to be within the bound of each number
 YIELDING = ("none", "sphere", "plate", "both")
 
@@ -314,46 +314,6 @@ def rows(names: Iterable[str] = TARGETS) -> dict[str, Row]:
     return {name: Row(TARGETS[name], members(TARGETS[name])) for name in names}
 
 
-class Rubbed(NamedTuple):
-    """Change of the COR of an indentation or impact by friction of 0.1 in place of none [-]."""
-
-    what: str
-    change: float
-
-
-def friction() -> list[Rubbed]:
-    """Compare contacts with friction of 0.1 with those without, by finite elements alone.
-
-    The COR of an indentation is the square root of unloading work over loading work.
-
-    Examples
-    --------
-    >>> all(abs(one.change) < 0.05 for one in friction())
-    True
-    """
-    data = store.read("campaign_indentation").data
-    cor = np.sqrt(data["unloading_work"] / data["loading_work"])
-    keys = ("sphere_yield_strain", "plate_yield_strain", "depth", "share", "poissons_ratio")
-    usual = (data["slowness"] == 1.0) & (data["across"] == data["across"].min())
-    found = []
-    for n in np.flatnonzero((data["friction"] == 0.0) & usual):
-        like = usual & np.isclose(data["friction"], 0.1)
-        for key in keys:
-            like &= np.isclose(data[key], data[key][n])
-        strains = [float(data[key][n]) for key in keys[:2]]
-        body = "sphere yields" if strains[0] else "plate yields" if strains[1] else "elastic"
-        what = f"{body}, d/R {data['depth'][n]:.3f}, E1'/(E1'+E2') {data['share'][n]:.2f}"
-        found += [Rubbed(what, float(cor[m] / cor[n] - 1.0)) for m in np.flatnonzero(like)]
-    checks = store.read("verification").data
-    for n in np.flatnonzero(checks["check"] == "no friction"):
-        like = (checks["check"] == "mesh") & (checks["thickness"] == checks["thickness"][n])
-        like &= np.isclose(checks["size"], checks["size"][n])
-        (with_it,) = checks["restitution"][like]
-        what = f"impact of the paper's bead, H {1e3 * checks['thickness'][n]:g} mm"
-        found.append(Rubbed(what, float(with_it / checks["restitution"][n] - 1.0)))
-    return found
-
-
 def report() -> str:
     """Write the acceptance as text, with every impact that was kept out of the fit."""
     lines = []
@@ -366,8 +326,6 @@ def report() -> str:
             "COR fem   law    err %  time  force  plastic  flags"
         )
         lines += [_line(one, row.target) for one in shown]
-    lines.append("friction of 0.1 in place of none: change of COR, finite elements alone [%]")
-    lines += [f"    {one.what:50s} {100 * one.change:+.2f}" for one in friction()]
     lines += halfspace.lines()
     lines.append(
         "one published measurement, of a sphere on a thick anvil, could be read (fig. 27 of the "

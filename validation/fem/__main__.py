@@ -1,8 +1,7 @@
 """Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
 
-``fit`` makes the numbers of the law ``"fem"`` from what is stored; ``report`` prints the comparison
-of the stored results with the model, ``acceptance`` the errors of the law and their bounds;
-``python -m validation`` draws them.
+``fit`` makes the numbers of the law ``"fem"`` from what is stored, ``acceptance`` prints its errors
+and their bounds; ``python -m validation`` draws the stored results beside the model.
 """
 
 from __future__ import annotations
@@ -16,14 +15,14 @@ from concurrent.futures.process import BrokenProcessPool
 from tqdm import tqdm
 
 from contactlaw.parser import Parser
-from validation.accuracy import acceptance, compare
+from validation.accuracy import acceptance
 from validation.fem import fit, store
 from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the named studies, or all; 0: done, 1: failed, 2: wrong usage, 130: Ctrl-C."""
-    steps: dict[str, Callable[[int], None]] = {**STUDIES, "fit": fit.run, "report": _report, "acceptance": _acceptance}
+    steps: dict[str, Callable[[int], None]] = {**STUDIES, "fit": fit.run, "acceptance": _acceptance}
     parser = Parser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
@@ -33,7 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
     wrong = set(options.names) - set(steps)
     if wrong:
         parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")
-    if not os.access(store.FOLDER, os.W_OK) and not set(options.names) <= {"report", "acceptance"}:
+    if not os.access(store.FOLDER, os.W_OK) and not set(options.names) <= {"acceptance"}:
         parser.error(f"{store.FOLDER}: results cannot be written there; take a writable copy")
     bar = tqdm(options.names or list(steps), disable=None)
     try:
@@ -51,10 +50,6 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"validation.fem: {name}: {error}", file=sys.stderr)
         return 1
     return 0
-
-
-def _report(_: int) -> None:
-    tqdm.write(compare.report())
 
 
 def _acceptance(_: int) -> None:

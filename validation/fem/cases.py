@@ -6,14 +6,13 @@ import math
 import multiprocessing
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 import contactlaw as cl
 from validation.fem import store
@@ -190,23 +189,27 @@ def _end_workers() -> None:
         child.terminate()
 
 
-def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np.ndarray]:
-    """Compute cases side by side; columns by name, in the order of the cases."""
-    listed = list(cases)
-    with workers(processes) as pool:
-        done = tqdm(pool.map(solve, listed), title, len(listed), disable=None, leave=False)
-        rows = list(done)
-    return columns(rows)
-
-
 def columns(rows: list[dict[str, Any]]) -> dict[str, np.ndarray]:
     """Arrays by name, of the outcomes of cases."""
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def compute(name: str, about: str, listed: list[Case], processes: int) -> None:
-    """Compute cases side by side, and keep them as a file."""
-    save(name, about, solve_all(listed, name, processes))
+def stored(name: str) -> list[Case]:
+    """Read the impacts of a stored study: their inputs, as they were computed.
+
+    Examples
+    --------
+    >>> len(stored("kept_out")), stored("kept_out")[0].meshes
+    (80, 2)
+    """
+    data = store.read(name).data
+    inputs = {field.name: data[field.name].tolist() for field in fields(Case) if field.name in data}
+    # As a rule size is a 15th of the contact's radius, so that the finest part of a mesh has 19.5
+    # elements, which rounding errors make 19 or 20; a hair finer, they are 20.
+    inputs["size"] = [(1.0 - 1e-9) * size for size in inputs["size"]]
+    if "core" in inputs:
+        inputs["core"] = [Core(*numbers) for numbers in inputs["core"]]
+    return [Case(**dict(zip(inputs, row, strict=True))) for row in zip(*inputs.values(), strict=True)]
 
 
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:

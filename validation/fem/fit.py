@@ -431,9 +431,9 @@ def numbers() -> dict[str, Any]:
         "stiffening": stiff,
         "friction": [friction],
         "blend": 1.0,
-        # fitted by `metals`, `viscoelastic` and `polymers`, and too slow to be found with the rest
+        # fitted by `metals` and `viscoelastic`, and too slow to be found with the rest
         **{name: fem.fitted()[name] for name in ("strain", "rate", "losses", "pressure")},
-        "stiffest": 1.0,  # its limit was set afterwards, by `studies.stiff_spheres`
+        "stiffest": 1.0,  # its limit was set afterwards, by the study `stiff_spheres`
         "plate": [0.0, 0.0, 0.0, 0.0],
         "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
     }

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any, TypeVar
 
+from numpy.typing import NDArray
 from tqdm import tqdm
 
 from validation.fem import cases, store
@@ -57,10 +58,21 @@ def complete(
     return [done[repr(job)] for job in jobs]
 
 
-def impacts(name: str, about: str, listed: Sequence[Case], processes: int) -> None:
-    """Compute impacts as a study that goes on where it was stopped, and store them."""
+def again(name: str, processes: int) -> None:
+    """Compute the impacts of a stored study again, from their inputs in its file."""
+    data, attributes = store.read(name)
+    impacts(name, str(attributes["about"]), cases.stored(name), processes, data)
+
+
+def impacts(
+    name: str, about: str, listed: Sequence[Case], processes: int, beside: Mapping[str, NDArray[Any]] | None = None
+) -> None:
+    """Compute impacts as a study that goes on where it was stopped, and store them.
+
+    Columns `beside` their inputs and outcomes are stored with them.
+    """
     rows = complete(name, cases.solve, listed, processes)
-    cases.save(name, about, cases.columns(rows))
+    cases.save(name, about, {**(beside or {}), **cases.columns(rows)})
     forget(name)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from validation.fem import bodies, calculix, campaign, cases, census, hollow, metals, polymers, store
-from validation.fem.cases import Case
-from validation.fem.impact import expect, free_width, impact
+from validation.fem import calculix, campaign, cases, journal, store
+from validation.fem.impact import impact
 from validation.fem.indentation import BLOCK, Indentation, indent
 from validation.fem.solver import SETTINGS
 from validation.fem.yielding import (
@@ -29,37 +27,13 @@ from validation.fem.yielding import (
     SOFT,
     press,
 )
-from validation.paper.closed_form import eta
-from validation.paper.setting import ETA, PAIR, RADIUS, YIELD_COMPRESSION
+from validation.paper.setting import PAIR, RADIUS, YIELD_COMPRESSION
 
 Pressed = dict[str, tuple[NDArray[Any], str]]  # values and unit by name, of one indentation
 
-SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
-SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
-OTHER_PAIRS = (("bearing-steel-52100", "soda-lime-glass"), ("bearing-steel-52100", "aluminium-6061-t6"))
 DEPTHS = (2.0, 5.0, 10.0, 30.0)  # largest compressions of the indentations [d_Y]
 CALCULIX_SIZE, CALCULIX_DEPTH = 0.03, 10.0  # [R], [d_Y]
 _SPEED, _THICKNESS = 26.0, 0.5e-3  # impact of the paper's Figs 11 to 13 [m/s, m]
-
-
-def verification(processes: int) -> None:
-    """Vary the mesh, from 0.04 R to 0.005 R, and other settings; compare with Hertz."""
-    listed: list[tuple[str, Case]] = []
-    for thickness in (0.5e-3, 1e-3):
-        usual = Case(_SPEED, thickness, size=0.01, meshes=1)
-        listed += [("mesh", replace(usual, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
-        listed.append(("far mesh", replace(usual, far=0.5)))
-        listed += [("hourglass", replace(usual, hourglass_stiffness=k)) for k in (0.01, 1.0)]
-        listed.append(("no friction", replace(usual, friction=0.0)))
-    thin = Case(PAIR.yield_speed, 0.5e-3, size=0.01, meshes=1)
-    width = free_width(PAIR.plate, expect(PAIR, thin.speed, RADIUS, thin.thickness).time)
-    listed += [("width", replace(thin, width=factor * width)) for factor in (1.0, 2.0)]
-    for speed in (8.0, 3.0, 1.0, 0.5):
-        listed.append(("hertz", Case(speed, 9e-3, friction=0.0, yields=False, meshes=1)))
-    data = cases.solve_all([case for _, case in listed], "verification", processes)
-    data["check"] = np.array([check for check, _ in listed])
-    about = "convergence with the mesh; hourglass stiffness, friction, width of the plate; Hertz"
-    cases.save("verification", about, data)
 
 
 def indentation(processes: int) -> None:
@@ -239,13 +213,6 @@ def calculix_impact(_: int) -> None:
     )
 
 
-def matrix(processes: int) -> None:
-    """Eight thicknesses by eight speeds (Figs 7, 8, 10)."""
-    listed = [Case(v * PAIR.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO]
-    about = "gamma-alumina on glass, R/H 0.1 to 1.8, V0/V_Y0 0.3 to 7"
-    cases.compute("matrix", about, listed, processes)
-
-
 def paper(_: int) -> None:
     """One impact in full: plastic strain, deflection, force (Figs 11 to 13)."""
     times = (1e-6, 2e-6, 3e-6)
@@ -307,73 +274,19 @@ def paper(_: int) -> None:
     )
 
 
-def pairs(processes: int) -> None:
-    """Compute three pairs at equal inelasticity, to see whether one table serves them all."""
-    listed = []
-    for slenderness in (0.5, 1.0, 1.5):
-        for sphere, plate in ((PAIR.sphere.name, PAIR.plate.name), *OTHER_PAIRS):
-            pair = cases.elastic_plate(sphere, plate)
-            thickness = RADIUS / slenderness * math.sqrt(eta(pair) / ETA)
-            for v in (0.5, 1.5, 3.5, 7.0):
-                listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate))
-    about = "three pairs at the same inelasticity lambda and speed over yield speed; plates elastic"
-    cases.compute("pairs", about, listed, processes)
-
-
-def strengths(processes: int) -> None:
-    """Vary the sphere's modulus over its strength, at equal inelasticity."""
-    listed = []
-    for factor in (2.0, 0.5, 0.25, 0.125):  # 1 is in `pairs`
-        sphere = f"{PAIR.sphere.name}, yield strength x {factor:g}"
-        pair = cl.Pair(cases.material(sphere), PAIR.plate)
-        thickness = RADIUS * math.sqrt(eta(pair) / ETA)  # lambda_Y is that of R/H = 1
-        for v in (1.5, 3.5, 7.0):
-            listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere))
-    about = "the paper's pair with 2 to 1/8 of its yield strength, at the lambda_Y of R/H = 1"
-    cases.compute("strengths", about, listed, processes)
-
-
-def limits(processes: int) -> None:
-    """Beyond the paper: thinner and faster."""
-    listed = [
-        Case(v * PAIR.yield_speed, RADIUS / s) for s in (0.5, 1.0, 1.8, 2.5) for v in (0.5, 1.5, 3.5, 7.0, 10.0, 14.0)
-    ]
-    about = "gamma-alumina on glass, R/H to 2.5, V0/V_Y0 to 14"
-    cases.compute("limits", about, listed, processes)
-
-
-def edge(processes: int) -> None:
-    """Let bending waves come back from a free edge, from distances around `edge_distance`."""
-    thickness = RADIUS / 1.5
-    speed = PAIR.yield_speed
-    time = expect(PAIR, speed, RADIUS, thickness).time
-    # Half the way of waves of the frequency 1/(2 contact times), at their group speed.
-    distance = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5
-    factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
-    listed = [Case(speed, thickness, width=factor * distance, meshes=1) for factor in factors]
-    about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
-    cases.compute("edge", about, listed, processes)
-
-
-STUDIES: dict[str, Callable[[int], None]] = {
-    "verification": verification,
+_OTHERS: dict[str, Callable[[int], None]] = {
     "indentation": indentation,
     "yielding": yielding,
     "calculix": calculix_indentation,
     "calculix_block": calculix_block,
     "calculix_hardening": calculix_hardening,
     "calculix_impact": calculix_impact,
-    "matrix": matrix,
     "paper": paper,
-    "pairs": pairs,
-    "strengths": strengths,
-    "limits": limits,
-    "edge": edge,
-    "campaign_indentation": campaign.indentations,
-    "campaign_impact": campaign.blows,
-    **{name: functools.partial(census.compute, name) for name in (*census.SEEDS, census.THIN)},
-    **{name: functools.partial(metals.compute, name) for name in metals.SEEDS},
-    **{name: functools.partial(bodies.compute, name) for name in (*bodies.SETS, bodies.STIFF)},
-    **{name: functools.partial(polymers.compute, name) for name in polymers.SEEDS},
-    hollow.NAME: hollow.compute,
+    campaign.NAME: campaign.indentations,
+}
+# All others are sets of impacts, which are computed again from the inputs in their files.
+_SETS = sorted({path.stem.removeprefix("fem_") for path in store.FOLDER.glob("fem_*.h5")} - set(_OTHERS))
+STUDIES: dict[str, Callable[[int], None]] = {
+    **{name: functools.partial(journal.again, name) for name in _SETS},
+    **_OTHERS,
 }

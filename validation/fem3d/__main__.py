@@ -1,4 +1,4 @@
-"""Compute impacts: ``python -m validation.fem3d [NAME ...]``, names of `cases.SEEDS` or "edges".
+"""Compute impacts: ``python -m validation.fem3d [NAME ...]``, names of `cases.SETS` or "edges".
 
 It goes on where it was stopped, and prints what there is. An oblique impact takes a minute, one
 near an edge about five. Beside an oblique impact is the model's answer, and in the last column 1
@@ -30,7 +30,7 @@ _COLUMNS = (
     "flag",
 )
 _EDGE_COLUMNS = "kind", "R/H", "s/H", "hole/s", "across", "e", "wave", "plastic", "balance"
-_NAMES = *cases.SEEDS, edges.NAME
+_NAMES = *cases.SETS, edges.NAME
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -51,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _print_oblique(name: str) -> None:
     print(name, *_COLUMNS, sep="\t")
-    for case, hit in cases.compute(name):
+    for case, hit in cases.compute(name, cases.Case, cases.solve):
         pressure, model = hit["pressure"] / case.strength, cases.model(case)
         psi = float(model.sliding_speed / (case.friction * case.speed))
         values = (
@@ -73,7 +73,7 @@ def _print_oblique(name: str) -> None:
 
 def _print_edges() -> None:
     print(edges.NAME, *_EDGE_COLUMNS, sep="\t")
-    for case, hit in edges.compute():
+    for case, hit in cases.compute(edges.NAME, edges.Case, edges.solve):
         values = (
             case.radius / case.thickness,
             case.distance / case.thickness,

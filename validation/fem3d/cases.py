@@ -11,11 +11,9 @@ import csv
 import json
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from datetime import date
 from typing import Any
-
-import numpy as np
 
 import contactlaw as cl
 from contactlaw._version import VERSION
@@ -26,16 +24,9 @@ from validation.fem3d.impact import oblique_impact
 
 RADIUS = 1e-3  # [m]
 KINDS = "elastic", "sphere", "plate"  # which body flows
-SEEDS = dict(looked_at=20261201, kept_out=20261202, kept_out_2=20261203, kept_out_3=20261204)
-COUNT = 12
+SETS = "looked_at", "kept_out", "kept_out_2", "kept_out_3"  # ``validation/data/README.md`` says how they were drawn
 _MODULUS = 1e11  # E* [Pa]
 _DENSITY = 5000.0  # [kg/m3]
-_COMPRESSION = 0.005, 0.012  # of the elastic impact on a half-space [R], drawn by its logarithm
-_STRENGTH = 40.0, 120.0  # E*/sigma_Y, likewise
-_FRICTION = 0.1, 0.4
-_PSI = 0.3, 8.0  # likewise by its logarithm
-_THICKEST = 0.3  # R/H below which the plate stands for a half-space
-_STEEPEST = 1.4  # largest R/H
 _FOLDER = store.FOLDER
 
 
@@ -89,46 +80,12 @@ class Case:
         return self.psi * self.friction * self.speed
 
 
-def draw(seed: int) -> list[Case]:
-    """Draw random impacts, as many of each kind."""
-    generator = np.random.default_rng(seed)
-
-    def by_logarithm(limits: tuple[float, float]) -> float:
-        return float(np.exp(generator.uniform(*np.log(limits))))
-
-    listed = []
-    for n in range(COUNT):
-        compression = by_logarithm(_COMPRESSION)
-        # m V0^2/2 = (8/15) E* sqrt(R) d^(5/2)
-        speed = math.sqrt(0.8 / math.pi * _MODULUS / _DENSITY * compression**2.5)
-        slimness = float(generator.uniform(0.0, _STEEPEST))
-        drawn = (
-            generator.uniform(0.3, 0.7),
-            generator.uniform(0.2, 0.35),
-            by_logarithm(_STRENGTH),
-            speed,
-            slimness if slimness > _THICKEST else 0.0,
-            generator.uniform(*_FRICTION),
-            by_logarithm(_PSI),
-        )
-        listed.append(Case(KINDS[n % len(KINDS)], *(float(f"{value:.3g}") for value in drawn)))
-    return listed
-
-
-def drawn(name: str) -> list[Case]:
-    """Read the impacts of one of `SEEDS`."""
+def listed(name: str, of: Callable[..., Any] = Case) -> list[Any]:
+    """Read the impacts of a set: `Case`, or what `of` makes of their numbers."""
     with (_FOLDER / f"fem3d_{name}.csv").open() as file:
         rows = list(csv.DictReader(file))
-    kinds = {field.name: float for field in fields(Case) if field.name != "kind"}
-    return [Case(row["kind"], **{key: of(row[key]) for key, of in kinds.items()}) for row in rows]
-
-
-def write(name: str) -> None:
-    """Write the impacts of one of `SEEDS`, before any of them is computed."""
-    with (_FOLDER / f"fem3d_{name}.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Case)], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(asdict(case) for case in draw(SEEDS[name]))
+    words = {"kind", "sphere", "plate"}
+    return [of(**{key: text if key in words else float(text) for key, text in row.items()}) for row in rows]
 
 
 def solve(case: Case) -> dict[str, Any]:
@@ -154,7 +111,7 @@ def model(case: Case) -> ObliqueRebound:
 
 
 def results(name: str, of: Callable[..., Any] = Case) -> dict[Any, dict[str, Any]]:
-    """Read the outcomes of the impacts of one of `SEEDS` that this solver has computed."""
+    """Read the outcomes of the impacts of a set that this solver has computed."""
     done = {}
     path = _FOLDER / f"fem3d_{name}.jsonl"
     for line in path.read_text().splitlines() if path.exists() else ():
@@ -164,15 +121,12 @@ def results(name: str, of: Callable[..., Any] = Case) -> dict[Any, dict[str, Any
     return done
 
 
-def compute(name: str) -> Iterator[tuple[Case, dict[str, Any]]]:
-    """Compute what is missing of one of `SEEDS`; each impact is kept as soon as it is done."""
-    return kept(name, drawn(name), solve)
-
-
-def kept(name: str, listed: list[Any], solve: Callable[[Any], dict[str, Any]]) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Compute what is missing of these impacts, and store each as soon as it is done."""
-    done = results(name, type(listed[0]))
-    for case in listed:
+def compute(
+    name: str, of: Callable[..., Any], solve: Callable[[Any], dict[str, Any]]
+) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Compute what is missing of a set, and store each impact as soon as it is done."""
+    done = results(name, of)
+    for case in listed(name, of):
         if case not in done:
             done[case] = solve(case)
             line = {

@@ -6,19 +6,14 @@ what a model must predict. Two are repeated on finer elements.
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import contactlaw as cl
-from validation.fem import store
-from validation.fem3d import cases
 from validation.fem3d.impact import oblique_impact
 
 NAME = "edges"
-_NAMES = "sphere", "plate", "kind"  # the columns that are no numbers
 
 
 @dataclass(frozen=True)
@@ -47,16 +42,6 @@ class Case:
         return cl.Pair(*made)
 
 
-def listed() -> list[Case]:
-    """Read the impacts."""
-    with (store.FOLDER / f"fem3d_{NAME}.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    kinds: dict[str, Callable[[str], Any]] = {
-        field.name: str if field.name in _NAMES else float for field in fields(Case)
-    }
-    return [Case(**{key: of(row[key]) for key, of in kinds.items()}) for row in rows]
-
-
 def solve(case: Case) -> dict[str, Any]:
     """Compute an impact."""
     hit = oblique_impact(
@@ -73,8 +58,3 @@ def solve(case: Case) -> dict[str, Any]:
         hole=case.hole or math.inf,
     )
     return {key: value for key, value in vars(hit).items() if key != "history"}
-
-
-def compute() -> Iterator[tuple[Case, dict[str, Any]]]:
-    """Compute what is missing; each impact is kept as soon as it is done."""
-    return cases.kept(NAME, listed(), solve)

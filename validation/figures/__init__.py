@@ -14,8 +14,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 PRACTICE = "practice"  # for people who simulate
-FINITE_ELEMENTS = "finite elements"
+FINITE_ELEMENTS = "finite-elements"
 PAPER = "paper"
+PARTS = PRACTICE, FINITE_ELEMENTS, PAPER, "derivations"  # of the report
 _MODULES = "paper", "elements", "practice"
 
 

@@ -15,7 +15,6 @@ from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, PURPLE, VERM
 from validation import figures
 from validation.accuracy import compare
 from validation.fem import store
-from validation.fem.studies import SLENDERNESS
 from validation.figures import chart
 from validation.figures.chart import COMPRESSION, FORCE, INELASTICITY, RATIO, RESTITUTION, SPEED, Axis, Panel
 from validation.paper.closed_form import zener
@@ -29,12 +28,12 @@ _DEPTHS = ("2", "5", "10", "30")
 
 
 def fig14_unloading() -> chart.Drawn:
-    """Fig. 14: unloading from 30 d_Y, and the share of the loading work that comes back.
+    """Fig. 14: unloading from 30 yield compressions, and the share of the loading work that comes back.
 
     That share is the square of the COR on a half-space. MYC comes nearest to the finite elements,
-    but gives back too little: 0.58 for 0.64 from 5 d_Y, 0.39 for 0.42 from 10: the
+    but gives back too little: 0.58 for 0.64 from 5 $d_Y$, 0.39 for 0.42 from 10: the
     difference is plastic work, of which the model has too much. Etsion's unloading gives back too
-    much, 0.70 to 0.73 from 5 d_Y. At 30 d_Y, where the flattened sphere flows, every law gives back
+    much, 0.70 to 0.73 from 5 $d_Y$. At 30 $d_Y$, where the flattened sphere flows, every law gives back
     too much. An elastic hemisphere is 47 % above Hertz there: its contact is no longer small.
     """
     deepest = Axis("largest compression  d$_m$ / d$_Y$").log(1, 2, 5, 10, 30)
@@ -56,17 +55,17 @@ def fig14_unloading() -> chart.Drawn:
         chart.of_law(left, name, *unloading(law, _DEEPEST), named=False)
         chart.of_law(right, name, depth, [_returned(law, one) for one in depth])
         title = chart.law(name)[-1]
-        numbers[f"returned from 5 d_Y, {title}"] = _returned(law, 5.0)
-        numbers[f"returned from 30 d_Y, {title}"] = _returned(law, 30.0)
+        numbers[f"returned from 5 yield compressions, {title}"] = _returned(law, 5.0)
+        numbers[f"returned from 30 yield compressions, {title}"] = _returned(law, 30.0)
     for name in _DEPTHS:
         curve = compare.indentation(name)
-        share = numbers[f"returned from {name} d_Y, finite elements"] = compare.returned(*curve)
+        share = numbers[f"returned from {name} yield compressions, finite elements"] = compare.returned(*curve)
         right.plot(float(name), share, "o", color=INK, markersize=9)
         if name in ("10", "30"):
             label = "finite elements" if name == "30" else None
             left.plot(*_points(curve, 9), "o", color=INK, markersize=4, label=label)
     compression, load, top = compare.indentation("30_elastic")
-    numbers["elastic finite elements over Hertz at 30 d_Y"] = load[top] / compression[top] ** 1.5
+    numbers["elastic finite elements over Hertz at 30 yield compressions"] = load[top] / compression[top] ** 1.5
     left.plot(
         compression[:top:8],
         load[:top:8],
@@ -102,7 +101,7 @@ _LIFT = {0.1: 4, 0.25: -6, 0.5: -9}  # shifts of labels that would overlap [poin
 
 
 def fig15_restitution() -> chart.Drawn:
-    """Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 V_Y0, and by the model.
+    """Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 yield speeds, and by the model.
 
     The modified Zener model is within 4.6 % for 64 impacts, 1.9 % rms; Zener's, which has no
     yielding, is up to 37 % high. The model exceeds finite elements most on thin plates just above
@@ -118,7 +117,8 @@ def fig15_restitution() -> chart.Drawn:
         Panel(INELASTICITY, up),
     )
     fine, lam = np.geomspace(0.25, 7.6, 100), np.linspace(0.0, 0.38, 60)
-    for slenderness, colour in zip(SLENDERNESS, chart.shades(len(SLENDERNESS)), strict=True):
+    ratios = np.unique(case.slenderness.round(3))
+    for slenderness, colour in zip(ratios, chart.shades(ratios.size), strict=True):
         rows = np.isclose(case.slenderness, slenderness)
         v, e = case.speed_ratio[rows], case.fem["restitution"][rows]
         elastic = case.fem["plastic_strain"][rows] == 0.0
@@ -129,7 +129,7 @@ def fig15_restitution() -> chart.Drawn:
             axes.plot(x[elastic], e[elastic], "o", color=colour, markerfacecolor="white")
         lift = _LIFT.get(slenderness, -4)
         left.annotate(f"{slenderness:g}", (7.0, e[-1]), (14, lift), textcoords="offset points", color=colour)
-        if slenderness == SLENDERNESS[0]:
+        if slenderness == ratios[0]:
             left.annotate("R/H", (7.0, e[-1]), (14, 20), textcoords="offset points")
     right.plot(lam, zener(lam), ":", color=INK)
     chart.key(right, "finite elements", "o")
@@ -149,7 +149,7 @@ def fig16_errors() -> chart.Drawn:
 
     Contact time and peak force are within 4 %. The peak compression, in finite elements the
     displacement of the sphere's centre towards the plate's lower face, is up to 8.6 % too large,
-    most on thin plates. On thick plates at 7 V_Y0 plastic flow takes up to 9 % of the energy more
+    most on thin plates. On thick plates at 7 $V_{Y0}$ plastic flow takes up to 9 % of the energy more
     in the model than in finite elements; the plate takes up to 3.5 % less. A part of the difference
     is in residual stress and vibration, which the model does not have.
     """
@@ -276,80 +276,13 @@ def fig18_impact() -> chart.Drawn:
     }
 
 
-_PAIRS: tuple[chart.Look, ...] = (  # the marks of the pairs overlap
-    {"marker": "o", "markersize": 8, "color": BLUE},
-    {"marker": "s", "markersize": 12, "color": INK, "markerfacecolor": "none"},
-    {"marker": "^", "markersize": 7, "color": VERMILION},
-)
-
-
-def fig19_pairs() -> chart.Drawn:
-    """Fig. 19: three pairs at equal inelasticity, for which the table of the MYC law has one line.
-
-    Below yield that is right: the CORs of the three agree within 0.003. Above, the table of MYC has
-    two to three times the plastic work of a sphere that is stiff for its strength (Fig. 24): steel
-    on glass or on aluminium (taken as elastic) has a COR 0.05 to 0.08, or 7 to 11 %, higher at 7
-    V_Y0.
-    """
-    case = compare.comparison("pairs")
-    blocks = np.split(np.arange(case.slenderness.size), 3)
-    at_yield = [case.inelasticity[b[0]] * case.speed_ratio[b[0]] ** -0.2 for b in blocks]
-    across, up = SPEED.log(0.5, 1.5, 3.5, 7), RESTITUTION.between(0.45, 1.02)
-    titles = [rf"inelasticity at yield  $\lambda_Y$ = {lam:.3f}" for lam in at_yield]
-    figure, panels = chart.sheet(
-        (13.0, 5.8),
-        "One table serves all pairs until they yield; steel then keeps more",
-        "points: finite elements of three pairs with the same inelasticity at the yield speed, "
-        f"plates in the order of the panels; {RATIO}",
-        *(Panel(across, up, title) for title in titles),
-        sharey=True,
-    )
-    names = list(dict.fromkeys(_pair(case, n) for n in range(case.slenderness.size)))
-    fine = np.geomspace(0.45, 7.4, 80)
-    for axes, block in zip(panels, blocks, strict=True):
-        for name, look in zip(names, _PAIRS, strict=True):
-            rows = [n for n in block if _pair(case, n) == name]
-            at, cor = case.speed_ratio[rows], case.fem["restitution"][rows]
-            axes.plot(at, cor, linestyle="none", label=_label(case, name), **look)
-        line = impacts(fine, case.slenderness[block[0]])  # the paper's pair comes first
-        words = "modified Zener model with law MYC, one line for all"
-        axes.plot(fine, line.restitution, color=INK, zorder=1, label=words)
-        axes.label_outer()
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    cor = case.fem["restitution"].reshape(3, 3, 4)  # inelasticity, pair, speed
-    spread = np.ptp(cor, axis=1)
-    low = case.model["restitution"] / case.fem["restitution"] - 1.0
-    low = low.reshape(3, 3, 4)[:, 1:, 3]
-    work = case.model["plastic_fraction"] / np.maximum(case.fem["plastic"], 1e-9)
-    steel = work.reshape(3, 3, 4)[:, 1:, 2:]
-    return figure, {
-        "plastic work, model over finite elements, steel from 3.5 V_Y0 on: least": steel.min(),
-        "plastic work, model over finite elements, steel from 3.5 V_Y0 on: largest": steel.max(),
-        "spread of the COR at 0.5 V_Y0, largest": spread[:, 0].max(),
-        "spread of the COR at 7 V_Y0, smallest": spread[:, 3].min(),
-        "spread of the COR at 7 V_Y0, largest": spread[:, 3].max(),
-        "model over finite elements, steel at 7 V_Y0, less 1: nearest": low.max(),
-        "model over finite elements, steel at 7 V_Y0, less 1: farthest": low.min(),
-    }
-
-
-def _pair(case: compare.Comparison, impact: int) -> tuple[str, str]:
-    return case.fem["sphere"][impact], case.fem["plate"][impact]
-
-
-def _label(case: compare.Comparison, pair: tuple[str, str]) -> str:
-    rows = [n for n in range(case.slenderness.size) if _pair(case, n) == pair]
-    ratios = ", ".join(f"{ratio:.2f}" for ratio in dict.fromkeys(case.slenderness[rows].round(2)))
-    return f"{pair[0]} on {pair[1]}, R/H {ratios}"
-
-
 _MARKERS = "os^D"
 
 
 def fig20_limits() -> chart.Drawn:
     """Fig. 20: beyond the limits of the model: thinner plates, faster impacts, near edges.
 
-    At R/H = 2.5 the model is up to 7.4 % too high up to 7 V_Y0, 19 % at 14 V_Y0. An edge changes
+    At R/H = 2.5 the model is up to 7.4 % too high up to 7 $V_{Y0}$, 19 % at 14 $V_{Y0}$. An edge changes
     the COR by less than 0.2 % if it is farther away than `contactlaw.edge_distance`. At two thirds
     of that distance a wave of the contact's own frequency comes back only when the contact ends,
     but the COR is already 2.3 % off: waves of higher frequency are faster.
@@ -384,10 +317,10 @@ def fig20_limits() -> chart.Drawn:
     change = np.abs(edge["restitution"] / edge["restitution"][-1] - 1.0)
     thin, fast = case.slenderness > 2.0, case.speed_ratio > 7.1
     return figure, {
-        "largest error at R/H = 2.5 up to 7 V_Y0": largest(off[thin & ~fast]),
-        "largest error at R/H = 2.5 up to 14 V_Y0": largest(off[thin]),
-        "largest error at 10 and 14 V_Y0, R/H up to 1.8": largest(off[~thin & fast]),
-        "change of the COR by an edge from edge_distance on": change[ratio > 0.99].max(),
+        "largest error at R/H = 2.5 up to 7 yield speeds": largest(off[thin & ~fast]),
+        "largest error at R/H = 2.5 up to 14 yield speeds": largest(off[thin]),
+        "largest error at 10 and 14 yield speeds, R/H up to 1.8": largest(off[~thin & fast]),
+        "change of the COR by an edge from `edge_distance` on": change[ratio > 0.99].max(),
         "change at two thirds of it": change[np.isclose(ratio, 2 / 3, atol=0.01)][0],
     }
 
@@ -453,30 +386,6 @@ def fig21_mesh() -> chart.Drawn:
         numbers[f"{label}: elements of 0.01 R over 0.005 R, difference"] = worst[name]
         numbers[f"{label}: estimated error of 0.01 R"] = estimated[name].max()
     return figure, numbers
-
-
-def fig22_laws() -> chart.Drawn:
-    """Fig. 22: the COR by every law over the matrix of finite elements.
-
-    MYC is within 4.6 %. The laws with Etsion's unloading deviate from finite elements at the
-    highest speeds; Thornton's, which yields at 2.13 m/s, is low from the start. Jackson and Green
-    made their fit for metals, E*/sigma_Y above about 120; this pair has 23.
-    """
-    case = compare.comparison("matrix")
-    cors = {chart.law(name)[-1]: cor for name, cor in compare.by_law().items()}
-    figure = chart.error_maps(
-        (15.0, 9.0),
-        "By its COR, MYC is right; the other laws err at the highest speeds",
-        "COR of the modified Zener equation with each law less that of finite elements, in percent "
-        "of it; gamma-alumina on glass",
-        {title: cor / case.fem["restitution"] - 1.0 for title, cor in cors.items()},
-        widest=20.0,
-    )
-    return figure, {
-        f"{title}: {kind} error": error
-        for title, cor in cors.items()
-        for kind, error in zip(("largest", "rms"), compare.deviation(cor, case), strict=True)
-    }
 
 
 _AT_MOST = "\N{LESS-THAN OR EQUAL TO}"
@@ -554,7 +463,7 @@ def fig24_strain() -> chart.Drawn:
     That of finite elements varies: a bead with the ratio of the paper's (26) has the COR of MYC,
     one with that of metals (100 and more) the COR of Kogut & Etsion and Jackson & Green, who fitted
     metals. With a ratio of 13 it has the COR of none of them: MYC, the nearest, is 11 % high at 3.5
-    V_Y0 and 30 % at 7. Law fem, which is within 1 % from 26 on, is 4 and 12 % high there, and flags
+    $V_{Y0}$ and 30 % at 7. Law fem, which is within 1 % from 26 on, is 4 and 12 % high there, and flags
     these impacts. Whether the sphere or the plate is the stiffer body hardly matters.
     """
     across = Axis(r"modulus over yield strength of the sphere  E / $\sigma_Y$")
@@ -576,7 +485,7 @@ def fig24_strain() -> chart.Drawn:
             chart.of_law(axes, name, [row.ratio for row in alumina], cor)
             for kind, (low, high) in _KINDS.items():
                 off = [row.laws[name] / row.fem - 1.0 for row in rows if low < row.ratio < high]
-                words = f"{chart.law(name)[-1]}, {speed:g} V_Y0, E/sigma_Y {kind}: largest error"
+                words = f"{chart.law(name)[-1]}, {speed:g} yield speeds, modulus over strength {kind}: largest error"
                 numbers[words] = extreme(off)
         for plate, look in _MARKS.items():
             some = [row for row in rows if row.plate == plate]

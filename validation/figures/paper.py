@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 
-from contactlaw import laws
-from contactlaw.laws.myc import P
 from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, SKY, VERMILION
 from validation import figures
 from validation.accuracy import compare
@@ -23,7 +21,7 @@ from validation.figures.chart import (
     Axis,
     Panel,
 )
-from validation.paper import closed_form, setting, turning_point
+from validation.paper import closed_form, turning_point
 from validation.paper.closed_form import elastic_compression, mueller, peng, yield_speed_ratio, zener
 from validation.paper.elements import FASTEST_COMPRESSION, contact_time_errors
 from validation.paper.evidence import eq_10, fitted_border
@@ -33,15 +31,12 @@ from validation.paper.setting import (
     PAIR,
     SHARE,
     THINNEST,
-    Array,
     all_laws,
     borderline,
     force,
     impacts,
     largest,
-    restitution,
     unloading,
-    yield_unit,
 )
 
 PART = figures.PAPER
@@ -51,15 +46,15 @@ _TOP = 5.0  # d_Y
 
 
 def fig03_force() -> chart.Drawn:
-    """Fig. 3: contact force against compression, loading and unloading from 5 d_Y, for all laws.
+    r"""Fig. 3: contact force against compression, loading and unloading from 5 yield compressions, for all laws.
 
     Of Stronge's law, which the package does not offer, loading alone.
 
     The paper compares MYC, Thornton and Stronge with finite elements and finds MYC within 6 %,
-    Thornton 64 % low and Stronge 40 % high. Ours agree, each in its range: MYC from 0.5 to 10 d_Y
-    (29 % high at 30), Stronge from 2 d_Y on, 38 to 44 % up to 10; Thornton's law is 41 % low at 2
-    d_Y, 57 % at 4.77, which 7 V_Y0 reaches on a half-space, and 64 % at 10 d_Y. There Stronge's
-    force is 3.3 times Thornton's. Jackson and Green fitted metals, E*/sigma_Y above about 120; this
+    Thornton 64 % low and Stronge 40 % high. Ours agree, each in its range: MYC from 0.5 to 10 $d_Y$
+    (29 % high at 30), Stronge from 2 $d_Y$ on, 38 to 44 % up to 10; Thornton's law is 41 % low at 2
+    $d_Y$, 57 % at 4.77, which 7 $V_{Y0}$ reaches on a half-space, and 64 % at 10 $d_Y$. There Stronge's
+    force is 3.3 times Thornton's. Jackson and Green fitted metals, $E^*/\sigma_Y$ above about 120; this
     pair has 23.
     """
     error = Axis("loading force against finite elements  [%]").between(-85, 85)
@@ -98,16 +93,16 @@ def fig03_force() -> chart.Drawn:
     at = compare.loading_errors(np.array([2.0, FASTEST_COMPRESSION, 10.0, 30.0]))
     strength = PAIR.sphere.require_yield_strength("jackson_green")
     return figure, {
-        "MYC, largest error from 0.5 to 10 d_Y": largest(near["myc"]),
-        "MYC at 30 d_Y": at["myc"][3],
-        "Stronge, least from 2 to 10 d_Y": near["stronge"][30:].min(),
-        "Stronge, largest from 2 to 10 d_Y": near["stronge"].max(),
-        "Stronge at 4.77 d_Y (7 V_Y0)": at["stronge"][1],
-        "Thornton at 2 d_Y": at["thornton"][0],
-        "Thornton at 4.77 d_Y (7 V_Y0)": at["thornton"][1],
-        "Thornton at 10 d_Y": at["thornton"][2],
-        "Stronge over Thornton at 4.77 d_Y": (1.0 + at["stronge"][1]) / (1.0 + at["thornton"][1]),
-        "E*/sigma_Y of the pair": PAIR.effective_modulus / strength,
+        "MYC, largest error from 0.5 to 10 yield compressions": largest(near["myc"]),
+        "MYC at 30 yield compressions": at["myc"][3],
+        "Stronge, least from 2 to 10 yield compressions": near["stronge"][30:].min(),
+        "Stronge, largest from 2 to 10 yield compressions": near["stronge"].max(),
+        "Stronge at 4.77 yield compressions (7 yield speeds)": at["stronge"][1],
+        "Thornton at 2 yield compressions": at["thornton"][0],
+        "Thornton at 4.77 yield compressions (7 yield speeds)": at["thornton"][1],
+        "Thornton at 10 yield compressions": at["thornton"][2],
+        "Stronge over Thornton at 4.77 yield compressions": (1.0 + at["stronge"][1]) / (1.0 + at["thornton"][1]),
+        "effective modulus over strength of the pair": PAIR.effective_modulus / strength,
     }
 
 
@@ -115,10 +110,10 @@ INTERCEPT = 1.25**-0.6
 
 
 def fig04_compression() -> chart.Drawn:
-    """Fig. 4: w_m^-1.5 of an elastic impact against the inelasticity, with the paper's line, Eq. 6.
+    r"""Fig. 4: the largest compression of elastic impacts against the inelasticity, with the paper's line, Eq. 6.
 
-    The intercept (5/4)^(-3/5) is exact. The slope 1.00 is not what a fit gives: it is 0.908 at
-    lambda = 0 (derived: 0.6 J (5/4)^(-3/5) with J = 1.7302), 0.929 by least squares over 0 to 2,
+    The intercept $(5/4)^{-3/5}$ is exact. The slope 1.00 is not what a fit gives: it is 0.908 at
+    $\lambda = 0$ (derived: $0.6 J (5/4)^{-3/5}$ with $J = 1.7302$), 0.929 by least squares over 0 to 2,
     and tends to 1 only for very thin plates. One quadratic term makes the curve exact to 0.004 % up
     to 0.6.
     """
@@ -144,7 +139,7 @@ def fig04_compression() -> chart.Drawn:
     return figure, {
         "least-squares slope over 0 to 2": (lam * (exact**-1.5 - INTERCEPT)).sum() / (lam**2).sum(),
         "slope at 0": start / 1e-4,
-        "largest error of Eq. 6 in w_m": largest(printed),
+        "largest error of Eq. 6 in $w_m$": largest(printed),
         "largest error of the quadratic up to 0.6": largest(mended[lam <= 0.6]),
     }
 
@@ -157,7 +152,7 @@ def fig05_surface() -> chart.Drawn:
     """Fig. 5: the COR over speed and thickness (A), and against Mueller's elastic formula (B).
 
     The COR falls with speed and with R/H everywhere. Above the yield speed Mueller's formula, which
-    leaves out plastic flow, is far too high: by 31 % at 7 V_Y0 on a plate of R/H = 0.5.
+    leaves out plastic flow, is far too high: by 31 % at 7 $V_{Y0}$ on a plate of R/H = 0.5.
     """
     figure, (left, right) = chart.sheet(
         (13.0, 6.0),
@@ -184,18 +179,18 @@ def fig05_surface() -> chart.Drawn:
     right.legend(loc="lower left", ncols=2)
     over = mueller(ETA * 0.25 * FASTEST**0.2) / impacts(FASTEST, 0.5).restitution - 1
     return figure, {
-        "COR at R/H = 1.8 and 7 V_Y0": e[-1, -1],
-        "Mueller over the model at R/H = 0.5, 7 V_Y0, less 1": over,
+        "COR at R/H = 1.8 and 7 yield speeds": e[-1, -1],
+        "Mueller over the model at R/H = 0.5, 7 yield speeds, less 1": over,
         "largest rise of COR with speed or R/H": max(np.diff(e, axis=k).max() for k in (0, 1)),
     }
 
 
 def fig06_yield_speed() -> chart.Drawn:
-    """Fig. 6: speed from which the bead yields, against R/H: the solver and Eq. 14.
+    r"""Fig. 6: speed from which the bead yields, against R/H: the solver and Eq. 14.
 
     Eq. 14 is within 1.2 % of the solver up to R/H = 1.8 to the digits that the paper prints, 1.21
-    %, with eta corrected. There the plate raises the yield speed by 22 %; with pi^(3/5) and the
-    exponent 4/5 in eta Eq. 14 would be 9 % low, with eta as printed (pi^3, 4/5) more than twice too
+    %, with $\eta$ corrected. There the plate raises the yield speed by 22 %; with $\pi^{3/5}$ and the
+    exponent 4/5 in $\eta$ Eq. 14 would be 9 % low, with $\eta$ as printed ($\pi^3$, 4/5) more than twice too
     high.
     """
     figure, (left, right) = chart.sheet(
@@ -223,18 +218,18 @@ def fig06_yield_speed() -> chart.Drawn:
     as_printed = closed_form.eq_14(eq_10(3.0, 0.8) * THINNEST**2)
     return figure, {
         "largest error of Eq. 14 up to R/H = 1.8": largest(error[ratio <= THINNEST]),
-        "V_Y/V_Y0 at R/H = 1.8": exact[at],
-        "Eq. 14 with pi^(3/5) and 4/5 in eta at R/H = 1.8, error": misprint[at] / exact[at] - 1,
-        "Eq. 14 with eta as printed at R/H = 1.8, error": as_printed / exact[at] - 1,
+        "yield speed over that of the half-space at R/H = 1.8": exact[at],
+        r"Eq. 14 with $\pi^{3/5}$ and 4/5 in $\eta$ at R/H = 1.8, error": misprint[at] / exact[at] - 1,
+        r"Eq. 14 with $\eta$ as printed at R/H = 1.8, error": as_printed / exact[at] - 1,
     }
 
 
 def fig07_inelasticity() -> chart.Drawn:
-    """Fig. 7: COR against lambda: the elastic models, and impacts of the paper's pair.
+    """Fig. 7: COR against inelasticity: the elastic models, and impacts of the paper's pair.
 
     Below yield all impacts lie on one curve (Zener's); Mueller's formula is within 2.5 % of it up
-    to lambda = 0.5, Raman's within 9.3 %. Above yield the impacts leave that curve: at small lambda
-    (R/H = 0.2) all three elastic models are 30 % high at 7 V_Y0. Crosses are finite elements.
+    to an inelasticity of 0.5, Raman's within 9.3 %. Above yield the impacts leave that curve: at small ones
+    (R/H = 0.2) all three elastic models are 30 % high at 7 $V_{Y0}$. Crosses are finite elements.
     """
     figure, (axes,) = chart.sheet(
         (11.0, 6.2),
@@ -255,13 +250,15 @@ def fig07_inelasticity() -> chart.Drawn:
     axes.legend(ncols=3, loc="upper right")
     thick, near = impacts(FASTEST, 0.2), lam[lam <= 0.5]
     numbers = {
-        f"{name} over the model at 7 V_Y0, R/H = 0.2, less 1": form(thick.inelasticity) / thick.restitution - 1
+        f"{name} over the model at 7 yield speeds, R/H = 0.2, less 1": form(thick.inelasticity) / thick.restitution - 1
         for name, form in (("Zener", zener), ("Mueller", mueller), ("Raman's form", closed_form.raman))
     }
     return figure, {
         **numbers,
-        "largest error of Mueller up to lambda 0.5": largest(mueller(near) / zener(near) - 1),
-        "largest error of Raman's form up to lambda 0.5": largest(closed_form.raman(near) / zener(near) - 1),
+        "largest error of Mueller up to an inelasticity of 0.5": largest(mueller(near) / zener(near) - 1),
+        "largest error of Raman's form up to an inelasticity of 0.5": largest(
+            closed_form.raman(near) / zener(near) - 1
+        ),
     }
 
 
@@ -272,8 +269,7 @@ def fig08_speed() -> chart.Drawn:
     """Fig. 8: COR against speed for several thicknesses: the solver and the closed forms.
 
     Eq. 22 as printed jumps to 1 at the yield speed and is up to 55 % off. With the elastic COR at
-    yield as a factor it is continuous and within 4 %. The turning-point form (Fig. 11) is within
-    0.05 % here.
+    yield as a factor it is continuous and within 4 %.
     """
     figure, panels = chart.by_thickness(
         (13.0, 5.2),
@@ -288,11 +284,9 @@ def fig08_speed() -> chart.Drawn:
     case = compare.comparison("matrix")
     for ratio, axes in panels:
         e = np.asarray(impacts(v, ratio).restitution)
-        turned = turning_point.restitution(v, ETA * ratio**2)
         for name, words, line, colour, form in (
             ("printed", "Eq. 22, printed", ":", MUTED, closed_form.eq_22(v, ratio, ETA)),
             ("continuous", "Eq. 22, continuous", "--", VERMILION, peng(v, ratio, ETA)),
-            ("turning point", "turning point", "-", GREEN, turned),
         ):
             axes.plot(v, form, line, color=colour, label=words)
             errors[name] = max(errors.get(name, 0.0), largest(form / e - 1))
@@ -318,7 +312,7 @@ def fig09a_phase() -> chart.Drawn:
     the border of II and III to within 10 % in speed, worst near R/H = 0.25. Of the three cited
     experiments the paper gives materials and regions, but neither thickness nor speed, so there are
     no points to draw. It puts Kharaz and Gorham's, on plastic loss, into region II, where the wave
-    rules; on thick plates that region is a sliver, 0.1 V_Y0 wide at R/H = 0.1, so III may be meant.
+    rules; on thick plates that region is a sliver, 0.1 $V_{Y0}$ wide at R/H = 0.1, so III may be meant.
     """
     figure, (axes,) = chart.sheet(
         (10.0, 6.6),
@@ -354,7 +348,7 @@ def fig09a_phase() -> chart.Drawn:
         "speed at which plastic loss overtakes at R/H = 1.2": borderline(1.2),
         "largest error of Eq. 23 in speed, R/H 0.05 to 1.2": off.max(),
         "R/H at which it is": half[off.argmax()],
-        "width of region II at R/H = 0.1 [V_Y0]": borderline(0.1) - yields,
+        "width of region II at R/H = 0.1, in yield speeds": borderline(0.1) - yields,
     }
 
 
@@ -364,8 +358,8 @@ _STACKED = (0.2, 0.5, 1.2)
 def fig09b_energy() -> chart.Drawn:
     """Fig. 9B: where the energy goes, against speed, at R/H = 0.2, 0.5 and 1.2.
 
-    At R/H = 1.2 plastic flow takes more than the wave only above 9.98 V_Y0, beyond the paper's
-    range; at 0.5 it does above 1.82 V_Y0, at 0.2 above 1.22. The shares sum to 1.
+    At R/H = 1.2 plastic flow takes more than the wave only above 9.98 $V_{Y0}$, beyond the paper's
+    range; at 0.5 it does above 1.82 $V_{Y0}$, at 0.2 above 1.22. The shares sum to 1.
     """
     figure, panels = chart.by_thickness(
         (13.0, 5.0),
@@ -400,10 +394,10 @@ def fig09b_energy() -> chart.Drawn:
 
 
 def fig10_contact_time() -> chart.Drawn:
-    """Fig. 10: contact time against lambda, with and without plastic flow.
+    """Fig. 10: contact time against inelasticity, with and without plastic flow.
 
-    Plastic flow shortens the contact by at most 9 % up to 7 V_Y0. Thinner plates prolong it, by 5 %
-    at R/H = 1.8 and V_Y0. Finite elements (crosses) have contacts up to 4 % shorter than the
+    Plastic flow shortens the contact by at most 9 % up to 7 $V_{Y0}$. Thinner plates prolong it, by 5 %
+    at R/H = 1.8 and $V_{Y0}$. Finite elements (crosses) have contacts up to 4 % shorter than the
     model's, rms 2.3 %: theirs are stiffer than Hertz's. Where the bead yields, Zener's model is 4
     to 11 % long beside them, as the paper says.
     """
@@ -430,104 +424,11 @@ def fig10_contact_time() -> chart.Drawn:
     model, zener = contact_time_errors()
     thin, thick = impacts(1.0, 1.8).contact_time, impacts(1.0, 0.05).contact_time
     return figure, {
-        "largest shortening by plastic flow up to 7 V_Y0": shorter,
-        "R/H = 1.8 over 0.05 at V_Y0, contact time, less 1": thin / thick - 1,
+        "largest shortening by plastic flow up to 7 yield speeds": shorter,
+        "R/H = 1.8 over 0.05 at the yield speed, contact time, less 1": thin / thick - 1,
         "model over finite elements, less 1, least": model.min(),
         "model over finite elements, less 1, largest": model.max(),
         "model over finite elements, less 1, rms": math.sqrt((model**2).mean()),
         "Zener over finite elements, less 1, above yield, least": zener.min(),
         "Zener over finite elements, less 1, above yield, largest": zener.max(),
-    }
-
-
-def fig11_turning_point() -> chart.Drawn:
-    """Fig. 11: error map of the turning-point form, the project's own closed form of the COR.
-
-    Within 0.05 % of the solver for lambda_Y up to 0.3 and v up to 10, within 0.15 % up to 20; exact
-    on the half-space (bottom edge). The form contains fits of two functions of one variable; right
-    of the line, where loading leaves Hertz's curve, also a fit of the loading work. Eq. 22 in its
-    continuous form is up to 4.6 % off for v up to 10.
-    """
-    figure, (axes,) = chart.sheet(
-        (10.0, 6.2),
-        "The turning-point form: within 0.05 % up to 10 times the yield speed",
-        "relative error of the COR against the solver; any pair of materials (R/H on the right: "
-        "gamma-alumina on glass)",
-        Panel(SPEED, Axis(r"inelasticity at yield  $\lambda_Y$")),
-    )
-    v, lam_y = np.linspace(0.05, 20.0, 200), np.linspace(0.0, 0.3, 61)
-    myc = laws.law("myc")
-    exact = np.array([[restitution(x, lam, myc) for x in v] for lam in lam_y])
-    error = turning_point.restitution(v, lam_y[:, None]) / exact - 1.0
-    look = {"cmap": "PuOr", "extend": "both", "levels": np.linspace(-0.15, 0.15, 13)}
-    chart.contours(axes, v, lam_y, 100 * error, "error of the COR  [%]", **look)
-    axes.axhline(ETA * 1.8**2, color=INK, linestyle=":", linewidth=1.2)
-    overload = v**0.8 * turning_point.loading(lam_y[:, None] * v**0.2)
-    axes.contour(v, lam_y, overload, levels=[P], colors=INK, linewidths=1.2)
-    chart.note(axes, 4.1, 0.02, "loads along\nHertz's curve", ha="right")
-    chart.note(axes, 4.7, 0.02, "and\nbeyond it", ha="left")
-    other = axes.secondary_yaxis(
-        "right", functions=(lambda lam: np.sqrt(np.maximum(lam, 0.0) / ETA), lambda ratio: ETA * np.square(ratio))
-    )
-    other.set_ylabel(SLENDERNESS.label)
-    other.set_yticks([0.5, 1.0, 1.4, 1.8])
-    axes.set_xticks([0, 5, 10, 15, 20])
-    slow = error[:, v <= 10.0]
-    peng = closed_form.peng(v, np.sqrt(lam_y / ETA)[:, None], ETA) / exact - 1.0
-    return figure, {
-        "largest error up to 10 V_Y0": largest(slow),
-        "root mean square error up to 10 V_Y0": math.sqrt((slow**2).mean()),
-        "largest error up to 20 V_Y0": largest(error),
-        "largest error of Eq. 22, continuous, up to 10 V_Y0": largest(peng[:, v <= 10.0]),
-    }
-
-
-_SLOWER = yield_unit(laws.law("thornton")) ** 1.25  # yield speed of its law in that of MYC
-_MODERATE = 3.5  # V0/V_Y0
-_ALIKE = "myc", "kogut_etsion", "jackson_green"
-
-
-def fig13_laws() -> chart.Drawn:
-    """Fig. 13: the COR by all laws, on the half-space and on a plate.
-
-    Three laws agree within 5 % up to 3.5 V_Y0 in both panels and part beyond. Thornton's, which
-    yields at 2.13 m/s, is up to 29 % below MYC's there; on the half-space it approaches its
-    asymptote 1.185 v^(-1/4) (v by its own yield speed), Johnson's power, to 0.1 % at 30 V_Y0.
-    Jackson and Green made their fit for metals, E*/sigma_Y above about 120; this pair has 23.
-    """
-    across, up = SPEED.log(0.1, 0.3, 1, 3, 10, 30), RESTITUTION.between(0.3, 1.02)
-    figure, (left, right) = chart.sheet(
-        (12.0, 5.6),
-        "Three laws agree within 5 % at moderate speeds, Thornton's does not",
-        "COR against speed, gamma-alumina on glass; V$_{Y0}$ is the yield speed of MYC, 7.43 m/s",
-        Panel(across, up, "half-space"),
-        Panel(across, up, "plate as thick as the radius, R/H = 1"),
-        sharey=True,
-    )
-    v = np.geomspace(0.1, 30.0, 160)
-    cor: dict[tuple[str, float], Array] = {}
-    for name, law in all_laws().items():
-        for axes, lam_y in ((left, 0.0), (right, ETA)):
-            e = cor[name, lam_y] = np.array([restitution(x, lam_y, law) for x in v])
-            chart.of_law(axes, name, v, e)
-    fast = v[v > 1.5]
-    asymptote = np.asarray(closed_form.thornton_asymptote(fast / _SLOWER))
-    left.plot(fast, asymptote, ":", color=INK, label=r"Thornton, 1.185 v$^{-1/4}$")
-    left.legend(loc="lower left")
-    right.label_outer()
-    moderate = v <= _MODERATE
-    numbers: dict[str, float] = {}
-    for title, lam_y in (("half-space", 0.0), ("R/H = 1", ETA)):
-        others = [cor[name, lam_y] for name in _ALIKE]
-        spread = np.min(others, axis=0) / np.max(others, axis=0)
-        below = cor["thornton", lam_y] / cor["myc", lam_y]
-        numbers |= {
-            f"lowest over highest COR of three laws up to 3.5 V_Y0, {title}": spread[moderate].min(),
-            f"Thornton over MYC up to 3.5 V_Y0, {title}": below[moderate].min(),
-        }
-    end = cor["thornton", 0.0][-1]
-    return figure, {
-        **numbers,
-        "yield speed of Thornton's law [m/s]": _SLOWER * setting.SPEED,
-        "Thornton over its asymptote at 30 V_Y0, half-space": end / asymptote[-1],
     }

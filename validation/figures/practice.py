@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import csv
-import dataclasses
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,56 +28,9 @@ from validation.accuracy.edges import FILE
 from validation.accuracy.measured import FOLDER, Source
 from validation.derivations.walls import restitution
 from validation.figures import chart
-from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
-from validation.paper import setting
-from validation.paper.setting import FASTEST, RADIUS, model
+from validation.figures.chart import RESTITUTION, Axis, Panel
 
 PART = figures.PRACTICE
-
-
-_PLATES = (0.3, 0.9, 1.8)
-_INPUTS = {
-    "speed": (INK, "-"),
-    "radius": (BLUE, "-"),
-    "thickness": (BLUE, "--"),
-    "sphere_density": (GREEN, "-"),
-    "plate_density": (GREEN, "--"),
-    "sphere_modulus": (ORANGE, "-"),
-    "plate_modulus": (ORANGE, "--"),
-    "yield_strength": (VERMILION, "-"),
-}
-
-
-def fig12_sensitivity() -> chart.Drawn:
-    """Fig. 12: what one per cent more of an input does to the COR, against speed.
-
-    On thin plates thickness and radius matter most: where the radius is 1.8 times the thickness,
-    one per cent of either is worth 0.9 per cent of COR at twice the yield speed. On thick ones it
-    is the yield strength, with 0.5 at 5 yield speeds and a radius of 0.3 times the thickness.
-    """
-    figure, panels = chart.by_thickness(
-        (13.0, 5.8),
-        "Which input has to be known well? Thickness, where the plate is thin",
-        "what one per cent more of an input does to the COR; gamma-alumina on glass",
-        _PLATES,
-        SPEED.between(0, FASTEST),
-        Axis("change of the COR  [% per %]"),
-    )
-    v = np.linspace(0.1, FASTEST, 300)
-    for ratio, axes in panels:
-        moved = model().sensitivity(v * setting.SPEED, RADIUS, RADIUS / ratio)
-        for field in dataclasses.fields(moved):
-            colour, line = _INPUTS[field.name]
-            axes.plot(v, getattr(moved, field.name), line, color=colour, label=field.name.replace("_", " "))
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
-    thin = model().sensitivity(2.0 * setting.SPEED, RADIUS, RADIUS / 1.8)
-    thick = model().sensitivity(5.0 * setting.SPEED, RADIUS, RADIUS / 0.3)
-    return figure, {
-        "thickness, R/H = 1.8, 2 yield speeds": thin.thickness,
-        "radius, R/H = 1.8, 2 yield speeds": thin.radius,
-        "yield strength, R/H = 0.3, 5 yield speeds": thick.yield_strength,
-        "speed, R/H = 0.3, 5 yield speeds": thick.speed,
-    }
 
 
 _LOOK = {  # by the body that yields: marker, colour and words
@@ -232,14 +184,6 @@ def _readings(column: str) -> NDArray[np.float64]:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     names = "angle_deg", column, "source"
     return np.array([[float(r[name]) for name in names] for r in rows if r[column]]).T
-
-
-def oblique_points() -> Iterator[tuple[str, int, float, float, float]]:
-    """Quantity, who read it, angle [deg], measured and modelled value of each point."""
-    for n, (name, column) in enumerate(_COLUMNS.items()):
-        at, value, source = _readings(column)
-        for row in zip(source.astype(int), at, value, _oblique(at)[n], strict=True):
-            yield name, *row
 
 
 def fig26_oblique() -> chart.Drawn:
@@ -409,7 +353,7 @@ def fig28_edges() -> chart.Drawn:
         off.append(np.abs(here - found).max())
         change.append(np.abs(near[s > reach] / cor - 1.0).max())
     numbers["largest difference from the finite elements"] = max(off)
-    numbers["largest change of the COR from edge_distance on"] = max(change)
+    numbers["largest change of the COR from `edge_distance` on"] = max(change)
     chart.note(axes, 0.5, 0.66, "flagged:\nnearer than\nthe plate\nis thick", MUTED, ha="center")
     chart.note(axes, reach - 0.1, 0.04, "cl.edge_distance", MUTED, ha="right")
     chart.note(axes, 7.0, cor - 0.05, f"far from edges: {cor:.2f}")

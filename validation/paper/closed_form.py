@@ -176,21 +176,6 @@ def thornton(v: ArrayLike) -> Array:
     return np.asarray(_THORNTON * np.sqrt(1.0 - x**2 / 6.0) * share**0.25)
 
 
-def thornton_asymptote(v: ArrayLike) -> Array:
-    """COR of `thornton` far above yield, 1.185 v^(-1/4): 2.5 % above it at v = 5, 0.12 % at 100.
-
-    Wu, Li, Thornton (Int. J. Impact Eng. 28 (2003) 929) find v^(-1/2) in place of v^(-1/4) once the
-    deformation is finite, which no law here is made for.
-
-    Examples
-    --------
-    >>> round(float(thornton_asymptote(100.0)), 4)
-    0.3747
-    """
-    factor = _THORNTON * (2.0 * math.sqrt(1.2)) ** -0.25
-    return np.asarray(factor * np.asarray(v) ** -0.25)
-
-
 def half_space(v: ArrayLike) -> Array:
     """COR on a half-space, exactly: Eq. 21, and its continuation to where loading is linear.
 

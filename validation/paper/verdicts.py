@@ -17,8 +17,23 @@ LIMITED = "holds in part"
 FAILS = "does not hold"
 OPEN = "not reproducible here"
 
-# Our number, "ours", what the note quotes, and "printed" where the paper has a formula.
+# Our number, "ours", what the note quotes as {name:format}, and "printed" where the paper has a formula.
 Numbers = Mapping[str, SupportsFloat]
+
+
+def scientific(number: float, digits: int = 6) -> str:
+    r"""Write a number with a power of ten, in LaTeX, where it is very large or small.
+
+    Examples
+    --------
+    >>> scientific(0.05), scientific(1e-12), scientific(1.93e-7)
+    ('0.05', '$10^{-12}$', '$1.93 \\times 10^{-7}$')
+    """
+    mantissa, small, exponent = f"{number:.{digits}g}".partition("e")
+    if not small:
+        return mantissa
+    factor = "" if mantissa == "1" else rf"{mantissa} \times "
+    return f"${factor}10^{{{int(exponent)}}}$"
 
 
 class Agreement(NamedTuple):
@@ -30,7 +45,7 @@ class Agreement(NamedTuple):
 
 def within(tolerance: float) -> Agreement:
     """Agreement within an absolute tolerance."""
-    return Agreement(f"within {tolerance:g}", lambda ours, printed: abs(ours - printed) <= tolerance)
+    return Agreement(f"within {scientific(tolerance)}", lambda ours, printed: abs(ours - printed) <= tolerance)
 
 
 def at_most_rounded(digits: int) -> Agreement:
@@ -80,5 +95,7 @@ def judge(row: Row) -> Claim:
         assert ours is not None and printed is not None, row.name
         tolerance = row.agreement.words
         verdict = HOLDS if row.agreement.holds(ours, printed) else row.otherwise
-    note = re.sub(r"(?<=\d)%", " %", row.note.format(**numbers))  # SI puts a space before the sign
+    # LaTeX has braces, too, but no colon in them; SI puts a space before the percent sign
+    note = re.sub(r"\{(\w+):(.+?)\}", lambda place: format(numbers[place[1]], place[2]), row.note)
+    note = re.sub(r"(?<=\d)%", " %", note)
     return Claim(row.name, row.where, row.statement, printed, ours, tolerance, verdict, note)

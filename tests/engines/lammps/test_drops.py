@@ -1,4 +1,4 @@
-"""Beads of every kind that drop on a plate in LAMMPS: the record is what the solver says."""
+"""Beads that drop on a plate in LAMMPS: the record is what the solver says, and energies add up."""
 
 import math
 
@@ -6,7 +6,7 @@ import metal
 import numpy as np
 import polymer
 import pytest
-from lammps_box import PAIR, R, above, dropped, flat, lost
+from lammps_box import PAIR, R, above, dropped, flat, lost, scene
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Translation
@@ -61,3 +61,42 @@ def test_drops_are_the_solvers(model, radius, thickness, speed, bound, steps, ri
         share = rows[f"{channel}_energy"] / energy
         assert share == pytest.approx(getattr(hit, f"{channel}_fraction"), abs=shares), channel
     assert (rows["flags"] == hit.flags).all()
+
+
+@pytest.mark.parametrize("steps", [21, pytest.param(50, marks=pytest.mark.long)])
+def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
+    """The bead bounces between two plates, and first touches at ever another phase of a step."""
+    dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
+    plates = [flat(math.inf), flat(math.inf, height=2 * R + 2e-5)]
+    options = {"dt": dt, "steps": 22_700 * steps, "records": 30_000}
+    rows, _ = dropped(HERTZ, plates, above(1e-5), (0, 0, -3.0), **options)
+    assert len(rows) > 1e4
+    assert rows["restitution"] == pytest.approx(1.0, abs=1e-11)
+    assert rows["approach_speed"] == pytest.approx(3.0, rel=1e-10)
+
+
+CHANGES = ["timestep {less}", "timestep {more}", "fix adapt all dt/reset 1 {less} {more} {way} units box"]
+
+
+@pytest.mark.parametrize("command", CHANGES)
+@pytest.mark.parametrize(
+    ("model", "thickness", "speed"), [(HERTZ, math.inf, 3.0), (MYC, 1e-3, 5.0), (MYC, 0.5e-3, 3.0)]
+)
+def test_the_step_may_change_in_mid_contact(model, thickness, speed, command):
+    """The step may change each time, as by fix dt/reset; 50 steps per contact promise 1e-4."""
+    hit = model.solve(speed, R, thickness)
+    dt = float(hit.contact_time) / 50
+    for after in range(1, 50, 6):
+        lmp, walls = scene(model, [flat(thickness)], above(2.4 * dt * speed), (0, 0, -speed), dt=dt)
+        lmp.command(f"run {2 + after}")
+        lmp.command(command.format(less=0.5 * dt, more=1.4 * dt, way=0.5 * speed * dt))
+        lmp.command("run 200")
+        bound = 1e-8 if model is HERTZ else 1e-4
+        assert walls.collisions()["restitution"] == pytest.approx(hit.restitution, abs=bound), after
+
+
+def test_a_step_that_becomes_too_long_in_mid_contact():
+    lmp, _ = scene(HERTZ, [flat(math.inf)], above(1e-6), (0, 0, -3.0))
+    lmp.commands_string("run 20\ntimestep 1e-6")
+    with pytest.raises(RuntimeError, match="timestep: too large for an impact at 3 m/s"):
+        lmp.command("run 200")

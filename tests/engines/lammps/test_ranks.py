@@ -1,62 +1,163 @@
-"""The LAMMPS adapter on two ranks: any communicator, and errors that one rank alone makes."""
+"""Runs in pieces, from restarts and on two ranks have the bits of one run; errors reach all ranks."""
 
 import faulthandler
 import sys
+from pathlib import Path
 
 import lammps_box as box
 import numpy as np
 import pytest
+from lammps_box import PLATE, state
 
 import contactlaw as cl
+from contactlaw import style
+from contactlaw.engines.record import Kind
 
+# Beads of the softened scene are faster than its softening is for.
+pytestmark = pytest.mark.filterwarnings("ignore:softening. an impact:UserWarning")
 WORLD = box.MPI.COMM_WORLD
 FAULTS = {
     "rows lost": ("gather", "record", "save", "report"),
-    "no record": ("record", "save", "report"),
-    "not to be sent": ("record",),
+    "not to be sent": ("record", "save", "report"),
     "no matplotlib": ("report",),
     "detached": ("loads",),
 }
 MESSAGES = {
     "rows lost": "TypeError: ",
-    "no record": "ZeroDivisionError: division by zero",
     "not to be sent": "RuntimeError: Unsent('out of reach')",
     "no matplotlib": "ImportError: a plot needs matplotlib",
     "detached": "RuntimeError: {}: the walls were detached",
 }
 
 
+@pytest.fixture(scope="module", params=box.SCENES)
+def whole(request):
+    """A scene in one run: its name, what is left of it, its impacts and loads."""
+    lmp = box.rain()
+    walls = box.SCENES[request.param](lmp)
+    lmp.command(f"run {box.STEPS}")
+    return request.param, state(lmp), walls.gather(), box.loads_of(walls)
+
+
+def assert_same(found, expected):
+    for name, values in expected.items():
+        assert np.array_equal(found[name], values), name
+
+
+def assert_close(borne, expected):
+    assert np.count_nonzero(expected) > 10
+    np.testing.assert_allclose(borne, expected, rtol=1e-9, atol=1e-9 * abs(expected).max())
+
+
+def test_one_run_or_many_give_the_same_bits(whole):
+    name, ends, impacts, borne = whole
+    lmp = box.rain()
+    walls = box.SCENES[name](lmp)
+    for _ in range(24):
+        lmp.command(f"run {box.STEPS // 24}")
+    assert_same(state(lmp), ends)
+    rows = walls.gather()
+    assert_close(box.loads_of(walls), borne)
+    assert len(rows) > 150
+    for column in box.ALIKE:
+        assert rows[column] == pytest.approx(impacts[column], rel=1e-9), column
+
+
+def test_a_restart_in_mid_contact_gives_the_same_bits(whole, tmp_path):
+    """After the restart the walls move on from where they were; two records make that of one run."""
+    name, ends, impacts, _ = whole
+    lmp = box.rain()
+    walls = box.SCENES[name](lmp)
+    lmp.command("run 1000")
+    touching, time = np.count_nonzero(state(lmp)["d2_contactlaw"][:, PLATE]), walls.time
+    lmp.command(f"write_restart {tmp_path / 'rain.restart'}")
+    walls.save(tmp_path / "1.h5")
+    assert touching > 3
+    lmp = box.restarted(tmp_path / "rain.restart", gravity=9.81)
+    walls = box.SCENES[name](lmp)
+    assert walls.time == time == 1000 * box.DT
+    lmp.command(f"run {box.STEPS - 1000}")
+    assert_same(state(lmp), ends)
+    walls.save(tmp_path / "2.h5")
+    rows = cl.read_record(tmp_path / "1.h5", tmp_path / "2.h5").rows
+    assert rows["time"] == pytest.approx(impacts["time"], abs=1e-18)
+    assert all(np.array_equal(rows[name], impacts[name]) for name in box.ALIKE[1:-1])
+
+
 @pytest.fixture(scope="module")
-def output(tmp_path_factory):
-    """What `main` prints on two ranks; if one waits for the other, it ends with an error."""
-    return box.on_two_ranks(__file__, tmp_path_factory.mktemp("ranks"))
+def two_ranks(tmp_path_factory):
+    """What `main` prints on two ranks, and its folder; if one waits for the other, it ends with an error."""
+    folder = tmp_path_factory.mktemp("ranks")
+    return box.on_two_ranks(__file__, folder), folder
+
+
+def test_two_ranks_give_the_same_bits(whole, two_ranks):
+    name, ends, impacts, borne = whole
+    with np.load(two_ranks[1] / f"{name}.npz") as out:
+        assert out["moved_in_contact"] >= 8
+        assert_same(out, ends)
+        assert_close(out["borne"], borne)
+        for column in ("bead", "plate", "triangle", "restitution", "peak_force"):
+            assert np.array_equal(out["rows"][column], impacts[column]), column
+
+
+def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
+    folder = two_ranks[1] / "report"
+    rows, saved = np.load(two_ranks[1] / "shower.npz")["rows"], cl.read_record(folder / "record.h5").rows
+    assert all(np.array_equal(saved[name], rows[name]) for name in rows.dtype.names if name != "flags")
+    assert f"{rows.size} impacts on 2 walls" in (folder / "summary.txt").read_text()
 
 
 @pytest.mark.parametrize(
-    ("fault", "method"), [(fault, method) for fault, methods in FAULTS.items() for method in methods]
+    ("words", "count"),
+    [
+        *(
+            (f"{fault}, {one}: {MESSAGES[fault].format(one)}", 2)
+            for fault, methods in FAULTS.items()
+            for one in methods
+        ),
+        # each of two errors once on each rank, and a later error of LAMMPS does not hide it
+        ("caught: bead 1 on wall 0 at step", 4),
+        ("caught", 4),
+        ("a command without time steps needs no other rank", 1),
+        (f"bodies: [1, 3] [{Kind.OF_BODY:d}, {Kind.IMPACT:d}]", 1),  # and one rank without any
+        ("2 rows kept", 1),
+        ("note: ", 2),
+        ("/out/record.h5, and `contactlaw report ", 2),
+        ("2 rows of both ranks", 1),
+        ("hits.0.npy is of another run", 1),
+    ],
 )
-def test_an_error_on_one_rank_is_raised_on_all(fault, method, output):
-    assert output.count(f"{fault}, {method}: {MESSAGES[fault].format(method)}") == 2
+def test_what_happens_on_one_rank_reaches_all(words, count, two_ranks):
+    assert two_ranks[0].count(words) == count
 
 
-def test_rows_that_an_earlier_run_has_left_are_refused(output):
-    assert "2 rows of both ranks" in output
-    assert "mixed: " in output and "hits.1.npy: " in output and "hits.0.npy is of another run" in output
-
-
-def test_a_report_that_cannot_be_drawn_keeps_its_record(output):
-    notes = [line for line in output.splitlines() if line.startswith("note: ")]
-    assert len(notes) == 2 and notes[0] == notes[1]
-    assert "/out/record.h5, and `contactlaw report " in notes[0] and "2 rows kept" in output
-
-
-@pytest.mark.parametrize("name", ["Dup", "Split", "partition"])
-def test_plates_work_on_any_communicator(name, output, model):
-    rebound = model.restitution(5.0, box.R, 1e-3)
-    found = [line.split() for line in output.splitlines() if line.startswith(name)]
-    beads = {"Dup": [2], "Split": [1, 1], "partition": [1, 1]}[name]
+@pytest.mark.parametrize(("name", "beads"), [("Dup", [2]), ("Split", [1, 1]), ("partition", [1, 1])])
+def test_plates_work_on_any_communicator(name, beads, two_ranks, model):
+    found = [line.split() for line in two_ranks[0].splitlines() if line.startswith(name)]
     assert [int(count) for _, count, _ in found] == beads
+    rebound = model.restitution(5.0, box.R, 1e-3)
     assert [float(cor) for *_, cor in found] == pytest.approx([rebound] * len(beads), abs=1e-3)
+
+
+def in_chunks(path, walls_of, chunks=120):
+    """Run a scene in chunks on every rank; rank 0 writes; return the walls."""
+    lmp = box.rain("2 1 1")
+    walls = walls_of(lmp)
+    moved, before = 0, [np.array([])] * 2
+    for _ in range(chunks):
+        lmp.command(f"run {box.STEPS // chunks}")
+        own = state(lmp)
+        parts = WORLD.allgather(own["id"][own["d2_contactlaw"][:, PLATE] != 0.0])
+        moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
+        before = parts
+    parts = WORLD.gather(own)
+    rows, borne = walls.gather(), box.loads_of(walls)
+    if WORLD.rank == 0:
+        ends = {name: np.concatenate([part[name] for part in parts]) for name in own}
+        ends = {name: values[np.argsort(ends["id"])] for name, values in ends.items()}
+        np.savez(path, **ends, rows=rows, moved_in_contact=moved, borne=borne)
+    return walls
 
 
 class Unsent(Exception):
@@ -70,8 +171,6 @@ def broken(walls, fault, patch):
     """Break what one rank alone needs."""
     if fault == "rows lost" and WORLD.rank == 1:
         patch.setattr(walls, "_parts", None)
-    elif fault == "no record" and WORLD.rank == 0:
-        patch.setattr(walls._contacts, "record", lambda *rows, **made: 1 / 0)
     elif fault == "not to be sent" and WORLD.rank == 0:
         patch.setattr(walls._contacts, "record", lambda *rows, **made: (_ for _ in ()).throw(Unsent(1, 2)))
     elif fault == "no matplotlib" and WORLD.rank == 0:
@@ -80,44 +179,91 @@ def broken(walls, fault, patch):
         patch.setattr(walls, "_attached", False)
 
 
-def main(folder):
-    """Break each method on one rank; then run on other communicators."""
-    model = cl.ImpactModel(box.PAIR, law="myc")
-    lmp, walls = box.scene(model, None, [box.above(x=0.03), box.above(x=-0.03)], processors="2 1 1")
-    lmp.command("run 700")
-    faulthandler.dump_traceback_later(100, exit=True)  # the force is compiled, which may take long
-    paths = {"save": ["run.h5"], "report": ["out"]}
+BODIES = f"""
+    create_atoms 1 single -0.02 0 0.00091
+    create_atoms 1 single -0.019 0 0.00241
+    create_atoms 1 single 0.02 0 0.00091
+    fix number all property/atom mol
+    set group all diameter 1.8e-3 density {box.DENSITY} mol 1
+    set atom 3 mol 2
+    velocity all set 0 0 -1
+    group clump id 1 2
+    group free id 3
+    fix body clump rigid/small molecule
+    fix move free nve/sphere
+    comm_modify cutoff 0.01
+    timestep 1e-7"""
+
+
+def show(*words):
+    sys.stdout.write(" ".join(map(str, words)) + "\n")  # at once, or lines of both ranks mix
+    sys.stdout.flush()
+
+
+def break_each_method(walls, folder):
+    paths = {"save": [f"{folder}/run.h5"], "report": [f"{folder}/out"]}
     for fault, methods in FAULTS.items():
         for name in methods:
             with pytest.MonkeyPatch.context() as patch:
                 broken(walls, fault, patch)
                 try:
-                    getattr(walls, name)(*(f"{folder}/{path}" for path in paths.get(name, ())))
+                    getattr(walls, name)(*paths.get(name, ()))
                 except Exception as error:
-                    text = f"{fault}, {name}: {type(error).__name__}: {error}\n"
-                    text += "".join(f"note: {note}\n" for note in getattr(error, "__notes__", ()))
-                    print(text, end="", flush=True)
+                    notes = [f"\nnote: {note}" for note in getattr(error, "__notes__", ())]
+                    show(f"{fault}, {name}: {type(error).__name__}: {error}", *notes)
+
+
+def make_errors(lmp):
+    for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
+        lmp.command("set group all z 0.001 vz -5")
+        try:
+            lmp.commands_string(commands)
+        except RuntimeError as error:
+            show(f"caught: {error}")
+
+
+def main(folder):
+    """Run the scenes, break each method on one rank, then run on other communicators."""
+    model = cl.ImpactModel(box.PAIR, law="myc")
+    reported, *_ = [in_chunks(folder / f"{name}.npz", walls_of) for name, walls_of in box.SCENES.items()]
+    style.png = lambda figure: b""  # the other rank would wait, and take all of its core
+    reported.report(folder / "report")
+    faulthandler.dump_traceback_later(100, exit=True)
+    split = "2 1 1"
+    lmp, _ = box.scene(model, None, box.above(x=0.03), dt=4e-7, split=split)
+    make_errors(lmp)
     if WORLD.rank == 0:
-        print(f"{cl.read_record(f'{folder}/out/record.h5').rows.size} rows kept")
-    np.save(f"{folder}/hits.{WORLD.rank}.npy", walls.collisions())
+        lmp.command("variable one equal 1")
+        show("a command without time steps needs no other rank")
+    both = [box.above(x=0.03), box.above(x=-0.03)]
+    lmp, walls = box.scene(model, None, both, split=split)
+    lmp.command("run 700")
+    break_each_method(walls, folder)
+    lmp = box.quiet("atom_modify map array" + box.BOX.format(processors=split) + BODIES)
+    bodies = box.attach(lmp, model, [box.flat(1e-3), box.flat(1e-3, height=-0.01)], rigid="body")
+    for command in ("run 800", "unfix body", "fix more clump nve/sphere", "run 10"):
+        lmp.command(command)
+    if (rows := bodies.gather()) is not None:
+        show("bodies:", rows["bead"].tolist(), rows["kind"].tolist())
+    np.save(folder / f"hits.{WORLD.rank}.npy", walls.collisions())
     started = {"Dup": {"comm": WORLD.Dup()}, "Split": {"comm": WORLD.Split(WORLD.rank)}}
     started["partition"] = {"more": ["-partition", "2x1", "-in", "none", "-plog", "none", "-pscreen", "none"]}
     for name, how in started.items():
-        places = [box.above(x=0.03), box.above(x=-0.03)] if name == "Dup" else [box.above()]
-        lmp, walls = box.scene(model, None, places, **how)
+        lmp, walls = box.scene(model, None, both if name == "Dup" else box.ABOVE, **how)
         lmp.command("run 700")
         if (rows := walls.gather()) is not None:
-            print(f"{name} {rows.size} {rows['restitution'][0]}\n", end="", flush=True)
+            show(name, rows.size, rows["restitution"][0])
     WORLD.barrier()
     if WORLD.rank == 0:
-        files = [f"{folder}/hits.{rank}.npy" for rank in range(2)]
-        print(f"{cl.read_record(*files).rows.size} rows of both ranks")
+        show(cl.read_record(folder / "out/record.h5").rows.size, "rows kept")
+        files = [folder / f"hits.{rank}.npy" for rank in range(2)]
+        show(cl.read_record(*files).rows.size, "rows of both ranks")
         np.save(files[0], rows)
         try:
             cl.read_record(*files)
         except ValueError as error:
-            print(f"mixed: {error}")
+            show(error)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(Path(sys.argv[1]))

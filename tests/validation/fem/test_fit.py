@@ -1,5 +1,6 @@
 """The numbers of the law ``"fem"`` are those that the stored campaign gives."""
 
+import dataclasses
 import json
 import math
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from contactlaw.laws import fem
-from validation.fem import bodies, campaign, census, fit, journal, metals, store
+from validation.fem import campaign, cases, census, fit, journal, metals, store
 from validation.fem.campaign import Press
 
 
@@ -18,25 +19,6 @@ def flat(numbers):
     if isinstance(numbers, list):
         return [x for one in numbers for x in flat(one)]
     return [numbers]
-
-
-@pytest.fixture(scope="module")
-def fitted():
-    """Errors of the shipped constants of metals beside what they were fitted to; names of that."""
-    read = []
-
-    def noted(name):
-        read.append(name)
-        return store.read(name)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(metals, "store", type("Store", (), {"read": staticmethod(noted)}))
-        constants = metals.shipped()
-        return np.concatenate([metals.errors(one, constants) for one in metals.FIT]), read
-
-
-def test_the_shipped_file_is_written_with_a_row_of_a_table_on_each_line():
-    assert fit.FILE.read_text("utf-8") == fit.text_of(fem.fitted())
 
 
 @pytest.mark.long
@@ -51,7 +33,7 @@ def test_the_fit_gives_the_numbers_that_are_shipped():
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_the_fit_to_indentations_gives_the_numbers_that_are_shipped():
     """The part of the whole fit that needs no impacts."""
-    data, shipped = store.read("campaign_indentation").data, fem.fitted()
+    data, shipped = store.read(campaign.NAME).data, fem.fitted()
     stiff, friction = fit.stiffening(data)
     assert friction == pytest.approx(0.0, abs=0.02)
     for yielding in campaign.YIELDING:
@@ -67,47 +49,68 @@ def test_the_constants_of_hardening_and_rate_are_where_their_fit_ends():
     assert np.abs(np.divide(metals.step(constants), constants)).max() < 0.03
 
 
-def test_the_constants_of_hardening_and_rate_fit(fitted):
-    assert np.sqrt(np.mean(fitted[0] ** 2)) < 0.0085
+def test_the_constants_of_hardening_and_rate_fit():
+    off = np.concatenate([metals.errors(name, metals.shipped()) for name in metals.FIT])
+    assert np.sqrt(np.mean(off**2)) < 0.0085
 
 
-def test_no_fit_reads_the_set_kept_out(monkeypatch, fitted):
-    read = []
-
-    def noted(name):
-        read.append(name)
-        return store.read(name)
-
-    monkeypatch.setattr(fit, "store", type("Store", (), {"read": staticmethod(noted)}))
-    assert len(fit.blows()) > 400
-    assert "kept_out" not in read and "everyday" in read
-    assert set(fitted[1]) == set(metals.FIT)
-
-
-@pytest.mark.parametrize("name", census.SEEDS)
-def test_everyday_impacts_are_those_of_their_seed(name):
-    assert census.drawn(name) == census.draw(census.SEEDS[name], census.COUNT)
+def test_the_strength_of_bodies_with_losses_is_where_its_fit_ends():
+    """Elastic impacts, to which it was not fitted, are within 2 %, rms 0.6 %."""
+    found = fem.fitted()
+    low, here, high = (
+        metals.errors_by("polymers", {**found, "pressure": x * found["pressure"]}) for x in (0.7, 1.0, 1.3)
+    )
+    flows = np.array([case.yields or case.plate_yields for case in cases.stored("polymers")])
+    assert np.abs(here[~flows]).max() < 0.02 and np.sqrt(np.mean(here[~flows] ** 2)) < 0.0065
+    rms = [np.sqrt(np.mean(off[flows] ** 2)) for off in (low, here, high)]
+    assert rms[1] < min(rms[0], rms[2]) and rms[1] < 0.012
 
 
-def test_thin_plates_are_those_of_their_seed():
-    assert census.drawn(census.THIN) == census.draw_thin(census.THIN_SEED)
+def test_no_fit_reads_a_set_that_was_kept_out(monkeypatch):
+    names, read = list(metals.FIT), store.read
+    monkeypatch.setattr(store, "read", lambda name: names.append(name) or read(name))
+    assert len(fit.blows()) > 400 and "everyday" in names
+    assert not [name for name in names if "kept_out" in name or name == "everyday_5"]
 
 
-@pytest.mark.parametrize("yielding", campaign.YIELDING)
+def test_a_set_is_drawn_by_its_seed():
+    """A new set is drawn as the one that was kept out."""
+    drawn = census.draw(20261127, 80)
+    stored = cases.stored("kept_out")
+    assert [(one.speed, one.thickness, one.pair) for one in stored] == [
+        (one.speed, one.thickness, one.pair) for one in drawn
+    ]
+
+
+@pytest.mark.parametrize("yielding", ["sphere", "plate", "both"])
 def test_a_coarse_indentation_again(yielding):
-    """On a mesh half as fine, three times as fast, it is within 3 % of the stored one."""
-    data = store.read("campaign_indentation").data
-    depth = 6.0 * campaign.yield_depth(40.0)
-    job = campaign._pressed(40.0, yielding, 6.0, across=6, slowness=0.5)
-    found = campaign.press(job)
-    strains = [1.0 / 40.0 if yielding in (body, "both") else 0.0 for body in ("sphere", "plate")]
-    here = np.isclose(data["sphere_yield_strain"], strains[0])
-    here &= np.isclose(data["plate_yield_strain"], strains[1]) & np.isclose(data["depth"], depth)
-    n = int(np.flatnonzero(here)[0])
+    """On a mesh half as fine, twice as fast, it is within 3 % of the stored one."""
+    data = store.read(campaign.NAME).data
+    ratios = [40.0 if yielding in (body, "both") else math.inf for body in ("sphere", "plate")]
+    n, job = next(
+        (n, job)
+        for n, job in enumerate(campaign.stored())
+        if [job.sphere, job.plate] == pytest.approx(ratios) and data["depth"][n] > 0.03
+    )
+    found = campaign.press(dataclasses.replace(job, across=6, slowness=0.5))
     assert found["force"] == pytest.approx(data["force"][n], rel=0.03)
     recovered = found["unloading_work"] / found["loading_work"]
     stored = data["unloading_work"][n] / data["loading_work"][n]
     assert recovered == pytest.approx(stored, rel=0.03)
+
+
+def test_an_impact_is_computed_again_from_its_file(tmp_path, monkeypatch):
+    """Its inputs, its other columns and what the file says of itself stay."""
+    data, attributes = store.read("verification")
+    (n,) = np.flatnonzero((data["check"] == "mesh") & (data["size"] == 0.04) & (data["thickness"] == 1e-3))
+    monkeypatch.setattr(store, "FOLDER", tmp_path)
+    row = {name: values[[n]] for name, values in data.items()}
+    store.write("verification", attributes["about"], row, dict.fromkeys(row, "-"))
+    journal.again("verification", 1)
+    again, made = store.read("verification")
+    assert made["about"] == attributes["about"] and again["check"] == ["mesh"]
+    for name in ("speed", "thickness", "size", "restitution", "peak_force", "elements"):
+        assert again[name] == pytest.approx(data[name][n], rel=1e-6), name
 
 
 def job_once(job):
@@ -130,10 +133,3 @@ def test_a_killed_run_goes_on(tmp_path, monkeypatch):
     assert journal._read(journal.path("some")) == {}
     journal.forget("some")
     assert not journal.path("some").exists()
-
-
-@pytest.mark.parametrize("name", bodies.SETS)
-def test_drawn_bodies_are_those_of_their_seed(name):
-    stored = store.read(name).data
-    for key in ("speed", "radius", "thickness", "sphere", "plate"):
-        assert [getattr(one, key) for one in bodies.draw(name)] == stored[key].tolist()

@@ -5,21 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import contactlaw as cl
 from validation.accuracy.compare import returned
-from validation.fem import calculix, store
-from validation.fem.yielding import (
-    BOTH,
-    BOTH_DEPTH,
-    BOTH_SIZE,
-    FULLY_PLASTIC,
-    JOBS,
-    SOFT,
-    flattened,
-    hertz,
-    press,
-    pressures,
-)
+from validation.fem import store
+from validation.fem.yielding import BOTH_DEPTH, BOTH_SIZE, FULLY_PLASTIC, JOBS, SOFT, flattened, hertz, press, pressures
 from validation.paper.setting import RADIUS
 
 KEYS = "compression", "force", "contact_radius", "kinetic", "work_sphere", "work_block"
@@ -44,15 +32,6 @@ def plastic_pressures(found, size):
     a, p = pressures(found.contact_radius[:top], found.force[:top], size * RADIUS)
     full = a > FULLY_PLASTIC * RADIUS
     return a[full] / RADIUS, p[full] / SOFT.yield_strength
-
-
-def test_stored_indentations_are_slow_and_only_the_right_body_flows():
-    """The kinetic energy is that of hemispheres which move as a whole, far from the contact."""
-    for name, job in JOBS.items():
-        found = stored(name)
-        assert found.kinetic < (0.1 if name.startswith(("pair", "mirror")) else 0.01), name
-        assert (found.work_sphere > 0.0) == job.get("yields", True), name
-        assert (found.work_block > 0.0) == job.get("plate_yields", False), name
 
 
 def test_tabors_mean_pressure_on_a_block():
@@ -81,13 +60,6 @@ def test_a_flattened_sphere_is_softer_the_wider_its_contact():
     assert p == pytest.approx(flattened(a), rel=0.1)
 
 
-def test_mirror_and_block_are_hertzs_while_elastic():
-    """Wider contacts are stiffer than half-spaces: by 1 % at a/R 0.04."""
-    pair, mirror = stored("pair_elastic"), stored("mirror_elastic")
-    assert force_at(pair, APPROACH) == pytest.approx(hertz(APPROACH), rel=0.012)
-    assert force_at(mirror, 0.5 * APPROACH) == pytest.approx(hertz(APPROACH), rel=0.012)
-
-
 def test_two_bodies_that_yield_are_one_and_its_image():
     pair, mirror = stored("pair"), stored("mirror")
     reached = force_at(pair, APPROACH)
@@ -97,14 +69,6 @@ def test_two_bodies_that_yield_are_one_and_its_image():
     assert 2.0 * mirror.work_sphere == pytest.approx(both, rel=0.003)
     given = [returned(f.compression, f.force, int(f.compression.argmax())) for f in (pair, mirror)]
     assert given[0] == pytest.approx(given[1], abs=0.003)
-
-
-def test_block_and_sphere_share_the_plastic_work():
-    """In small contacts each body takes half; the share of the sphere grows with a/R."""
-    wide, narrow = stored("pair"), stored("pair_narrow")
-    less, half = (1.0 - found.work_block / found.work_sphere for found in (wide, narrow))
-    assert 0.0 < less < 0.12
-    assert half == pytest.approx(0.5 * less, abs=0.01)
 
 
 def test_yielding_block_agrees_with_calculix():
@@ -118,8 +82,6 @@ def test_yielding_block_agrees_with_calculix():
         way = np.linspace(low, 0.98, 100) * BOTH_DEPTH
         apart = force_at(ours, way, loading) - force_at(theirs, way, loading)
         assert np.abs(apart).max() < 0.015 * theirs.force.max()
-    for quantity, error in ((_left, 0.005), (_given_back, 0.006)):
-        assert quantity(ours) == pytest.approx(quantity(theirs), abs=error)
     coarse = press("both", size=2 * BOTH_SIZE)
     way = np.linspace(0.1, 0.95, 20) * BOTH_DEPTH
     apart = force_at(coarse, way) - force_at(theirs, way)
@@ -127,24 +89,3 @@ def test_yielding_block_agrees_with_calculix():
     # 10 % of one of the strengths halves or doubles the ratio of the works
     share = coarse.system.plate.work[0] / coarse.system.sphere.work[0]
     assert share == pytest.approx(ours.work_block / ours.work_sphere, rel=0.15)
-
-
-def _left(found):
-    """Residual over largest compression, taken where unloading reaches 1 % of the peak force."""
-    top = int(found.compression.argmax())
-    down = np.interp(0.01 * found.force.max(), found.force[top:][::-1], found.compression[top:][::-1])
-    return down / BOTH_DEPTH
-
-
-def _given_back(found):
-    return returned(found.compression, found.force, int(found.compression.argmax()))
-
-
-def test_the_input_of_calculix_says_who_yields():
-    """Each yield strength is in the input once, in a material of its own."""
-    text = calculix.deck(BOTH, RADIUS, BOTH_DEPTH, 0.1)
-    sphere, plate = text.split("*MATERIAL, NAME=")[1:]
-    assert "*PLASTIC\n4.725000e+02, 0." in sphere
-    assert "*PLASTIC\n2.760000e+02, 0." in plate
-    alone = calculix.deck(cl.Pair(BOTH.sphere, "glass"), RADIUS, BOTH_DEPTH, 0.1)
-    assert alone.count("*PLASTIC") == 1

@@ -1,6 +1,5 @@
 """Finite elements in three dimensions, on meshes that are coarser than those of the results."""
 
-import json
 import math
 
 import numpy as np
@@ -51,53 +50,12 @@ def sliding():
     return oblique_impact(PAIR, SPEED, 20 * FRICTION * SPEED, R, math.inf, FRICTION, across=3)
 
 
-def test_elements_fill_the_bodies(ball):
-    plate, block = mesh.plate(0.2, 5, 1.0, 8.0), mesh.half_space(0.2, 5, 8.0)
-    volumes = 2 / 3 * math.pi, 32 * math.pi, 2 / 3 * math.pi * 8**3 / 2
-    for body, exact in zip((ball, plate, block), volumes, strict=True):
-        found = hexahedra.volumes(body.elements, body.nodes)
-        assert found.min() > 0
-        assert found.sum() == pytest.approx(exact, rel=0.03)
-
-
-def test_surfaces_touch_at_the_origin(ball):
-    for body in (ball, mesh.plate(0.2, 5, 1.0, 8.0)):
-        faces = mesh.top(body)
-        ends, times = np.unique(np.sort(faces.ravel()), return_counts=True)
-        assert times.max() == 4 and body.surface[ends].all()
-        assert np.linalg.norm(body.nodes[body.surface], axis=1).min() == 0
-    assert mesh.areas(ball).sum() == pytest.approx(2 * math.pi, rel=0.03)
-
-
-@pytest.mark.parametrize("hole", [math.inf, 3.0, 1.0])
-def test_a_plate_ends_at_its_edge(hole):
-    """The straight edge bounds a rectangle, and a hole lies in a round plate."""
-    plate = mesh.edged_plate(0.2, 5, 1.0, 8.0, 1.0, hole)
-    volumes = hexahedra.volumes(plate.elements, plate.nodes)
-    exact = 9.0 * 8.0 if math.isinf(hole) else 0.5 * math.pi * ((hole + 9.0) ** 2 - hole**2)
-    assert volumes.min() > 0
-    assert volumes.sum() == pytest.approx(exact, rel=0.03)
-    x, y, z = plate.nodes.T
-    ahead = x[(y == 0) & (x >= 0) & (x < 1.5)]
-    assert ahead.max() == pytest.approx(1.0)
-    if math.isfinite(hole):
-        assert np.hypot(x - 1.0 - hole, y).min() == pytest.approx(hole)
-
-
 @pytest.mark.long
 def test_a_sphere_rebounds_less_near_an_edge():
-    near, far = (oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=distance) for distance in (R, math.inf))
+    """The same sphere has 0.66 far from edges, see below."""
+    near = oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=R)
     assert near.balance < 0.003
     assert near.restitution == pytest.approx(0.45, abs=0.03)
-    assert far.restitution == pytest.approx(0.660, abs=0.02)  # of the round plate, as above
-
-
-def test_stored_impacts_near_edges_are_listed_and_keep_their_energy():
-    stored = cases.results(edges.NAME, edges.Case)
-    assert stored and set(stored) <= set(edges.listed())
-    for case, hit in stored.items():
-        assert hit["balance"] < 0.003
-        assert (hit["plastic"] == 0) == (case.kind == "elastic")
 
 
 def test_a_linear_field_has_one_stress_and_no_hourglass_force(ball):
@@ -115,14 +73,6 @@ def test_rotation_turns_the_stress_and_leaves_the_hourglass_strains(ball):
     hexahedra.add_forces(body, ball.nodes, ball.nodes @ spin.T, 1e-3, np.zeros_like(ball.nodes))
     assert body.stress[:, 3] == pytest.approx(1e-3)
     assert body.hourglass == pytest.approx(2.0)
-
-
-def test_work_of_the_forces_is_the_energy_stored(ball):
-    v = np.random.default_rng(1).normal(size=ball.nodes.shape)
-    body, force = _strained(ball.nodes, ball.elements, v)
-    stored = hexahedra.strain_energy(body, ball.nodes) + body.work[1]
-    assert -0.5 * 1e-6 * (force * v).sum() == pytest.approx(stored, rel=1e-5)
-    assert abs(force.sum(axis=0)).max() < 1e-12 * abs(force).sum()
 
 
 @pytest.mark.parametrize("axes", [(0, 1), (1, 2), (2, 0)])
@@ -148,18 +98,6 @@ def test_stress_returns_to_the_yield_surface(ball):
     assert mises == pytest.approx(1e-6)
     # plastic strain is the total one, 2/sqrt(3), less the elastic one, sigma_Y/(3 G)
     assert body.plastic_strain == pytest.approx((2 / math.sqrt(3) - 1 / 3) * 1e-6)
-
-
-def test_nodes_that_slide_have_coulombs_force():
-    core, touch = 0.13 * R, 0.5 * R
-    meshes = mesh.sphere(R, core, 4), mesh.half_space(core, 4, 5 * R)
-    system = impact.assemble(meshes, PAIR, R, FRICTION, False, False, core, touch)
-    n = len(meshes[0].nodes)
-    system.v[:n, 0], system.v[:n, 2] = 30 * FRICTION * SPEED, -SPEED
-    impact.advance(system, 1e-9, 1000, np.zeros(3))
-    normal, *along = system.surfaces.impulse[system.surfaces.impulse[:, 0] > 0].T
-    assert normal.size > 5
-    assert np.hypot(*along) == pytest.approx(FRICTION * normal, rel=1e-9)
 
 
 @pytest.mark.long
@@ -236,25 +174,14 @@ def test_normal_incidence_has_neither_spin_nor_tangential_force():
     assert hit.restitution == pytest.approx(0.660, abs=0.02)
 
 
-def test_impacts_were_drawn_by_their_seeds():
-    for name, seed in cases.SEEDS.items():
-        assert cases.drawn(name) == cases.draw(seed)
-
-
-@pytest.mark.parametrize("name", cases.SEEDS)
-def test_stored_impacts_were_drawn_and_keep_their_energy(name):
-    stored = cases.results(name)
-    assert stored and set(stored) <= set(cases.drawn(name))
-    for case, hit in stored.items():
-        assert hit["balance"] < 0.003
-        assert (hit["plastic"] == 0) == (case.kind == "elastic")
-
-
-@pytest.mark.parametrize("name", cases.SEEDS)
+@pytest.mark.parametrize("name", cases.SETS)
 def test_the_model_is_as_near_to_the_elements_as_the_docs_say(name):
     """Impacts of kept_out_3 were drawn and computed when the model was settled."""
     unflagged, flagged = [], []
-    for case, hit in cases.results(name).items():
+    found = cases.results(name)
+    assert found and set(found) <= set(cases.listed(name))
+    for case, hit in found.items():
+        assert hit["balance"] < 0.003 and (hit["plastic"] == 0) == (case.kind == "elastic")
         model = cases.model(case)
         error = model.sliding_speed / (case.friction * case.speed) - hit["psi_after"]
         flag = bool(model.flags & cl.Validity.SLIDING_FLOW)
@@ -267,8 +194,8 @@ def test_the_model_is_as_near_to_the_elements_as_the_docs_say(name):
 
 def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(cases, "_FOLDER", tmp_path)
-    cases.write("kept_out")
-    listed = cases.drawn("kept_out")
+    (tmp_path / "fem3d_kept_out.csv").write_bytes((store.FOLDER / "fem3d_kept_out.csv").read_bytes())
+    listed = cases.listed("kept_out")
     outcome = dict.fromkeys(
         ("psi_after", "impulse_ratio", "restitution", "normal_restitution", "pressure", "slide", "contact_radius"), 0.5
     )
@@ -287,29 +214,15 @@ def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     assert __main__.main(["kept_out"]) == 0
     assert computed == listed
     assert len(capsys.readouterr().out.splitlines()) == 1 + 2 + 1 + len(listed)
-    line = json.loads((tmp_path / "fem3d_kept_out.jsonl").read_text().splitlines()[0])
-    assert line["solver_version"] == impact.VERSION and line["command"].endswith("kept_out")
-    monkeypatch.setattr(impact, "VERSION", impact.VERSION + 1)
-    assert cases.results("kept_out") == {}
-
-
-def test_wrong_usage(capsys):
-    with pytest.raises(SystemExit):
-        __main__.main(["everything"])
-    assert "everything" in capsys.readouterr().err
-    with pytest.raises(ValueError, match="friction"):
-        oblique_impact(PAIR, SPEED, 1.0, R, R, -0.1)
 
 
 def test_the_model_near_edges_beside_three_dimensions():
     """Within 2 % or 0.004; elements of a contact radius over 6, for two over 9."""
-    read = store.FOLDER.joinpath(f"fem3d_{edges.NAME}.jsonl").read_text().splitlines()
-    found = {edges.Case(**row["case"]): row["outcome"] for row in map(json.loads, read)}
-    compared = 0
+    found = cases.results(edges.NAME, edges.Case)
+    assert set(found) <= set(cases.listed(edges.NAME, edges.Case)) and len(found) >= 8
     for case, hit in found.items():
+        assert hit["balance"] < 0.003 and (hit["plastic"] == 0) == (case.kind == "elastic")
         near = {"edge_distance": case.distance, "hole_radius": case.hole or math.inf}
         model = cl.ImpactModel(case.pair)
         e = model.solve(case.speed, case.radius, case.thickness, **near if case.distance else {})
         assert e.restitution == pytest.approx(hit["restitution"], rel=0.02, abs=0.004), case
-        compared += case.distance > 0.0
-    assert compared >= 8

@@ -1,63 +1,10 @@
-"""`dem-demo rain` that is stopped or refused by the model; of any scene, see `test_session.py`."""
-
-import signal
-import subprocess
-import sys
-import time
+"""`dem-demo rain` with other materials, and impacts that the model refuses; what stops a scene: `test_session.py`."""
 
 import pytest
-from demos import RAIN, names
+from demos import names
 
 import contactlaw as cl
 from dem_demo import cli
-
-LONG = ["rain", "--beads", "300", "--duration", "6", "--law", "myc", "--out", "out"]  # is stopped
-
-
-def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-m", "dem_demo", *LONG],
-        cwd=tmp_path,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    time.sleep(0.5)
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=120)
-    assert process.returncode in (130, -signal.SIGINT)  # -SIGINT: Python itself was still starting
-    assert "nothing was written" in errors or "KeyboardInterrupt" in errors
-    assert names(tmp_path) == set()
-
-
-REAL = cl.ImpactModel.restitution
-
-
-class Failing:
-    """A model that raises an error after some impacts."""
-
-    def __init__(self, error):
-        self.error, self.left = error, 20
-
-    def restitution(self, *impact):
-        self.left -= 1
-        if self.left < 0:
-            raise self.error
-        return REAL(*impact)
-
-
-def test_a_failing_impact_keeps_those_before_it(monkeypatch, tmp_path, capsys):
-    failing = Failing(ValueError("in the middle"))
-    monkeypatch.setattr(cl.ImpactModel, "restitution", lambda *impact: failing.restitution(*impact))
-    assert cli.main([*RAIN, "--out", str(tmp_path / "out")]) == 1
-    errors = capsys.readouterr().err
-    assert "Traceback" not in errors
-    last = errors.splitlines()[-1]
-    for part in ("dem-demo: stopped: ", "bead ", " on plate ", " m/s, t = ", "in the middle"):
-        assert part in last
-    assert names(tmp_path / "out") == {"rain-partial.h5"}
-    monkeypatch.undo()
-    assert 10 < cl.read_record(tmp_path / "out/rain-partial.h5").rows.size <= 20
 
 
 def test_an_impact_outside_the_table_is_integrated_or_stops_the_run(tmp_path, nothing_drawn, capsys):
