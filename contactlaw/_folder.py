@@ -25,12 +25,12 @@ def folder() -> Path | None:
     if os.environ.get("CONTACTLAW_NO_CACHE", "").lower() not in ("", "0", "no", "off", "false"):
         return None
     chosen = os.environ.get("CONTACTLAW_CACHE_DIR")
-    if not chosen:
-        import platformdirs
-
-        # without a home folder old versions of platformdirs leave the ~: expanding it raises
-        chosen = platformdirs.user_cache_dir("contactlaw", appauthor=False)
     try:
+        if not chosen:
+            import platformdirs
+
+            # without a home folder old versions of platformdirs leave the ~: expanding it raises
+            chosen = platformdirs.user_cache_dir("contactlaw", appauthor=False)
         path = Path(chosen).expanduser()
     except RuntimeError as error:
         raise FileNotFoundError(str(error)) from error

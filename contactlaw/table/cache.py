@@ -111,6 +111,8 @@ def _kept(
                     # another process may have made it while this one waited
                     if (found := _usable(path, law, read)) is None:
                         found = make()
+                        for left in place.glob(f".{name}.*.part"):  # by a writer that was killed
+                            left.unlink()
                         write(found, path)
                         _delete_unused(place)
     except OSError as error:  # read-only, full, over quota, a file in its place, locked for ever
