@@ -160,7 +160,7 @@ def test_rows_with_beads_of_two_materials_are_refused(tmp_path, capsys):
         ("a.csv", "time,radius\n1,2\n", "no column of speeds in its first line, 'time, rad"),
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
-        ("a.csv", "speed,plate\n1,-1\n", "a column plate: leave it and beads on beads out"),
+        ("a.csv", "speed,plate\n1,-1\n", "a column plate: remove it"),
         ("a.csv", "speed_m/s\n1\nfast\n", "line 3, column 'speed_m/s': 'fast' is no number"),
         ("a.csv", "speed_m/s\n1\n-2\n", r"speed: got -2.0 \(element 1\); must lie between"),
         ("a.csv", "speed_m/s\n1\nnan\n", "speed: got nan"),

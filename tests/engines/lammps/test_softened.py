@@ -238,7 +238,7 @@ def test_a_restart_with_other_contacts_is_refused(tmp_path):
     for given in ({"softening": 30.0}, {}, {"softening": 20.0, "parcel": 2.0}):
         again = box.restarted(tmp_path / "soft.restart")
         box.attach(again, MODEL, [box.flat(1e-3)], **given)
-        with pytest.raises(RuntimeError, match="a wall with softening 20, parcel 1; take these again"):
+        with pytest.raises(RuntimeError, match="a wall with softening 20, parcel 1; give the walls these numbers"):
             again.command("run 0")
 
 
