@@ -501,7 +501,7 @@ def _flags(
 
 
 @kernel
-def _lasting(spring: Spring, speed: float) -> float:
+def _lasting(spring: Spring, speed: float) -> Any:
     """Contact time of an elastic bead that hits a half-space at this speed [s]."""
     return spring.relaxation / RELAXATION * math.pow(max(speed, _SLOWEST), -0.2)
 
