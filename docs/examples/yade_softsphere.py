@@ -1,6 +1,6 @@
 """One oblique impact on each of three plates in YADE, with ``contactlaw.softsphere``.
 
-Tested by hand with YADE 2023.02a of Debian 12, numpy 1.24.2, numba 0.68.1, h5py 3.16.0. YADE uses
+Tested with YADE 2023.02a of Debian 12, numpy 1.24.2, numba 0.68.1, h5py 3.16.0. YADE uses
 the system's Python and numpy. Run from the repository, pip installs the rest in a folder DIR:
 
     pip install --no-deps --target DIR . numba llvmlite h5py platformdirs filelock tqdm

@@ -253,7 +253,7 @@ CONTENTS = [
     ("constant", "time,radius\n1,2\n", "no column of speeds in its first line, 'time, rad"),
     ("constant", "", "no column of speeds in its first line, ''"),
     ("constant", "speed_m/s\n", "it has no impact on a plate"),
-    ("constant", "speed,plate\n1,-1\n", "a column plate: leave it and beads on beads out"),
+    ("constant", "speed,plate\n1,-1\n", "a column plate: remove it"),
     ("constant", "speed_m/s\n1\nfast\n", "line 3, column 'speed_m/s': 'fast' is no number"),
     ("constant", "speed_m/s\n1\n-2\n", "speed: got -2.0 (element 1); must lie between"),
     ("constant", "speed_m/s\n1\nnan\n", "speed: got nan"),

@@ -414,7 +414,7 @@ def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
 )
 def test_a_modulus_that_was_softened_draws_a_warning_and_no_solid_does(numbers):
     soft = Material("soft", poissons_ratio=0.3, density=2500.0, **numbers)
-    with pytest.warns(UserWarning, match="'soft': a strength of .* as of no solid. .* softening=") as caught:
+    with pytest.warns(UserWarning, match="'soft': a strength of .* no solid is so strong. .* softening=") as caught:
         contactlaw.ImpactModel(contactlaw.Pair(soft, "glass"))
     assert caught[0].filename == __file__
     solids = [material(name) for name in materials()]
