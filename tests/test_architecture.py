@@ -48,7 +48,7 @@ FILES = {
     ),
     "table": "lookup grid sweep shapes certificate table slides file cache",
     "answers": (
-        "few backend solver tabulated yields edges beads compiled constant loads oblique derivatives "
+        "few backend solver tabulated yields beads compiled constant loads oblique derivatives "
         "sensitivity speed_table law_errors uncertainty find"
     ),
     "walls": "memory profile edges motion plate round mesh facet grid frame surface rest",

@@ -82,7 +82,6 @@ def test_beads(other):
     e = pytest.approx(found.restitution, abs=1e-4)
     assert MODEL.sphere_sphere_curve(r, o, other)(v) == e
     assert cl.restitution_sphere_sphere(kinds.COPPER, other or kinds.COPPER, v, r, o) == e
-    assert MODEL._beads(other).integrated(v, r, o).restitution == e
 
 
 def test_histories_are_those_of_the_solver():

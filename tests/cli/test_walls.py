@@ -49,7 +49,7 @@ def test_liners_are_found_and_tables_know_foundations(capsys):
     pair = "--sphere glass --plate aluminium-6061-t6 --radius 1mm"
     (found,) = rows(capsys, f"find thickness {pair} --speed 2 --cor 0.55 --on steel-s235:0.5mm --csv")
     model = cl.ImpactModel(cl.Pair("glass", "aluminium-6061-t6"))
-    exact = model.thickness(0.55, 2.0, 1e-3, layers=[("aluminium-6061-t6", None), ("steel-s235", 5e-4)])
+    exact = model.thickness(0.55, 2.0, 1e-3, lambda h: cl.Layers([("aluminium-6061-t6", h), ("steel-s235", 5e-4)]))
     assert float(found["thickness_m"]) == exact.value and found["plate"].endswith(" on steel-s235:0.5mm")
     words = f"constant {pair} --thickness 1mm --foundation 1e12N/m3 --speed 0.1,10"
     main(f"{words} --table".split())

@@ -4,7 +4,6 @@ import itertools
 from collections.abc import Sequence
 
 from contactlaw.answers.beads import Beads
-from contactlaw.answers.tabulated import Border
 from contactlaw.laws import DEFAULT
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
@@ -81,10 +80,11 @@ def pair_coeff(
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
     lines = []
     for (i, one), (j, two) in itertools.combinations_with_replacement(enumerate(found, 1), 2):
-        beads = Beads(one, two, DEFAULT, Border("raise"))
-        ratio = 0.5 * (beads.pair.sphere.poissons_ratio + beads.pair.plate.poissons_ratio)
-        modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus * parcel**2.5 / softening
-        restitution = float(beads.integrated(speed, radius, radius).restitution)
+        beads = Beads(one, two, DEFAULT, "raise")
+        pair = beads.bodies.pair
+        ratio = 0.5 * (pair.sphere.poissons_ratio + pair.plate.poissons_ratio)
+        modulus = 2.0 * (1.0 - ratio**2) * pair.effective_modulus * parcel**2.5 / softening
+        restitution = float(beads.rebounds(beads.between(speed, radius, radius)).restitution)
         types = f"{i} {j}" if len(found) > 1 else "* *"
         contact = hertz_material(modulus, restitution, ratio, tangential)
         lines.append(f"pair_coeff {types} {contact}")
