@@ -18,11 +18,10 @@ SPEED = ["find", "speed", *PAIR]
         ([*THICKNESS, "--cor", "0.99", "--speed", "2"], "COR 0.99: no thickness: "),
         ([*SPEED, "--cor", "0.01", "--thickness", "inf"], "COR 0.01: no speed: "),
         ([*THICKNESS, "--cor", "0.5", "--drop", "3cm", "--radius", "1mm,2mm"], "takes one radius"),
-        ([*THICKNESS, "--cor", "0.5", "--speed", "2e4"], "--speed: no thickness brings the impact into the table"),
-        ([*SPEED, "--cor", "0.5", "--thickness", "10um"], "--thickness: no speed brings the impact into the table"),
+        ([*THICKNESS, "--cor", "0.5", "--speed", "2e4"], "--speed: got '2e4'; no thickness brings the impact"),
+        ([*SPEED, "--cor", "0.5", "--thickness", "10um"], "--thickness: got '10um'; no speed brings the impact"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--on", "steel-s235"], "expected a material and a thickness"),
         ([*THICKNESS, "--cor", "0.5", "--speed", "2", "--plate", "glas"], "unknown material 'glas'"),
-        ([*SPEED, "--cor", "0.5", "--thickness", "1mm", "--radius-error", "2"], "--radius-error: got '2'"),
     ],
 )
 def test_refused_questions_are_status_1_and_one_sentence(words, message, capsys):
@@ -60,8 +59,6 @@ def test_what_people_read_fits_a_terminal(words, capsys):
     assert main(words) == 0
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
-    heads = next(line for line in lines if "68 %" in line).split()
+    name = "thickness" if "thickness" in words else "speed"
+    heads = next(words for words in map(str.split, lines) if name in words)
     assert len({*heads}) == len(heads)
-    text = " ".join(lines)
-    plural = "thicknesses" if "thickness" in words else "speeds"
-    assert f"68 %: {plural} whose predicted range contains the COR you asked for" in text
