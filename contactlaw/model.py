@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._arrays import Array
-from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import c_function, kernel_near, kernel_of
 from contactlaw.answers.constant import Constant, Keep, constant
@@ -99,7 +98,6 @@ class ImpactModel:
         self._edge_kernel = functools.cache(functools.partial(kernel_near, self._bodies))
         self._c_function = functools.cache(functools.partial(c_function, self._tabulated))
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
-        enable_caching()
         if not isinstance(table, Settings | None):
             self.table  # noqa: B018 - a wrong table is refused here, not at the first impact
 

@@ -39,7 +39,8 @@ class Beads(TableLookup):
         pair = Pair(sphere, other)
         weak, strong = (body.strength or math.inf for body in (pair.plate, pair.sphere))
         self._swapped = weak < strong
-        pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
+        if self._swapped:
+            pair = Pair(pair.plate, pair.sphere)
         super().__init__(TwoSpheres(pair, law_of(pair, law)), None, outside)
 
     def between(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Impacts:

@@ -6,6 +6,7 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
+from contactlaw._jit import enable_caching
 from contactlaw.answers.backend import OutsideTableError, Part, UnsolvedError, joined, split
 from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.numbers import Numbers
@@ -35,6 +36,7 @@ class Solver:
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ArgumentError("rtol", rtol, "must be a float between 1e-13 and 1e-6")
         self.bodies, self.rtol, self.extent = bodies, rtol, extent
+        enable_caching()
 
     def far(self, impacts: Impacts) -> list[Part]:
         """Outcomes on plates from which nothing comes back."""
@@ -69,7 +71,6 @@ class Solver:
             reason = f"its overload chi = {chi[n]:.9g} is above {fastest:g}: the impact is too fast"
             if lam[n] > thinnest:
                 reason = f"its inelasticity lambda = {lam[n]:.9g} is above {thinnest:g}: the plate is too thin"
-                reason += " for the bead"
             raise OutsideTableError(n, reason)
 
     def parts(self, impacts: Impacts) -> list[Part]:

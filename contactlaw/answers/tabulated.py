@@ -15,7 +15,7 @@ import numpy as np
 from contactlaw import laws
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw._jit import direct, enable_caching, switched_off
+from contactlaw._jit import direct, switched_off
 from contactlaw.answers.backend import OutsideTableError, Part, renumbered, split
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import outcome
@@ -189,7 +189,6 @@ def _law_with_table(law: Law) -> Law:
 
 def table_for(law: Law, table: TableArgument) -> Table:
     """Table that serves a law: the user's, or the law's own."""
-    enable_caching()
     served = _law_with_table(law)
     if table is None:
         table = file.packaged(served) or cache.cached(served)

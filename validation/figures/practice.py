@@ -448,7 +448,8 @@ def fig31_walls() -> chart.Drawn:
     numbers: dict[str, float] = {}
     for lam, place in ((0.1, 0.79), (0.3, 0.54), (0.6, 0.28)):
         for kind, colour, _ in _CURVED:
-            none, one = np.zeros(swings.size), np.ones(swings.size)
+            none = 0.0 * swings
+            one = none + 1.0
             edges = Edges(response_of(kind, 0.3, none), one, swings / CONTACT_TIME, none)
             found = outcome.at(lam * one, math.inf * one)
             zener.solve_all(HERTZ, 1e-10, found, edges=edges)

@@ -73,7 +73,7 @@ def pair_coeff(
     >>> pair_coeff("gamma-alumina", radius=0.9e-3, speed=40.0).split(" tangential")[0]
     'pair_coeff * * hertz/material 1.223e+10 0.86996 0.21'
     """
-    found = sphere if isinstance(sphere, (list, tuple)) else [sphere]
+    found = sphere if isinstance(sphere, list | tuple) else [sphere]
     scalars(radius=radius, speed=speed)
     check_friction(friction)
     check_softening(softening, parcel)
@@ -84,8 +84,8 @@ def pair_coeff(
         pair = beads.bodies.pair
         ratio = 0.5 * (pair.sphere.poissons_ratio + pair.plate.poissons_ratio)
         modulus = 2.0 * (1.0 - ratio**2) * pair.effective_modulus * parcel**2.5 / softening
-        restitution = float(beads.rebounds(beads.between(speed, radius, radius)).restitution)
+        (part,) = beads.integrated(beads.between(speed, radius, radius))
         types = f"{i} {j}" if len(found) > 1 else "* *"
-        contact = hertz_material(modulus, restitution, ratio, tangential)
+        contact = hertz_material(modulus, part.outcome.restitution.item(), ratio, tangential)
         lines.append(f"pair_coeff {types} {contact}")
     return "\n".join(lines)
