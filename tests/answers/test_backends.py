@@ -9,7 +9,7 @@ from contactlaw import laws
 from contactlaw.answers import tabulated
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.tabulated import Border, TableLookup, extent
+from contactlaw.answers.tabulated import TableLookup, extent
 from contactlaw.answers.yields import yield_speeds
 from contactlaw.equation.losses import Losses
 from contactlaw.physical.bodies import SphereOnPlate
@@ -30,7 +30,7 @@ def backends(pair, law, outside="raise"):
     """Table and solver of one model."""
     pair = pair if isinstance(pair, cl.Pair) else cl.Pair(*pair)
     bodies = SphereOnPlate(pair, law_of(pair, law))
-    return TableLookup(bodies, None, Border(outside)), Solver(bodies, extent=extent(bodies.law))
+    return TableLookup(bodies, None, outside), Solver(bodies, extent=extent(bodies.law))
 
 
 @pytest.mark.parametrize("pair", PAIRS)
@@ -120,4 +120,4 @@ def test_two_beads_build_no_table_of_plates():
     model.lookup_sphere_sphere(5.0, R, R)
     assert "table" not in vars(model._tabulated)
     assert model._beads(None) is model._beads(None)
-    assert model._beads(None).law != model.force_law  # the pair's law depends on the plate
+    assert model._beads(None).bodies.law != model.force_law  # the pair's law depends on the plate

@@ -77,8 +77,8 @@ def test_no_impacts_no_load(model):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"rate": 1e15}, "duration: got .*must be positive and at most"),
-        ({"times": [math.nan]}, r"times: must be finite \[s\], got nan"),
+        ({"rate": 1e15}, "duration: got .*must be at most"),
+        ({"times": [math.nan]}, "times: got nan"),
         ({"speed": -3.0}, "speed: got -3.0"),
     ],
 )

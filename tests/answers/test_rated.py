@@ -54,7 +54,7 @@ def test_two_bodies_with_rates_of_their_own(seed):
 
 def test_outside_the_tables():
     v, r, h = np.array([1.0, 1.0, 3e3, 5.0]), np.array([R, R, R, 1e-8]), [R, 1e-4, 1e-2, 1e-3]
-    for n, reason in ((1, "too thin"), (2, "too fast"), (3, "its rate makes the bodies 1.4")):
+    for n, reason in ((1, "too thin"), (2, "too fast"), (3, "its rate makes the bodies stronger")):
         with pytest.raises(ValueError, match=f"impact 1 is outside the table.*{reason}"):
             MODEL.restitution(v[[0, n]], r[[0, n]], np.array(h)[[0, n]])
     exact = MODEL.solve(v, r, h)
@@ -82,7 +82,6 @@ def test_beads(other):
     e = pytest.approx(found.restitution, abs=1e-4)
     assert MODEL.sphere_sphere_curve(r, o, other)(v) == e
     assert cl.restitution_sphere_sphere(kinds.COPPER, other or kinds.COPPER, v, r, o) == e
-    assert MODEL._beads(other).integrated(v, r, o).restitution == e
 
 
 def test_histories_are_those_of_the_solver():

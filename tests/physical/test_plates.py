@@ -16,8 +16,8 @@ from scipy.sparse.linalg import spsolve
 from scipy.special import ellipk
 
 import contactlaw as cl
-from contactlaw.answers.solver import solved
 from contactlaw.engines.pymunk import attach
+from contactlaw.equation import outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.responses import REACH, response_of
@@ -209,7 +209,8 @@ def test_edges_are_as_far_in_waves_of_the_layers():
 
 def elastic(lam, swing, kind):
     edges = Edges(response_of(kind, 0.3, np.zeros(1)), np.ones(1), np.array([swing]), np.zeros(1))
-    found = solved(HERTZ, np.array([lam]), np.array([math.inf]), 1e-10, few=True, edges=edges)
+    found = outcome.at(np.array([lam]), np.array([math.inf]))
+    zener.solve_all(HERTZ, 1e-10, found, few=True, edges=edges)
     return float(found.restitution[0])
 
 
