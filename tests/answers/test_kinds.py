@@ -28,6 +28,10 @@ def test_tables_are_certified(kind):
     shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
     assert np.abs(shares + found.restitution**2 - 1.0).max() < 1e-12
     assert np.count_nonzero(found.flags != exact.flags) <= (2 if rated else 0)  # some lie on a limit
+    some = [values[:20] for values in given]
+    history, solved = (model.force_history(*some, samples=65, method=how) for how in ("table", "solve"))
+    for name, values in solved._asdict().items():
+        assert np.abs(getattr(history, name) - values).max() < 3e-3 * values.max(), name
 
 
 @pytest.mark.parametrize("kind", kinds.params("hertz", slow=kinds.SLOW + ("the other becomes the weaker",)))
