@@ -1,7 +1,5 @@
 """Oblique impacts: table against integration, and mechanics that hold whatever the law."""
 
-import itertools
-
 import kinds
 import numpy as np
 import polymer
@@ -125,6 +123,6 @@ def test_the_compiled_collision_is_that_of_arrays_and_answers_nan_where_they_ref
     for n, bead in enumerate(zip(velocity, spin, normal, strict=True)):
         assert kernel(*bead) == (pytest.approx(new[n], rel=1e-13), pytest.approx(turned[n], rel=1e-13))
     up, rest = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
-    for along, friction in itertools.product((0.0, 0.5, 1e200), (-0.1, np.nan, 1001.0)):
+    for along, friction in ((0.0, -0.1), (0.5, np.nan), (1e200, 1001.0)):
         assert np.isnan(kernel((along, 0.0, -1.0), rest, up, friction)).all()
     assert np.isnan(kernel((0.0, 0.0, -1e3), rest, up)[0][2])

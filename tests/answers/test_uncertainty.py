@@ -27,7 +27,7 @@ CERAMIC = cl.Material("ceramic", 300e9, 0.22, 3900, kind="ceramic", uncertainty=
 UNCERTAIN = {
     "steel": known_to(STEEL, **ELASTIC, yield_strength=0.2),
     "ceramic": CERAMIC,
-    "copper": known_to(COPPER, **ELASTIC, yield_strength=0.1, hardening=0.15, rate=0.2),
+    "hardening": known_to(dataclasses.replace(COPPER, rate=None), **ELASTIC, yield_strength=0.1, hardening=0.15),
 }
 
 
@@ -44,12 +44,11 @@ def drawn(body, deviates):
     ("bead", "plate", "speed", "thickness", "size_errors"),
     [
         ("steel", "ceramic", 3.0, 1.5e-3, (0.02, 0.02, 0.05)),
-        ("copper", "ceramic", 0.3, 3e-3, (0.1, 0.0, 0.0)),
-        ("ceramic", "copper", 5.0, INF, (0.0, 0.02, 0.0)),
+        ("ceramic", "hardening", 5.0, INF, (0.0, 0.02, 0.05)),
         ("steel", "steel", 0.1, 0.8e-3, (0.1, 0.0, 0.05)),
         ("ceramic", "steel", "next to yield", 1.5e-3, (0.0, 0.0, 0.0)),
-        ("ceramic", "ceramic", 1.0, 0.4e-3, (0.02, 0.02, 0.05)),
     ],
+    ids=["ideal", "half-space", "both bodies", "next to yield"],
 )
 def test_the_band_is_that_of_random_pairs(bead, plate, speed, thickness, size_errors):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""
@@ -125,16 +124,6 @@ def test_a_number_that_follows_from_the_hardness_has_an_error_too():
     assert causes["hardness of the bead"] > causes["hardening of the bead"] > 0.01
 
 
-def test_causes_have_the_shape_of_the_impacts():
-    errors = {"loss_factor": 0.3, "poissons_ratio": 0.3}
-    lossy = cl.Material("pom", 2.9e9, 0.49, 1410, kind="polymer", loss_factor=(0.9, 1e4), uncertainty=errors)
-    model = cl.ImpactModel(cl.Pair(lossy, "glass"))
-    bands = model.uncertainty([1.0, 2.0], 1e-3, [[1e-3], [2e-3], [INF]], thickness_error=0.1)
-    for band in vars(bands).values():
-        assert band.low.shape == band.causes["loss factor of the bead"].shape == (3, 2)
-        assert (band.causes["thickness"][-1] == 0.0).all() and (band.low < band.high).all()
-
-
 def test_the_stated_errors_of_metals_that_harden_are_those_beside_finite_elements():
     found = [one for name in ("metals", "bodies") for one in acceptance.rows([name])[name].counted]
     rms = np.sqrt(np.mean(np.array([one.errors[:3] for one in found]) ** 2, axis=0))
@@ -160,9 +149,7 @@ def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():
 def test_a_law_whose_errors_nobody_knows_has_no_range(law):
     band = range_of(own_laws.PAIR.sphere, own_laws.PAIR.plate, 12.0, law)
     assert (band.low, band.high, band.causes) == (-INF, INF, {"model": INF})
-    thickness = cl.ImpactModel(own_laws.PAIR, law=law).thickness(0.6, 12.0, 0.9e-3)
-    assert (thickness.low.tolist(), thickness.high.tolist()) == ([-INF], [INF])
-    assert "no range, because the error of this law is not known" in bands.meaning(thickness.band, own_laws.PAIR)
+    assert "no range, because the error of this law is not known" in bands.meaning(band, own_laws.PAIR)
 
 
 def range_of(bead, plate, speed, law="fem", thickness=5e-3):

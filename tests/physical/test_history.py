@@ -37,6 +37,7 @@ def test_solver_against_scipy(model, thickness, over_yield):
     time = (mass(model) / (stiffness * math.sqrt(speed))) ** 0.4
     assert path.force[1:-1] == pytest.approx(force * momentum / time, abs=1e-7 * hit.peak_force)
     assert 1.0 - path.impulse[1:-1] / momentum == pytest.approx(left, abs=1e-7)
+    assert path.plate_displacement.any() == (thickness < math.inf)
 
 
 @pytest.mark.parametrize(
@@ -70,20 +71,10 @@ def test_solver_follows_its_own_rebound(model):
     assert contact.time[:, -1] == pytest.approx(hit.contact_time, rel=1e-12)
     assert contact.force.max(axis=1) == pytest.approx(hit.peak_force, rel=1e-5)
     assert contact.compression.max(axis=1) == pytest.approx(hit.peak_compression, rel=1e-5)
+    momentum = mass(model, at[1]) * at[0]
+    assert contact.impulse[:, -1] == pytest.approx(momentum * (1 + hit.restitution), rel=5e-5)
     dent = (contact.compression[:, -1] - hit.residual_compression) / hit.peak_compression
     assert dent == pytest.approx(0.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("method", ["table", "solve"])
-def test_impulse(model, method):
-    """Integral of the force, up to lambda = 5, where the force has a long tail."""
-    speed, thickness = np.array([0.1, 2.0, 8.0, 30.0]), R / np.array([[0.01], [2.0], [5.0], [6.0]])
-    contact = model.force_history(speed, R, thickness, 4001, method)
-    expected = mass(model) * speed * (1 + model.restitution(speed, R, thickness))
-    assert contact.impulse[..., -1] == pytest.approx(expected, rel=5e-5)
-    parts = 0.5 * np.diff(contact.time) * (contact.force[..., 1:] + contact.force[..., :-1])
-    passed = np.cumsum(parts, axis=-1) / expected[..., None]
-    assert contact.impulse[..., 1:] / expected[..., None] == pytest.approx(passed, abs=1e-4)
 
 
 @pytest.mark.parametrize("law", ["myc", "fem"])
@@ -100,17 +91,6 @@ def test_energy(law, method):
         (contact.plate_displacement, rebound.wave_fraction),
     ):
         assert np.trapezoid(contact.force, path) / energy == pytest.approx(share, abs=2e-4)
-
-
-def test_half_space_stays_where_it_is_and_elastic_contact_is_symmetric():
-    glass = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
-    contact = glass.force_history(3.0, 1e-3, math.inf)
-    assert not contact.plate_displacement.any()
-    assert contact.force == pytest.approx(contact.force[::-1], abs=1e-6 * contact.force.max())
-    # Johnson 1985, Eq. 11.24: largest force from the energy, and F = K d^1.5 on the way
-    stiffness = 4 / 3 * glass.pair.effective_modulus * math.sqrt(1e-3)
-    assert contact.force == pytest.approx(stiffness * contact.compression**1.5, abs=1e-9)
-    assert contact.compression.max() == pytest.approx((1.25 * mass(glass, 1e-3) * 3.0**2 / stiffness) ** 0.4, rel=1e-4)
 
 
 @pytest.mark.parametrize("method", ["table", "solve"])

@@ -7,7 +7,6 @@ import pickle
 import hypothesis
 import hypothesis.strategies as st
 import numpy as np
-import pymunk
 import pytest
 from scipy.integrate import quad
 from scipy.special import ellipk
@@ -15,10 +14,8 @@ from skfem import Basis, BilinearForm, ElementTriMorley, LinearForm, MeshQuad, c
 from skfem.helpers import dd, ddot, eye, trace
 
 import contactlaw as cl
-from contactlaw.engines.pymunk import attach
 from contactlaw.physical.scaling import plate_mobility
-from contactlaw.stepping.plate_rows import plate_rows
-from contactlaw.walls import Mesh, Plate
+from contactlaw.walls import Plate
 from validation.derivations.walls import restitution
 
 STEEL, ALUMINIUM = cl.material("stainless-steel-304"), cl.material("aluminium-6061-t6")
@@ -79,12 +76,10 @@ def cell(share, nu, count=20):
 
     A quarter of the cell: where curvatures are even no side turns, where they are odd no side moves.
     """
-    angle = np.linspace(0.0, 0.5 * math.pi, 2 * count + 1)
-    hole, side = math.sqrt(share / math.pi), 0.5 / np.maximum(np.cos(angle), np.sin(angle))
-    r = hole + (side - hole) * np.linspace(0.0, 1.0, count + 1)[:, None]
-    at = np.arange(r.size).reshape(r.shape)
-    corners = np.stack([part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:])])
-    mesh = MeshQuad(np.stack([(r * np.cos(angle)).ravel(), (r * np.sin(angle)).ravel()]), corners).to_meshtri()
+    grid = MeshQuad.init_tensor(np.linspace(0.0, 1.0, count + 1), np.linspace(0.0, 0.5 * math.pi, 2 * count + 1))
+    outward, cosine, sine, hole = grid.p[0], np.cos(grid.p[1]), np.sin(grid.p[1]), math.sqrt(share / math.pi)
+    r = hole + (0.5 / np.maximum(cosine, sine) - hole) * outward
+    mesh = MeshQuad(r * np.stack([cosine, sine]), grid.t).to_meshtri()
     basis = Basis(mesh, ElementTriMorley())
 
     def moments(curvature):
@@ -174,18 +169,19 @@ def test_a_stiffer_foundation_gives_back_more_and_none_changes_nothing():
     assert balance == pytest.approx(1.0, abs=1e-9)
 
 
-def test_walls_and_answers_of_arrays_are_equal_by_value():
-    speed = [1.0, 5.0]
-    for make in (
+@pytest.mark.parametrize(
+    "make",
+    [
         lambda h: cl.Foundation(np.array([H, h]), np.full(2, 1e-2)),
         lambda h: cl.Shell(np.array([H, h]), np.full(2, 1e-2)),
-        lambda h: MODEL.solve(np.array(speed), IMPACT[1], h),
-        lambda h: MODEL.sensitivity(np.array(speed), IMPACT[1], h),
-        lambda h: MODEL.oblique(np.array(speed), 1.0, IMPACT[1], h, 0.3),
-    ):
-        one, two, three = make(H), make(H), make(2 * H)
-        assert one == two and hash(one) == hash(two) and one != three and {one, two, three} == {one, three}
-    assert cl.Shell([H, H], [1e-2, 1e-2]) != cl.Shell(H, 1e-2) and cl.Shell(H, 1) == cl.Shell(H, 1.0)
+        lambda h: MODEL.solve([1.0, 5.0], IMPACT[1], h),
+        lambda h: MODEL.sensitivity([1.0, 5.0], IMPACT[1], h),
+        lambda h: MODEL.oblique([1.0, 5.0], 1.0, IMPACT[1], h, 0.3),
+    ],
+)
+def test_walls_and_answers_of_arrays_are_equal_by_value(make):
+    one, two, three = make(H), make(H), make(2 * H)
+    assert one == two and hash(one) == hash(two) and one != three
 
 
 EXTREME = st.one_of(st.floats(), st.floats(-330, 310).map(lambda power: 10.0**power if power < 308 else np.inf))
@@ -245,14 +241,11 @@ def test_flags_say_where_a_description_ends():
     ("call", "words"),
     [
         (lambda: cl.Layers([]), "layers.*expected pairs"),
-        (lambda: cl.Layers([("glass", 0.0)]), "layers.*0.0.*positive"),
         (lambda: cl.Layers([("glas", 1e-3)]), "unknown material 'glas'"),
         (lambda: cl.Orthotropic("glass", 1.0, 4.0, -2.0, 8.0), r"twist.*above -sqrt\(along across\)"),
-        (lambda: cl.Orthotropic("glass", 1.0, 4.0, 2.0, 0.0), "mass.*positive"),
         (lambda: cl.Orthotropic.perforated("glass", H, 30.0), "open_area.*30.0.*between 0 and 0.5"),
         (lambda: MODEL.solve(*IMPACT, OTHER), "beads touch 'aluminium-6061-t6'.*'glass'"),
         (lambda: MODEL.restitution(*IMPACT, [H, OTHER]), "beads touch 'aluminium-6061-t6'"),
-        (lambda: MODEL.collide([0, 0, -1.0], 0.0, [0, 0, 1.0], 0.9e-3, OTHER, 0.2), "beads touch"),
         (lambda: cl.load_signal([0.0], *IMPACT, OTHER, model=MODEL, rate=1e4), "beads touch"),
         (lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.8e-3)), "radius.*0.0008.*larger than the bead's"),
         (lambda: MODEL.solve(*IMPACT, cl.Shell(H, 0.1, "cone")), "kind.*cylinder, sphere"),
@@ -266,20 +259,3 @@ def test_flags_say_where_a_description_ends():
 def test_bad_plates_are_refused_in_words(call, words):
     with pytest.raises(ValueError, match=words):
         call()
-
-
-def test_engines_refuse_another_material_and_edges_of_layers():
-    space = pymunk.Space()
-    impacts, segment = attach(space, MODEL), pymunk.Segment(space.static_body, (0, 0), (1, 0), 0.0)
-    mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
-    for call, words in (
-        (lambda: plate_rows([Plate(**FLAT, thickness=OTHER)], {1: MODEL}, 1), "beads touch 'aluminium-6061-t6'"),
-        (lambda: plate_rows([Mesh(*mesh, OTHER)], {1: MODEL}, 1), "beads touch 'aluminium-6061-t6'"),
-        (lambda: impacts.add_plate(segment, thickness=OTHER), "beads touch"),
-        (lambda: impacts.add_plate(segment, thickness=CLAD, edge="free"), "only bare sheets"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            call()
-    assert plate_rows([Plate(**FLAT, thickness=CLAD), Mesh(*mesh, CLAD)], {1: MODEL}, 1)[0].size == 1
-    impacts.add_plate(segment, thickness=CLAD)
-    assert impacts.plates()["thickness"].tolist() == [float(CLAD)]

@@ -12,12 +12,13 @@ import contactlaw as cl
 
 COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", rate=(0.025, 1.0))
 STEEL = cl.Material("steel", 207e9, 0.29, 7850, 350e6, kind="metal", rate=(0.022, 1.0))
+STEEP = cl.Material("steep", 70e9, 0.33, 2700, 300e6, kind="metal", rate=(0.08, 1.0))
 HARD = cl.Material("hard", 207e9, 0.3, 7800, 1.35e9, kind="metal", rate=(0.03, 1.0))
 OTHER = cl.Material("other", 70e9, 0.3, 2700, 400e6, kind="metal")
 RATED = {
     "rate of the sphere": cl.Pair(COPPER, "glass"),
     "rate of the plate": cl.Pair("glass", STEEL),
-    "rate of both": cl.Pair("alloy-steel-4340", "copper-ofhc-annealed"),
+    "rate of both": cl.Pair(STEEP, STEEL),
     "the other becomes the weaker": cl.Pair(STEEL, OTHER),
     "a corner of the law": cl.Pair(HARD, "glass"),
     "rate and losses": polymer.PAIRS[2],
