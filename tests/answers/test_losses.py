@@ -59,15 +59,6 @@ def test_the_slowest_impacts_lose_what_slow_ones_do():
         assert answer(speed, radius, 3.0 * radius).restitution == pytest.approx(0.438, abs=1e-3)
 
 
-@pytest.mark.parametrize("loss", [0.1, 0.35, 0.7, 0.9])
-@pytest.mark.parametrize("strength", [5e6, 20e6, 50e6])
-def test_friction_of_bodies_that_flow_obeys_coulomb(loss, strength):
-    pair = cl.Pair(replace(polymer.WEAK, yield_strength=strength, loss_factor=(loss, 2e4)), "glass")
-    speed, sliding = np.meshgrid([0.5, 3.0, 10.0], [0.3, 1.0, 5.0, 20.0])
-    hit = cl.ImpactModel(pair).oblique(speed, sliding, 1e-3, 5e-3, 0.3, method="solve")
-    assert (hit.impulse_ratio <= 0.3 * (1.0 + 1e-9)).all() and (hit.friction_energy > 0.0).all()
-
-
 def test_errors_of_a_plate_are_those_of_the_material_given():
     """Its modulus is carried to the bead's frequency, by the loss factor that is uncertain."""
     plate = replace(polymer.SOFT, name="p", loss_factor=(0.5, 1e2), uncertainty={"loss_factor": 0.2})

@@ -31,13 +31,17 @@ def impacts(count):
     ],
 )
 def test_table_is_within_its_promise(law):
-    """2e-3 of mu V; 7e-3 for metals with a rate of strain at overloads above 50. No impact makes energy."""
+    """2e-3 of mu V; 7e-3 for metals with a rate of strain at overloads above 50.
+
+    No impact makes energy, and friction is at most its coefficient times the normal impulse.
+    """
     model, (v, s, r, h, mu) = MODELS[law], impacts(1000)
     table, solved = (model.oblique(v, s, r, h, mu, method=how) for how in ("table", "solve"))
     error = np.abs(table.sliding_speed - solved.sliding_speed) / (mu * v)
     assert (error < np.where((solved.overload > 50.0) & (law in kinds.RATED), 7e-3, 2e-3)).all()
     assert np.median(error) < 2e-4
-    assert (table.friction_energy >= 0.0).all() and (solved.friction_energy >= 0.0).all()
+    for hit in (table, solved):
+        assert (hit.friction_energy >= 0.0).all() and (np.abs(hit.impulse_ratio) <= mu * (1 + 1e-9)).all()
 
 
 @pytest.mark.parametrize("method", ["table", "solve"])
@@ -53,7 +57,6 @@ def test_fields_belong_together(method):
     spin = 2.5 * pulled / mass / r
     kinetic = 0.5 * mass * (s * hit.tangential_restitution) ** 2 + 0.2 * mass * (r * spin) ** 2
     assert 0.5 * mass * s**2 - kinetic == pytest.approx(hit.friction_energy, rel=1e-9)
-    assert (np.abs(hit.impulse_ratio) <= mu * (1 + 1e-9)).all()
     # the normal part is that of an impact without friction
     normal = MYC.lookup(v, r, h) if method == "table" else MYC.solve(v, r, h, rtol=1e-10)
     assert np.array_equal(hit.restitution, normal.restitution)

@@ -27,7 +27,7 @@ SLIDING = {"sliding_speed": 1.0, "friction": 0.3}
 OF_ALL_WALLS = [
     ("restitution", {}),
     ("lookup", {}),
-    ("lookup", {"mass": 1e-5}),
+    ("lookup", {"mass": 4e-5}),
     ("solve", {}),
     ("oblique", SLIDING),
     ("oblique", SLIDING | {"method": "solve"}),

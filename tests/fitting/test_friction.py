@@ -50,18 +50,6 @@ def test_exact_data_give_back_the_friction(kind, friction):
     assert again.values["friction"] == pytest.approx(found.values["friction"], rel=1e-9)
 
 
-@pytest.mark.parametrize("sets", [5, pytest.param(18, marks=pytest.mark.long)])
-def test_the_true_friction_is_within_the_stated_error_as_often_as_it_should(sets):
-    """Within 3 standard errors of 68 %; only the data err, so that their part is judged."""
-    angle, inside = np.linspace(5.0, 75.0, 5), []
-    for seed in range(sets):
-        friction, kinds = (0.1, 0.25)[seed % 2], KINDS[seed % 3 :][:1]
-        found = cl.fit(PAIR, measured(kinds, angle, friction, 0.02, seed), "friction")
-        off = found.values["friction"] - friction
-        inside.append(abs(off) < found.statistical_errors["friction"])
-    assert abs(np.mean(inside) - 0.683) < 3.0 * (0.683 * 0.317 / len(inside)) ** 0.5
-
-
 def test_the_error_of_the_model_is_that_of_the_sliding_speed_beside_finite_elements():
     """Where beads slide all the time, v_s - v_s' = 7/2 mu (1 + e) V: relative errors are equal."""
     off = [

@@ -391,12 +391,6 @@ def test_numbers_of_any_real_type_become_floats():
     assert {type(value) for value in values} == {float}
 
 
-def test_missing_yield_strength_says_what_to_do():
-    words = ("'myc'", "'glass'", r"Material\(..., yield_strength=...\)", 'law="fem"', "Pa")
-    with pytest.raises(ValueError, match="".join(f"(?=.*{part})" for part in words)):
-        contactlaw.ImpactModel(contactlaw.Pair("glass", "glass"), law="myc")
-
-
 def test_import_reads_no_catalogue():
     """In a fresh process, since this one has long read it."""
     code = (
