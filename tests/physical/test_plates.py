@@ -241,6 +241,8 @@ def test_flags_say_where_a_description_ends():
     ("call", "words"),
     [
         (lambda: cl.Layers([]), "layers.*expected pairs"),
+        (lambda: cl.Layers([("glass", 0.0)]), "layers.*0.0.*positive"),
+        (lambda: cl.Orthotropic("glass", 1.0, 4.0, 2.0, 0.0), "mass.*positive"),
         (lambda: cl.Layers([("glas", 1e-3)]), "unknown material 'glas'"),
         (lambda: cl.Orthotropic("glass", 1.0, 4.0, -2.0, 8.0), r"twist.*above -sqrt\(along across\)"),
         (lambda: cl.Orthotropic.perforated("glass", H, 30.0), "open_area.*30.0.*between 0 and 0.5"),
