@@ -9,7 +9,7 @@ import contactlaw as cl
 # Speed, radius and thickness of an impact inside the table, and of ones that are not, with the reason.
 INSIDE = (3.0, 1e-3, 1e-3)
 BEYOND = {"too thin": (3.0, 1e-3, 1e-4), "too fast": (4e3, 1e-3, 1e-2)}
-BEYOND_RATES = {"its rate makes the bodies 1.4": (5.0, 1e-8, 1e-3)}
+BEYOND_RATES = {"its rate makes the bodies stronger": (5.0, 1e-8, 1e-3)}
 ANSWERS = {
     "restitution": lambda m, v, r, h: m.restitution(v, r, h),
     "lookup": lambda m, v, r, h: m.lookup(v, r, h).restitution,

@@ -60,7 +60,7 @@ def test_a_damaged_table_is_refused():
     for entry, value in ((1 + force.BEGINS, 1e9), (1 + force.SIZE, 1e9), (0, -1e9)):
         damaged = laws.copy()
         damaged[entry] = value
-        with pytest.raises(ValueError, match="its law"):
+        with pytest.raises(ValueError, match="its law|no law of any strength"):
             force.check_strengths(damaged)
 
 

@@ -55,7 +55,7 @@ REFUSED = [
         IMPACT | {"speed": [1.0, 2.0]},
         [
             ({"keep": "mass"}, "keep: got 'mass'; must be 'energy' or 'momentum'"),
-            ({"weights": [1.0, -1.0]}, "weights: got -1.0; must be finite and not negative"),
+            ({"weights": [1.0, -1.0]}, "weights: got -1.0 .*must lie between 0"),
             ({"weights": 0.0}, "weights: all of them are 0"),
         ],
     ),
@@ -68,40 +68,27 @@ REFUSED = [
         ],
     ),
     (
-        # 4000 speeds span 34 decades, with a corner of the COR at the border of the table
-        CLAMPING.speed_table,
-        {"radius": R, "thickness": H, "error": 1e-5},
-        [({"slowest": 1e-29, "fastest": 1e5}, "error: got 1e-05; too small from 1e-29 to 100000 m/s")],
-    ),
-    (
         cl.load_signal,
         IMPACT | {"times": [0.1], "model": MYC, "rate": 1e3},
-        [
-            ({"rate": 1e15}, "duration: got .*must be positive and at most"),
-            ({"times": [math.nan]}, r"times: must be finite \[s\], got nan"),
-        ],
+        [({"rate": 1e15}, "duration: got .*must be at most"), ({"times": [math.nan]}, "times: got nan")],
     ),
     (
         FEM.thickness,
         {"restitution": 0.5, "speed": 2.0, "radius": 1e-3},
         [
             *(({"restitution": bad}, "restitution: got") for bad in (0.0, 1.0, math.nan)),
-            ({"speed": 2e4}, r"^speed: no thickness brings .* too fast"),
+            ({"speed": 2e4}, "^speed: got 20000.0; no thickness brings"),
         ],
     ),
     (
         FEM.speed,
         {"restitution": 0.5, "radius": 1e-3, "thickness": H},
-        [({"thickness": 1e-5}, r"^thickness: no speed brings .* is above 6: .* thin")],
+        [({"thickness": 1e-5}, "^thickness: got 1e-05; no speed brings")],
     ),
     (
         LINED.thickness,
         {"restitution": 0.5, "speed": 2.0, "radius": 1.5e-3},
-        [
-            ({"layers": [("aluminium-6061-t6", 1e-3)]}, "layers: .*None for one thickness"),
-            ({"layers": [("steel-s235", None)]}, "beads touch 'steel-s235'"),
-            ({"layers": [("aluminium-6061-t6", None), ("steel-s235", -1.0)]}, "layers: got -1.0; must be positive"),
-        ],
+        [({"plate": lambda h: cl.Layers([("steel-s235", h)])}, "beads touch 'steel-s235'")],
     ),
     (
         FEM.solve,
@@ -116,11 +103,7 @@ REFUSED = [
         ],
     ),
     (FEM.uncertainty, IMPACT, [({"speed_error": 5.0}, "speed_error: got 5.0; must lie between 0 and 1")]),
-    (
-        cl.ImpactModel(cl.Pair(FOAM, "glass")).uncertainty,
-        IMPACT,
-        [({}, "uncertainty: got 1.0; youngs_modulus is too large.*material 'w'")],
-    ),
+    (cl.ImpactModel(cl.Pair(FOAM, "glass")).uncertainty, IMPACT, [({}, "material 'w'")]),
     (FEM.yield_speed, {"radius": R}, [({"thickness": R / 20.0}, "thickness: got .*; too thin for the table")]),
 ]
 

@@ -76,3 +76,11 @@ def test_tables_of_one_plate(model):
     assert model.speed_table(R, H).flags == {}
     fast = model.speed_table(R, H, fastest=60.0)
     assert fast.flags == {cl.Validity.FAST_IMPACT: int((fast.speed > 7 * 7.4265).sum())}
+
+
+def test_a_range_may_be_wide():
+    """Over 34 decades, with a corner of the COR at the border of the table."""
+    clamping = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", outside="clamp")
+    speeds, restitutions = clamping.speed_table(1e-3, 1e-3, 1e-4, 1e-29, 1e5)[:2]
+    v = np.geomspace(1e-29, 1e5, 300_007)
+    assert np.abs(np.interp(v, speeds, restitutions) - clamping.restitution(v, 1e-3, 1e-3)).max() <= 1.1e-4
