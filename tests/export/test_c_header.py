@@ -312,7 +312,6 @@ FIRST = [  # models, and words of the first lines of their headers
         "SPDX-License-Identifier: BSD-3-Clause",
     ),
     (cl.Pair(POM, "glass"), "fem", "WARNING: a polymer", "every impact: RATE_DEPENDENT: a polymer, or a body as soft"),
-    (cl.Pair("stainless-steel-304", "glass"), "myc", "a body that yields: OTHER_LAW: finite elements favour"),
 ]
 
 

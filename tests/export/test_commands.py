@@ -96,8 +96,6 @@ def test_the_scene_of_the_page_is_one(tmp_path):
 CHANGED = [  # a text of the scene, what it becomes, and the message
     ("largest", "langest", "line 3: unknown 'langest'; did you mean largest? known: beads, largest"),
     ('largest = "2mm"', "", "line 1: lacks largest"),
-    ("cylinder", "cylnder", "line 8: [shell]: shape: unknown 'cylnder'; did you mean cylinder? known: plate"),
-    ("thickness =", "thicknes =", "line 12: [shell]: unknown 'thicknes'; did you mean thickness? known: "),
     ("0.8mm", "0.8mmm", "line 12: [shell]: thickness: got '0.8mmm': 'mmm' is no unit of length; take m, cm"),
     ("0.8mm", "-1mm", "line 12: [shell]: thickness: got -0.001; "),
     ("speed", "sped", "line 14: [shell]: motion: unknown 'sped'; did you mean speed? known: axis"),
@@ -107,7 +105,6 @@ CHANGED = [  # a text of the scene, what it becomes, and the message
     ("beads = [", "beads = [[", "drum.toml: "),
     ("--set", "shel.thickness=1mm", "--set: unknown 'shel'; did you mean shell?"),
     ("--set", "shell.thickness=1mmm", "--set: shell.thickness: thickness: got '1mmm'"),
-    ("--set", "shell.thickness", "--set: got 'shell.thickness'; expected a wall, a word and its value"),
 ]
 
 
@@ -144,7 +141,6 @@ def test_the_command_writes_what_python_writes(kind, options, tmp_path, capsys):
         *((kind, ["--out", "nowhere/out"], "--out: there is no folder nowhere") for kind in COMMANDS),
         ("header", ["--out", "."], "--out: . is a folder"),
         ("header", ["--sphere", "glass", "--law", "myc"], "--sphere: law 'myc' needs a yield strength"),
-        ("header", ["--prefix", "Steel"], "--prefix: got 'Steel'; must be lower-case words"),
         ("liggghts", ["--out", "file"], "--out: file is no folder"),
     ],
 )

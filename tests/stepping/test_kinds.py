@@ -70,12 +70,6 @@ def test_a_bead_that_slides_over_an_edge(slope):
     assert rows["sliding_speed_after"][-1] > 0.0
 
 
-def test_a_bead_that_slides_on_to_another_wall():
-    rising = Plate((0.0, -0.05, 0.0), (0.03, 0.0, 0.03), (0.0, 0.1, 0.0), 1e-3)
-    found, rows = kinds([SHEET, rising], (-2 * R, 0.0, R + 1e-9), (0.5, 0, -1e-4), slope=0.0, steps=60_000)
-    assert found[list(rows["plate"]).index(1)] == "SLIDING_ON"
-
-
 @pytest.mark.parametrize("kick", [-0.5, 0.5])
 @pytest.mark.parametrize("when", range(6, 60, 9))
 def test_a_bead_that_is_struck_in_contact(when, kick):

@@ -44,7 +44,7 @@ def test_its_rebounds_are_those_of_lammps(example, capsys, monkeypatch):
         assert own[name] == pytest.approx(there[name], rel=1e-9), name
 
 
-def test_it_stops_at_a_step_that_is_too_long_and_has_no_other_types_of_beads(example):
+def test_it_stops_at_a_step_that_is_too_long(example):
     model = cl.ImpactModel(example.PAIR)
     tray = Mesh.read(example.TRAY, example.THICKNESS, scale=1e-3)
     walls = WallContacts([tray], model, example.RADIUS, np.zeros(9, IMPACT), friction=0.1)
@@ -53,8 +53,6 @@ def test_it_stops_at_a_step_that_is_too_long_and_has_no_other_types_of_beads(exa
     example.run(walls.scene, *walls.memory(1), x, v, mass, example.RADIUS, 2e-6, 20)
     with pytest.raises(RuntimeError, match=r"on wall 0: timestep: too large .* 3 m/s, .* take 2\.3e-07 s or less"):
         walls.collisions()
-    with pytest.raises(ValueError, match="models"):
-        WallContacts([tray], {2: model}, example.RADIUS, np.zeros(9, IMPACT))
 
 
 def test_an_impact_in_a_dent_does_not_know_the_last_ones_friction():

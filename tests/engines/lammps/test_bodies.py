@@ -8,7 +8,6 @@ from dumbbell import Dumbbell, impact
 from lammps_box import ALIKE, PAIR, R, attach, flat, quiet, state
 
 import contactlaw as cl
-from contactlaw.cli import main
 from contactlaw.engines.record import Kind
 
 H, N, SLIDE, DT = 0.5e-3, 30, 0.3, 5e-8
@@ -112,17 +111,6 @@ def test_bodies_of_any_mass_rebound_as_their_mass_at_the_contact_says():
     assert rows["restitution"] == pytest.approx(MODEL.solve(1.0, R, H, mass=rows["mass"]).restitution, abs=1e-3)
 
 
-def test_one_constant_is_that_of_the_recorded_impacts(tmp_path, capsys):
-    _, walls, rows = thrown(AXES)
-    walls.save(tmp_path / "run.h5")
-    assert main(["constant", str(tmp_path / "run.h5"), "--csv", "--law", "myc"]) == 0
-    energy = rows["mass"] * rows["approach_speed"] ** 2
-    best = np.sqrt(np.average(rows["restitution"] ** 2, weights=energy))
-    assert set(rows["kind"]) == {Kind.OF_BODY} and rows.size == N
-    head, row = (line.split(",") for line in capsys.readouterr().out.splitlines())
-    assert float(row[head.index("restitution")]) == pytest.approx(best, abs=1e-3)
-
-
 def test_a_run_may_be_cut_into_pieces_and_go_on_from_a_restart_in_mid_contact(tmp_path):
     _, _, cut = thrown(FEW, 0.3, pieces=24)
     _, _, whole = thrown(FEW, 0.3, pieces=1, more=f"restart 100 {tmp_path}/at")
@@ -140,19 +128,6 @@ def test_a_run_may_be_cut_into_pieces_and_go_on_from_a_restart_in_mid_contact(tm
 
 def parts(lmp):
     return [name for name in lmp.available_ids("fix") + lmp.available_ids("compute") if "contactlaw" in name]
-
-
-def test_a_refused_attachment_leaves_nothing_behind():
-    lmp, walls, _ = thrown(AXES[:1])
-    walls.detach()
-    for n in range(31):  # with "all", as many as LAMMPS has; the attachment needs one more
-        lmp.command(f"group own{n} id 1")
-    with pytest.raises(Exception, match="Too many groups"):
-        attach(lmp, MODEL, [flat(H)], rigid="body")
-    assert not parts(lmp)
-    lmp.command("group own0 delete")
-    attach(lmp, MODEL, [flat(H)], rigid="body")
-    lmp.command("run 100")
 
 
 def test_two_spheres_of_a_body_that_touch_at_once_are_counted():

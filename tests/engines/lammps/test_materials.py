@@ -82,7 +82,6 @@ ON_STEEL = models(STEEL)
 @pytest.mark.parametrize(
     ("given", "of_plate", "message"),
     [
-        (ON_STEEL, {4: None}, r"types of beads are 1 to 3, got \[1, 2, 3, 4\]"),
         ({1: ON_STEEL[1], 2: None}, {2: ON_STEEL[2]}, "for atom type 2, and has None"),
         (ON_STEEL, ON_STEEL[2], "these beads for atom type 1, and has"),
     ],

@@ -33,7 +33,6 @@ MOVED = np.array([1.0, 2.0, 3.0])
 TIMES, PLACES = [0.1, 0.2, 0.4], [[0, 0, 0], [0, 1, 0], [2, 1, 0]]
 # Motions, and their shifts and rates by the formulas.
 FORMULAS = {
-    "translation": (Translation(MOVED), lambda t: MOVED * t, lambda t: MOVED),
     "vibration": (
         Vibration(1e-3 * MOVED, 50.0, phase=0.4),
         lambda t: 1e-3 * MOVED * math.sin(100 * math.pi * t + 0.4),
@@ -58,17 +57,6 @@ def test_shifts_and_rates_are_those_of_the_formulas(name, time):
     assert row["rate"] == pytest.approx(rate(time), rel=1e-7, abs=1e-9)
 
 
-@pytest.mark.parametrize("wind", [(0, 0, 1.5), (0, 0, -2), (3, -1, 2)])
-def test_an_impact_is_the_same_in_any_inertial_frame(model, wind):
-    place, velocity, moves = above(1e-5, 0.001, 0.002), np.array([1.0, 2.0, -5.0]), Translation(wind)
-    still, ends = dropped(model, [flat(1e-3)], place, velocity, friction=0.2)
-    moving, others = dropped(model, [flat(1e-3, motion=moves)], place, velocity + wind, friction=0.2)
-    for name in ("approach_speed", "restitution", "contact_time", "peak_force", "wave_energy"):
-        assert moving[name] == pytest.approx(still[name], rel=1e-9), name
-    assert others["v"] - wind == pytest.approx(ends["v"], rel=1e-9)
-    assert others["omega"] == pytest.approx(ends["omega"], rel=1e-9)
-
-
 def test_a_bead_that_moves_with_a_turning_plate_does_not_slide_on_it(model):
     plate = flat(1e-3, motion=Rotation((0, 0, 1), 40.0))
     (row,), _ = dropped(model, [plate], above(1e-5, 0.02, 0.01), (-0.4, 0.8, -5), friction=0.2)
@@ -83,15 +71,6 @@ def test_the_walls_go_on_when_the_clock_is_reset(model):
     assert walls.time == pytest.approx(200e-7, rel=1e-12)
     lmp.commands_string("timestep 2e-7\nrun 300")
     assert walls.time == pytest.approx(800e-7, rel=1e-12)
-
-
-@pytest.mark.parametrize("x", [-1e-5, 0.0, 1e-5])
-def test_a_bead_at_the_meeting_of_two_motions_has_one_contact(model, x):
-    """One plate stands still; its neighbour slides along their seam."""
-    still = flat(1e-3, x=-0.05, width=0.05)
-    sliding = flat(1e-3, x=0.0, width=0.05, motion=Translation((0, 1.0, 0)))
-    (row,), _ = dropped(model, [still, sliding], above(1e-5, x), steps=400)
-    assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
 
 
 def settled(model, motion, **options):

@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lammps_box import ALIKE, MASS, PAIR, PLATE, R, dropped, flat, scene, state
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
+from lammps_box import MASS, PAIR, PLATE, R, dropped, flat, scene, state
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Cone, Cylinder, Disc, Mesh, Plate, Ring, Sphere
@@ -45,66 +43,42 @@ LEAN = math.radians(60)  # half of a cone's angle of opening
 SLOPE = np.array([-math.cos(LEAN), 0.0, math.sin(LEAN)])  # normal inside of the cone
 RISE = np.array([math.sin(LEAN), 0.0, math.cos(LEAN)])  # along its side
 CONE = Cone(ORIGIN, (0, 0, 0.01), 0, 0.01 * math.tan(LEAN), math.inf)
-# A wall, a point on it, the normal to the bead, and R over the wall's radii, negative where hollow.
+# A wall, a point on it, the normal to the bead, and K of Hertz's F = K d^1.5 over that on a plane: by the
+# elliptic integrals of Johnson, Contact Mechanics (1985), eqs 4.26 to 4.32, for R/A = 0.25.
 CURVED = {
-    "in a cylinder": (Cylinder(*ALONG, A, math.inf), (0, 0, -A), UP, (-0.25, 0)),
-    "on a cylinder": (Cylinder(*ALONG, A, math.inf), (0, 0, A), UP, (0.25, 0)),
-    "in a sphere": (Sphere(ORIGIN, A, math.inf), (0, 0, -A), UP, (-0.25, -0.25)),
-    "on a sphere": (Sphere(ORIGIN, A, math.inf, polar=(0, 2)), (0, 0, A), UP, (0.25, 0.25)),
-    "in a cone": (CONE, A / math.tan(LEAN) * RISE, SLOPE, (-0.25, 0)),
+    "in a cylinder": (Cylinder(*ALONG, A, math.inf), (0, 0, -A), UP, 1.0764222),
+    "on a cylinder": (Cylinder(*ALONG, A, math.inf), (0, 0, A), UP, 0.9467225),
+    "in a sphere": (Sphere(ORIGIN, A, math.inf), (0, 0, -A), UP, 0.75**-0.5),
+    "on a sphere": (Sphere(ORIGIN, A, math.inf, polar=(0, 2)), (0, 0, A), UP, 1.25**-0.5),
+    "in a cone": (CONE, A / math.tan(LEAN) * RISE, SLOPE, 1.0764222),
 }
-
-
-def stiffness(one, two):
-    """K of Hertz's F = K d^1.5 over that on a plane, from the curvatures over the bead's.
-
-    Johnson, Contact Mechanics (1985), eqs 4.26 to 4.32, with a by b the axes of the ellipse.
-    """
-    mean, ratio = 1 / math.sqrt((1 + one) * (1 + two)), max((1 + one) / (1 + two), (1 + two) / (1 + one))
-    if ratio == 1.0:
-        return math.sqrt(mean)
-
-    def excess(k):
-        m = 1 - k * k
-        return (ellipe(m) / k**2 - ellipk(m)) / (ellipk(m) - ellipe(m)) - ratio
-
-    k = brentq(excess, 1e-3, 1 - 1e-7)
-    m, long, short = 1 - k * k, ellipk(1 - k * k), ellipe(1 - k * k)
-    size = (4 / (math.pi * m) * k**1.5 * math.sqrt((short / k**2 - long) * (long - short))) ** (1 / 3)
-    return math.sqrt(mean) * (2 / math.pi * math.sqrt(k) / size * long) ** -1.5
 
 
 @pytest.mark.parametrize("name", CURVED)
 def test_the_force_is_that_of_hertz_between_curved_bodies(name):
     """K is that of R*, the geometric mean of the radii: 0.2 % below that of the exact ellipse."""
-    wall, point, n, curvatures = CURVED[name]
+    wall, point, n, stiffness = CURVED[name]
     n = np.array(n)
     (row,), _ = dropped(HERTZ, [wall], np.array(point) + (R + 1e-6) * n, -3.0 * n, dt=5e-8)
     plane = (4 / 3 * HERTZ.pair.effective_modulus * math.sqrt(R)) ** 0.4 * (1.25 * MASS * 9.0) ** 0.6
-    wider = stiffness(*curvatures) ** 0.4
-    assert row["peak_force"] == pytest.approx(plane * wider, rel=1e-3)
+    assert row["peak_force"] == pytest.approx(plane * stiffness**0.4, rel=1e-3)
     assert row["restitution"] == pytest.approx(1.0, abs=1e-9)
-    assert (abs(wider - 1) > 0.02) == any(curvatures)
-    change = 1 / math.sqrt((1 + curvatures[0]) * (1 + curvatures[1])) - 1
-    assert bool(row["flags"] & cl.Validity.CURVED_WALL) == (abs(change) > 0.16)
+    # flagged where R* is more than 16 % off
+    assert bool(row["flags"] & cl.Validity.CURVED_WALL) == (abs(stiffness**2 - 1) > 0.16)
 
 
 @pytest.mark.parametrize(("radius", "x"), [(0.8 * R, 1e-5), (0.999999 * R, 1e-9)])
-def test_a_bead_larger_than_its_drum_is_refused_inside_alone(radius, x):
+def test_a_bead_larger_than_its_drum_is_refused(radius, x):
     lmp, _ = scene(MYC, [Cylinder(*ALONG, radius, 1e-3)], (x, 0, 0))
     with pytest.raises(RuntimeError, match=f"radius: inside a round wall of {radius:.7g} m, which a bead of 0.0009 m"):
         lmp.command("run 100")
-    beside = Cylinder((0, -0.02, -radius), (0, 0.02, -radius), radius, 1e-3)
-    assert len(dropped(MYC, [beside], (0, 0, R + 1e-5))[0]) == 1
 
 
-ENDS = [Disc((0, y, 0), (0, 1, 0), DRUM, math.inf) for y in (-5e-3, 5e-3)]
 GROOVE = [
     Plate((0, -0.05, 0), (sign * 0.03 * math.cos(0.9), 0, 0.03 * math.sin(0.9)), (0, 0.1, 0), math.inf)
     for sign in (1, -1)
 ]
 SCENES = {
-    "drum with ends": ([Cylinder((0, -5e-3, 0), (0, 5e-3, 0), DRUM, math.inf), *ENDS], (2e-3, 0, 0), (1, 9, 0)),
     "hopper": ([Cone((0, 0, -5e-3), (0, 0, 5e-3), 0.5e-3, 8e-3, math.inf)], (1e-3, 0, 2e-3), (0, 2, 0)),
     "hole in a ball": (
         [Ring(ORIGIN, UP, 0.8 * R, 8e-3, math.inf), Sphere(ORIGIN, 9e-3, math.inf)],
@@ -137,7 +111,7 @@ def test_an_elastic_bead_keeps_its_energy_anywhere(name):
 LINED = cl.Layers([("glass", 0.2e-3), ("steel-s235", 0.4e-3)])
 CORNERS = [(-0.05, -0.05, 0), (0.06, -0.05, 0), (0, 0.05, 0)]
 H, NEAR, FAR = 0.5e-3, 6 * R, 20 * R
-BEDS = [cl.Foundation(H, 1e12), cl.Foundation(H, 3e13), cl.Foundation(LINED, 1e12)]
+BED, LINED_BED = cl.Foundation(H, 1e12), cl.Foundation(LINED, 1e12)
 # Walls, the plates of which `solve` has the COR (of two the mean), and how far the COR may be off.
 SWINGING = {
     "cylinder": (Cylinder((-1, 0, NEAR), (1, 0, NEAR), NEAR, LINED), [cl.Shell(LINED, NEAR, "cylinder")], 1e-3),
@@ -149,10 +123,8 @@ SWINGING = {
         [cl.Shell(H, a, "cylinder") for a in (FAR, -FAR)],
         4e-4,
     ),
-    "mesh on a bed": (Mesh(CORNERS, [[0, 1, 2]], BEDS[0]), BEDS[:1], 1e-3),
-    "disc on a bed": (Disc(ORIGIN, UP, 0.05, BEDS[0]), BEDS[:1], 1e-3),
-    "stiff bed": (flat(BEDS[1]), BEDS[1:2], 1e-3),
-    "lined bed": (flat(BEDS[2]), BEDS[2:], 1e-3),
+    "mesh on a bed": (Mesh(CORNERS, [[0, 1, 2]], BED), [BED], 1e-3),
+    "disc on a lined bed": (Disc(ORIGIN, UP, 0.05, LINED_BED), [LINED_BED], 1e-3),
 }
 
 
@@ -171,12 +143,6 @@ def test_a_wall_that_swings_back_gives_the_rebound_of_solve(name, softening):
 
 
 @pytest.mark.parametrize("softening", [1.0, 5.0])
-@pytest.mark.parametrize("nothing", [cl.Foundation(H, 0.0), cl.Shell(H, math.inf)])
-def test_a_plate_that_nothing_holds_is_the_sheet(nothing, softening):
-    assert bounce(flat(nothing), softening)[ALIKE] == bounce(flat(H), softening)[ALIKE]
-
-
-@pytest.mark.parametrize("softening", [1.0, 5.0])
 @pytest.mark.parametrize("stiffness", [1e13, 3e13, 1e14])
 def test_a_stiff_foundation_adds_no_energy(stiffness, softening):
     """Six exponentials alone would do so from 20 swings in a contact on: COR of 1.0008."""
@@ -186,17 +152,15 @@ def test_a_stiff_foundation_adds_no_energy(stiffness, softening):
     assert row["restitution"] == pytest.approx(HERTZ.solve(5.0, R, bed).restitution, abs=6e-4)
 
 
-@pytest.mark.parametrize("a", [8 * R, 2 * R])
-def test_the_step_for_a_plate_is_allowed_in_a_hollow_wall_whose_contact_is_shorter(a):
-    wall, dt = Sphere((0, 0, a), a, 1e-3), time_step(MYC, 5.0, R, 1e-3)
-    (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), dt=dt)
+def test_the_step_for_a_plate_is_allowed_in_a_hollow_wall_whose_contact_is_shorter():
+    wall = Sphere((0, 0, 2 * R), 2 * R, 1e-3)
+    (row,), _ = dropped(MYC, [wall], (0, 0, R + 1e-5), dt=time_step(MYC, 5.0, R, 1e-3))
     assert row["restitution"] == pytest.approx(bounce(wall, 1.0)["restitution"], abs=1e-3)
 
 
 STEEL = cl.material("steel-s235").plane_modulus * 1e-9 / 12
 THIN_LINER = cl.Layers([("glass", 2e-5), ("steel-s235", 1e-3)])
 FLAGGED = [
-    (THIN_LINER, cl.Validity.LINER),
     (cl.Foundation(THIN_LINER, 1e10), cl.Validity.LINER),
     (cl.Layers([("glass", 1e-3), ("pmma", 1e-3)]), cl.Validity.LINER),
     (cl.Orthotropic("glass", STEEL, STEEL, STEEL, mass=2.5, pitch=0.1), cl.Validity.RIBS),

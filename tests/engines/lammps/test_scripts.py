@@ -163,18 +163,6 @@ def test_what_plates_cannot_follow_in_a_file(scene, tmp_path, before, command, w
     assert len(walls.collisions()) == 3
 
 
-def test_two_simulations_beside_each_other(scene, undisturbed):
-    (one, first), (other, second) = scene(), scene()
-    for _ in range(7):
-        one.command("run 90")
-        other.command("run 90")
-    for walls in (first, second):
-        assert np.array_equal(walls.collisions()["restitution"], undisturbed[0])
-    first.detach()
-    with pytest.raises(RuntimeError, match="taken out by a command"):
-        other.commands_string("unfix contactlaw_halt\nunfix contactlaw")
-
-
 def test_plates_that_nobody_holds_act_all_the_same(model, undisturbed):
     """The plates live as long as the LAMMPS object, and no longer."""
     lmp = make(STARTS)

@@ -24,16 +24,16 @@ MODELS = [cl.ImpactModel(cl.Pair(*pair), law=law, outside="solve") for *pair, la
 pytestmark = pytest.mark.filterwarnings("ignore:softening. an impact:UserWarning")  # meant to be fast
 
 
-def thrown(model, thickness, speed, sliding=0.0, *, steps=30, softening=SOFT, edges=None, along=0.0, **options):
+def thrown(model, thickness, speed, sliding=0.0, *, steps=30, softening=SOFT, **options):
     """Impacts of beads in a row on a plate, and the kinetic energy that each has lost."""
     n, density = len(speed), model.pair.sphere.density
     dt = time_step(model, speed.max(), R, thickness, softening=softening) * 30 / steps
     height = R + (1.0 + np.random.default_rng(n).random(n)) * speed * dt
-    place = np.column_stack([np.full(n, along), np.linspace(-0.045, 0.045, n), height])
+    place = np.column_stack([np.zeros(n), np.linspace(-0.045, 0.045, n), height])
     velocity = np.column_stack([-sliding * np.ones(n), np.zeros(n), -speed])
     steps = int(5 + 1.2 * steps * (speed.max() / speed.min()) ** 0.2)
     options |= {"dt": dt, "density": density, "steps": steps, "softening": softening}
-    rows, now = box.dropped(model, [box.flat(thickness, edges=edges)], place, velocity, **options)
+    rows, now = box.dropped(model, [box.flat(thickness)], place, velocity, **options)
     mass = 4 / 3 * math.pi * density * R**3
     after = (now["v"] ** 2).sum(axis=1) + 0.4 * R**2 * (now["omega"] ** 2).sum(axis=1)
     return rows, 0.5 * mass * ((velocity**2).sum(axis=1) - after)
@@ -75,19 +75,6 @@ def test_beads_leave_as_from_the_true_impact(model, softening, parcel, beads):
     assert time_step(model, 1.0, R, 1e-3, parcel=parcel) == time_step(model, 1.0, radius, 1e-3)
 
 
-def test_the_edge_of_a_plate_acts_as_in_the_true_impact():
-    soft, true = (
-        [
-            thrown(MODEL, 0.5e-3, np.full(4, 2.0), edges="free", along=0.05 - distance, **contacts)[0]["restitution"]
-            for distance in (1.2e-3, 2e-3, 4e-3)
-        ]
-        for contacts in ({}, {"softening": 1.0, "steps": 60})
-    )
-    np.testing.assert_allclose(soft, true, atol=3e-4)
-    away = abs(np.mean(soft, axis=1) - MODEL.solve(2.0, R, 0.5e-3).restitution)
-    assert away[0] > 0.08 and away[1] > 0.008
-
-
 def test_no_bead_leaves_a_groove_without_a_row():
     """Where it turns from one face to the other as it leaves, and has arrived on the first alone."""
     turn, x = math.radians(159.5 / 2), np.linspace(-6e-4, 6e-4, 200)
@@ -97,10 +84,8 @@ def test_no_bead_leaves_a_groove_without_a_row():
     ]
     place = np.column_stack([x, np.linspace(-0.04, 0.04, x.size), np.full(x.size, R / math.sin(turn) + 3e-4)])
     dt = time_step(MODEL, 2.0, R, 1e-3, softening=100.0)
-    rows, now = box.dropped(MODEL, faces, place, (0.3, 0.1, -1.0), dt=dt, softening=100.0, steps=1500)
+    rows, _ = box.dropped(MODEL, faces, place, (0.3, 0.1, -1.0), dt=dt, softening=100.0, steps=1500)
     assert set(rows["bead"]) == set(range(1, x.size + 1))
-    after = 0.5 * box.MASS * (now["v"] ** 2).sum(axis=1) + np.bincount(rows["bead"] - 1, box.lost(rows))
-    np.testing.assert_allclose(after / (0.5 * box.MASS * 1.1), 1.0, rtol=1e-3)
 
 
 def test_a_bead_that_rolls_into_a_wall_rebounds_as_one_that_flies():
@@ -157,7 +142,5 @@ def test_two_parcels_touch_as_long_as_two_beads():
         for parcel in (1.0, 2.0)
     )
     assert many * math.sqrt(2 * R) / (one * math.sqrt(R)) == pytest.approx(2.0**3, rel=1e-3)
-    with pytest.raises(ValueError, match="softening: "):
-        pair_coeff("gamma-alumina", radius=R, speed=1.0, softening=0.0)
     with pytest.raises(ValueError, match="parcel: "):
-        time_step(MODEL, 1.0, R, 1e-3, parcel=0.5)
+        pair_coeff("gamma-alumina", radius=R, speed=1.0, parcel=0.0)

@@ -53,15 +53,10 @@ def test_a_fast_plate_is_reported(motion):
 
 
 def test_what_bead_and_plate_travel_counts_together():
-    """They move towards each other, each by less than a radius, and a bit of overlap is left."""
-    space, speed = make_space(), 0.45 * R / DT
+    """They move towards each other, each by less than a radius."""
+    space, speed = make_space(), 0.6 * R / DT
     body = room.moving_body(space, velocity=(0, speed))
-    bead = make_bead(space, (0, R), (0, -speed))
-    impacts = room.registered(space, Stub(), [bead], [make_plate(space, body=body)])
-    space.step(DT)
-    assert len(impacts.collisions()) == 1
-    body.position, bead.body.position, bead.body.velocity = (0, 0), (0, R), (0, -0.6 * R / DT)
-    body.velocity = (0, 0.6 * R / DT)
+    room.registered(space, Stub(), [make_bead(space, (0, R), (0, -speed))], [make_plate(space, body=body)])
     with pytest.raises(TunnellingError):
         space.step(DT)
 

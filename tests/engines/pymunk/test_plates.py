@@ -176,25 +176,6 @@ def test_a_neighbour_that_is_not_there_has_no_part(gone):
 # --- polygons, and plates that move ---------------------------------------------------------------
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.1e-3])
-def test_a_sloping_side_of_a_turning_polygon(radius):
-    space = make_space()
-    body = room.moving_body(space, spin=20.0)
-    triangle = make_plate(space, (-0.03, -0.02), (0.03, -0.02), (0.0, 0.03), body=body, radius=radius)
-    normal = pymunk.Vec2d(5, 3).normalized()
-    middle = pymunk.Vec2d(0.02, -0.01 / 3)
-    circle = make_bead(space, middle + normal * (1.05 * R + radius), normal * -1)
-    impacts = room.registered(space, Stub(0.6), [circle], [triangle])
-    row, _ = room.step_to_impact(space, impacts, circle.body, 1e-5)
-    turned = normal.rotated(body.angle)
-    point = pymunk.Vec2d(row["x"], row["y"])
-    assert point == pytest.approx(circle.body.position - R * turned, abs=1e-12)
-    plate = body.velocity_at_world_point(point)
-    assert abs(plate.dot(turned)) > 0.1  # it turns away under the bead, or towards it
-    assert row["approach_speed"] == pytest.approx(-(normal * -1 - plate).dot(turned), abs=1e-9)
-    assert (circle.body.velocity - plate).dot(turned) == pytest.approx(0.6 * row["approach_speed"], abs=1e-9)
-
-
 def test_a_static_plate_may_have_a_speed():
     """The plate is a conveyor: pymunk never moves it, but counts its speed in every contact."""
     space, body, impacts = drop(Stub(0.5))

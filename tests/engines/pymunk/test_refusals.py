@@ -2,7 +2,6 @@
 
 import copy
 import math
-import pickle
 import re
 import sys
 from types import SimpleNamespace
@@ -42,37 +41,29 @@ REFUSED = {
         (lambda at: at.add_bead(pymunk.Circle(at.circle.body, R, (0, R))), "single sphere: give each"),
         (lambda at: at.add_bead(pymunk.Circle(at.bead.body, R)), "circle.body: has other shapes"),
         (lambda at: (setattr(at.circle.body, "center_of_gravity", (R, 0)), at.add_bead()), "centre of gravity"),
-        (lambda at: at.add_bead(pymunk.Circle(None, R)), "no body"),
         (lambda at: at.add_bead(pymunk.Circle(at.space.static_body, R)), "dynamic body"),
         (lambda at: at.add_bead(sensor=True), "sensor"),
         (lambda at: at.add_bead(collision_type=3), "collision_type: got 3"),
         (lambda at: at.add_bead(make_bead(at.space, (0, 50), radius=20.0)), "radius: got 20.0; .*pixels"),
         (lambda at: at.add_bead(at.bead), "registered already"),
-        (lambda at: at.add_plate(shape=at.floor), "registered already"),
         (lambda at: at.impacts.add_bead(at.circle, material="gold"), "spheres of 'gold'.* 'gamma-alumina'"),
         (lambda at: at.impacts.remove_bead(at.floor), "is no such bead or plate"),
-        (lambda at: at.impacts.remove_plate(at.bead), "is no such bead or plate"),
         (lambda at: at.add_plate(-1e-3), "thickness"),
         (lambda at: at.add_plate(shape=make_plate(at.space, (1, 1), (1, 1))), "no length"),
         (lambda at: at.add_plate(material="gold"), "plates of 'gold', only for 'glass'"),
         (lambda at: at.add_plate(friction=-0.2), "friction"),
         (lambda at: at.add_plate(edge="loose"), "edge: got .*must be one of free, supported, clamped"),
-        (lambda at: at.add_plate(cl.Foundation(1e-3, -1.0)), "stiffness: got -1"),
         (lambda at: at.add_plate(PIPE, edge="free"), "only bare sheets have edges"),
         (lambda at: at.add_plate(cl.Layers([("pmma", 1e-3)])), "beads touch 'pmma'"),
         (lambda at: attach(pymunk.Space(), []), "empty"),
         (lambda at: attach(pymunk.Space(), [MODEL, MODEL]), "two are for gamma-alumina on glass"),
         (lambda at: at.space.step(0.0), "dt"),
-        (lambda at: at.space.step(math.nan), "dt"),
     ],
     TypeError: [
         (lambda at: at.add_bead("bead"), "expected a pymunk.Circle, got 'bead'"),
         (lambda at: at.add_plate(shape=at.circle), "pymunk.Segment or pymunk.Poly"),
         (lambda at: attach(pymunk.Space(), 0.5), "model.*0.5"),
-        (lambda at: attach("space", MODEL), "space"),
         (lambda at: copy.deepcopy(at.space), "detach"),
-        (lambda at: at.space.copy(), "detach"),
-        (lambda at: pickle.dumps(at.space), "detach"),
     ],
     RuntimeError: [
         (lambda at: attach(at.space, MODEL), "attached already; detach"),
@@ -111,7 +102,6 @@ def test_without_pymunk(monkeypatch):
     [
         (lambda at: at.add_bead(make_bead(at.space, (0, 1), radius=0.9)), "radius: 0.9 is 0.9 m; 0.9e-3 for 0.9 mm"),
         (lambda at: at.add_plate(1.0), "thickness: 1 is 1 m; 1e-3 for 1 mm"),
-        (lambda at: at.add_bead(make_bead(at.space, (0, 1), density=879 / 1.6)), "body.mass: .* gamma-alumina .* 2.68"),
         (lambda at: at.add_bead(make_bead(at.space, (0, 1), density=879 * 8)), "body.mass: .* 2.684e-06 kg.*set"),
     ],
 )

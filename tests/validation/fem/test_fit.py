@@ -117,19 +117,21 @@ def job_once(job):
     return {"depth": job.depth}
 
 
+def job_anew(job):
+    """Done where `job_once` was lost."""
+    return {"depth": -job.depth}
+
+
 def test_a_killed_run_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "FOLDER", tmp_path)
     jobs = [Press(math.inf, math.inf, depth) for depth in (0.01, 0.02, 0.03)]
     first = journal.complete("some", job_once, jobs[:2], 1)
     assert [row["depth"] for row in first] == [0.01, 0.02]
     lines = journal.path("some").read_text().splitlines()
-    # it was killed while it wrote its second line, and an older solver wrote the first
-    journal.path("some").write_text(lines[0] + "\n" + lines[1][:30])
-    assert len(journal._read(journal.path("some"))) == 1
-    again = journal.complete("some", job_once, jobs, 1)
-    assert [row["depth"] for row in again] == [0.01, 0.02, 0.03]
-    old = json.loads(lines[0]) | {"solver_version": -1}
-    journal.path("some").write_text(json.dumps(old) + "\n")
-    assert journal._read(journal.path("some")) == {}
+    # it was killed while it wrote its second line, and an older solver wrote another one
+    old = json.loads(lines[1]) | {"solver_version": -1}
+    journal.path("some").write_text("\n".join([lines[0], json.dumps(old), lines[1][:30]]))
+    again = journal.complete("some", job_anew, jobs, 1)
+    assert [row["depth"] for row in again] == [0.01, -0.02, -0.03]
     journal.forget("some")
     assert not journal.path("some").exists()
