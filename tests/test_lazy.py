@@ -64,14 +64,6 @@ def test_the_largest_inelasticity_is_that_of_the_table():
         assert model.largest_inelasticity == model.table.settings.largest_inelasticity
 
 
-def test_a_time_step_is_refused_where_a_lookup_is():
-    model = cl.ImpactModel(STEEL_ON_GLASS)
-    for ask in (model.lookup, lambda *impact: time_step(model, *impact)):
-        with pytest.raises(ValueError, match=r"lambda = 12\.\d+ is above 6: the plate is too thin"):
-            ask(5.0, 1e-3, 2e-4)
-    assert time_step(cl.ImpactModel(STEEL_ON_GLASS, outside="solve"), 5.0, 1e-3, 2e-4) > 0.0
-
-
 @pytest.mark.parametrize("wrong", [5, True, object(), cl.table.Settings])
 def test_a_table_of_a_wrong_type_is_refused_by_name(wrong):
     with pytest.raises(TypeError, match="table: expected a Table, Settings or the path of a file"):

@@ -151,16 +151,6 @@ def test_friction_from_a_table_with_angles(table, answer, folder, figures):
     assert curve.y[60] == pytest.approx(hit.tangential_restitution, rel=1e-4)
 
 
-def test_a_rebound_straight_down_stands_at_the_angle_0(table, answer, figures):
-    rows = "3,0,0.9921,", "3,15,0.9922,0.62", "3,40,0.9929,0.70", "3,60,0.9938,0.85"
-    table("speed,angle,COR,tangential restitution", *rows)
-    pair = "--sphere glass --plate glass --radius 1mm --thickness 10mm"
-    assert answer(f"fit a.csv {pair} --unknown friction --plot it.png").err == ""
-    (curve,), (points,) = figures[0].curves, figures[0].points
-    assert (figures[0].x, figures[0].y, points.x[0]) == ("angle", "restitution", 0.0)
-    assert curve.x[0] < 0.1 and np.isfinite(curve.y).all()
-
-
 def test_rows_without_a_rebound_and_unknown_columns_are_left_out_and_named(table, answer):
     """As a spreadsheet has them for beads that were lost; the fit is that of the other rows."""
     head, *rows = "speed,COR,contact time [us],COR_eror", "1,0.4497,,A", "2,0.3716,7.4,B"
