@@ -22,12 +22,13 @@ test: $(VENV)/test.done  ## run the tests, but for those of `test-long`; of a pa
 test-long: $(VENV)/test.done  ## run long validations: whole fits, statistics, elements, the catalogue
 	$(PYTEST) -m long
 
-ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
+ENGINES := liggghts libliggghts-dev libopenmpi-dev g++ yade
 
-test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, CUDA, OpenCL; none may be skipped
+test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, YADE, CUDA, OpenCL; none may be skipped
 	@dpkg-query --show $(ENGINES) >/dev/null || \
-	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
+	  { echo "for LIGGGHTS and YADE: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
 	$(BIN)/python -m pytest tests/export/test_lammps_fix.py tests/export/test_liggghts.py tests/export/test_gpu.py \
+	  tests/engines/test_yade.py \
 	  --junitxml=$(VENV)/engines.xml
 	@! grep -o '<skipped [^>]*' $(VENV)/engines.xml
 

@@ -13,7 +13,9 @@ array([0.666, 0.897, 0.983])
 
 from __future__ import annotations
 
+import ast
 import importlib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactlaw._version import VERSION as __version__
@@ -77,29 +79,9 @@ __all__ = [
     "restitution_sphere_sphere",
 ]
 
-# Where the public names are defined.
-_MODULES = {
-    "_errors": "ArgumentError",
-    "comparison": "Comparison compare",
-    "fitting.fit": "Fit fit",
-    "fitting.identify": "UnidentifiedError",
-    "fitting.measurements": "Measurements",
-    "answers.loads": "LoadSignal load_signal",
-    "model": "ImpactModel",
-    "physical.history": "ForceHistory",
-    "physical.materials": "Material material materials read_materials",
-    "physical.measured": "measured_law",
-    "physical.pair": "Pair",
-    "physical.plates": "Foundation Layers Orthotropic Shell",
-    "physical.rebound": "Rebound",
-    "physical.validity": "Validity edge_distance explain",
-    "record.file": "Bodies Record read_record",
-    "reporting.files": "report",
-    "answers.sensitivity": "Sensitivity",
-    "answers.uncertainty": "Uncertainty",
-    "answers.beads": "restitution_sphere_sphere",
-}
-_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}
+# What type checkers read above says where each public name is defined.
+_IMPORTS = [one for one in ast.walk(ast.parse(Path(__file__).read_bytes())) if isinstance(one, ast.ImportFrom)]
+_MODULE_OF = {alias.name: str(one.module) for one in _IMPORTS if one.col_offset for alias in one.names}
 
 
 if not TYPE_CHECKING:  # type checkers would accept any name
@@ -110,9 +92,9 @@ if not TYPE_CHECKING:  # type checkers would accept any name
         A program that uses a part of the package starts faster, and the command line can decide,
         before the first kernel is defined, whether kernels are compiled.
         """
-        if name in _MODULE_OF:
-            value = getattr(importlib.import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
-            globals()[name] = value
+        home = _MODULE_OF.get(name, __name__)
+        if home != __name__:
+            globals()[name] = value = getattr(importlib.import_module(home), name)
             return value
         try:
             return importlib.import_module(f"{__name__}.{name}")

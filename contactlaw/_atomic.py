@@ -3,7 +3,6 @@
 import contextlib
 import errno
 import os
-import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -49,10 +48,7 @@ def folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     with temporary as made:
         with _naming(to, made):
             yield Path(made)
-            files = {one.name: one.read_bytes() for one in Path(made).iterdir()}
-        contents = {Path(os.path.realpath(to / name)): content for name, content in files.items()}
-        if len(contents) < len(files):
-            raise FileExistsError(errno.EEXIST, "two of its names are links to one file", str(to))
+            contents = {Path(os.path.realpath(to / file.name)): file.read_bytes() for file in Path(made).iterdir()}
         made_here = not to.exists()
         to.mkdir(exist_ok=True)
         try:
@@ -69,23 +65,15 @@ def _check_folder(path: Path) -> None:
 
 
 def _replace(files: dict[Path, bytes]) -> None:
-    """Replace files by their new contents: all of them, or none."""
-    with contextlib.ExitStack() as done, contextlib.ExitStack() as undo:
+    """Replace files by their new contents; none of them if one cannot be written."""
+    with contextlib.ExitStack() as done:
         staged = {}
         for path, content in files.items():
             with _naming(path):
                 staged[path] = _staged(path, content, done)
         for path, new in staged.items():
             with _naming(path):
-                if path.exists():
-                    old = new.with_suffix(".old")
-                    _keep(path, old)
-                    done.callback(old.unlink, missing_ok=True)
-                    undo.callback(os.replace, old, path)
-                else:
-                    undo.callback(path.unlink, missing_ok=True)
                 os.replace(new, path)
-        undo.pop_all()
 
 
 @contextmanager
@@ -115,10 +103,3 @@ def _staged(path: Path, content: bytes, done: contextlib.ExitStack) -> Path:
         os.fsync(file.fileno())  # or a power cut could leave the name without the content
     os.chmod(name, mode)  # mkstemp makes it private; a new result is for everyone
     return Path(name)
-
-
-def _keep(path: Path, backup: Path) -> None:
-    try:
-        os.link(path, backup)
-    except OSError:  # a file system without hard links
-        shutil.copy2(path, backup)

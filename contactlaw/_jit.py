@@ -98,12 +98,12 @@ def enable_caching() -> None:
 
 
 def keep(dispatcher: Any) -> None:
-    """Give a kernel the disk cache, in our folder and in files with checksums."""
+    """Give a kernel the disk cache, in our folder."""
     with numbas_cache_in_ours() as is_there:
         if is_there:
             dispatcher.enable_caching()
             if private:
-                private.seal(dispatcher, warn_once)
+                private.warn_where_not_kept(dispatcher, warn_once)
 
 
 @contextmanager

@@ -46,8 +46,10 @@ def code_folder() -> Path | None:
         if is_new:
             _delete_unused(folder)
             if sys.stderr is not None and sys.stderr.isatty():
-                said = "the first use of this version compiles it, for about half a minute"
-                print(f"contactlaw: {said}; kept in {home}", file=sys.stderr)
+                print(
+                    f"contactlaw: the first use of this version compiles it, for about half a minute; kept in {home}",
+                    file=sys.stderr,
+                )
         return folder
     except (OSError, RuntimeError) as error:
         warn_once(str(error))

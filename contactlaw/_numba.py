@@ -2,20 +2,15 @@
 
 If numba lacks one of the names, or is newer than the versions that the tests have run with, this
 module cannot be imported, and public names serve instead (see `private` in `contactlaw._jit`). A
-first process then takes 34 s of CPU for 23 s, time steps take up to 1.5 times as long, and files of
-machine code have no checksums.
+first process then takes 34 s of CPU for 23 s, time steps take up to 1.5 times as long, and a full disk
+is an error.
 """
 
-import contextlib
-import hashlib
-import io
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import IO, Any
+from collections.abc import Callable
+from typing import Any
 
 import numba
 from llvmlite import binding as llvm
-from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -26,12 +21,11 @@ from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import NopythonTypeInference
 from numba.np.arrayobj import np_cfarray
 
-__all__ = ["CFunc", "Inner", "InnerCompiler", "entry_point", "normalize_signature", "np_cfarray", "seal"]
+__all__ = ["CFunc", "Inner", "InnerCompiler", "entry_point", "normalize_signature", "np_cfarray", "warn_where_not_kept"]
 _TESTED = 0, 68  # last version of numba that all tests have run with: another may change meanings
 if numba.version_info.short > _TESTED:
     raise ImportError(f"numba {numba.__version__} is newer than contactlaw was tested with")
 # Methods that are overridden below; by another name numba would no longer call them.
-IndexDataCacheFile._open_for_write, IndexDataCacheFile._load_index, IndexDataCacheFile._load_data  # noqa: B018
 JITCodeLibrary.finalize, JITCodeLibrary._get_module_for_linking  # noqa: B018
 _VIEWS = "getitem", "static_getitem", "getiter", "iternext"  # of arrays that others keep alive
 
@@ -135,13 +129,9 @@ def entry_point(dispatcher: Any, signature: str) -> Any:
     return dispatcher.overloads[types].entry_point
 
 
-def seal(dispatcher: Any, warn: Callable[[str], None]) -> None:
-    """Let a kernel keep its machine code in files with checksums.
-
-    Where it cannot be kept, there is a warning; numba would raise, and no answer be given.
-    """
+def warn_where_not_kept(dispatcher: Any, warn: Callable[[str], None]) -> None:
+    """Warn where the machine code of a kernel cannot be kept; numba would raise, and no answer be given."""
     cache = dispatcher._cache
-    cache._cache_file.__class__ = _SealedFiles
     save = cache.save_overload
 
     def save_or_warn(signature: Any, data: Any) -> None:
@@ -151,36 +141,3 @@ def seal(dispatcher: Any, warn: Callable[[str], None]) -> None:
             warn(str(error))
 
     cache.save_overload = save_or_warn
-
-
-class _SealedFiles(IndexDataCacheFile):
-    """Numba's index and data files, each with the SHA-256 of its content at its end.
-
-    Numba executes whatever bytes it reads. A damaged file counts as missing here: the kernel is
-    compiled again, and the file written anew. Unpickling ends where the content does, so that
-    numba reads a sealed file as if the checksum were not there.
-    """
-
-    @contextlib.contextmanager
-    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
-        content = io.BytesIO()
-        yield content
-        with super()._open_for_write(filepath) as file:
-            file.write(content.getvalue() + hashlib.sha256(content.getbuffer()).digest())
-
-    def _load_index(self) -> Any:
-        whole = _is_whole(self._index_path)
-        return super()._load_index() if whole else {}  # type: ignore[no-untyped-call]
-
-    def _load_data(self, name: str) -> Any:
-        if not _is_whole(self._data_path(name)):  # type: ignore[no-untyped-call]
-            raise OSError("damaged")  # which numba takes for a missing file
-        return super()._load_data(name)  # type: ignore[no-untyped-call]
-
-
-def _is_whole(path: str) -> bool:
-    try:
-        content = Path(path).read_bytes()
-    except OSError:
-        return False
-    return hashlib.sha256(content[:-32]).digest() == content[-32:]

@@ -15,18 +15,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._arrays import Array
-from contactlaw._jit import enable_caching
 from contactlaw.answers.beads import Other, beads_of
-from contactlaw.answers.compiled import c_function, kernel_of
+from contactlaw.answers.compiled import c_function, kernel_near, kernel_of
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.answers.derivatives import Variants
-from contactlaw.answers.edges import kernel_near
-from contactlaw.answers.find import Solutions, Stack, described, find, stacked
+from contactlaw.answers.find import PlateOf, Solutions, find
 from contactlaw.answers.oblique import Collide, collide, collide_kernel, oblique
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Outside, TableArgument, TableLookup, by_method
+from contactlaw.answers.tabulated import Outside, TableArgument, TableLookup, by_method
 from contactlaw.answers.uncertainty import Uncertainty, uncertainty
 from contactlaw.answers.yields import yield_speeds
 from contactlaw.equation.edge import Edge
@@ -94,14 +92,12 @@ class ImpactModel:
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         for body in pair.given:
             warn_of_softened(body)
-        self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
-        self._tabulated = TableLookup(self._bodies, table, self._border)
+        self._tabulated = TableLookup(self._bodies, table, outside)
         self._variants = Variants(pair, self._bodies.law)
         self._edge_kernel = functools.cache(functools.partial(kernel_near, self._bodies))
         self._c_function = functools.cache(functools.partial(c_function, self._tabulated))
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
-        enable_caching()
         if not isinstance(table, Settings | None):
             self.table  # noqa: B018 - a wrong table is refused here, not at the first impact
 
@@ -121,7 +117,7 @@ class ImpactModel:
     @property
     def outside(self) -> Outside:
         """What to do outside the table."""
-        return self._border.outside
+        return self._tabulated.outside
 
     @property
     def law(self) -> str:
@@ -151,11 +147,11 @@ class ImpactModel:
     @property
     def clamped(self) -> int:
         """Impacts answered with the value at the table's border so far; may be set."""
-        return self._border.clamped
+        return self._tabulated.clamped.item()
 
     @clamped.setter
     def clamped(self, count: int) -> None:
-        self._border.clamped = count
+        self._tabulated.clamped[:] = count
 
     def restitution(
         self,
@@ -307,7 +303,7 @@ class ImpactModel:
         True
         """
         impacts = self._bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass, memory=True)
-        return Solver.within(self._bodies, rtol).rebounds(impacts)
+        return Solver(self._bodies, rtol).rebounds(impacts)
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None
@@ -331,7 +327,8 @@ class ImpactModel:
         >>> float(model.lookup_sphere_sphere(10.0, 0.9e-3, 0.9e-3).wave_fraction)
         0.0
         """
-        return self._beads(other).rebounds(speed, radius, other_radius)
+        beads = self._beads(other)
+        return beads.rebounds(beads.between(speed, radius, other_radius))
 
     def force_history(
         self,
@@ -433,9 +430,8 @@ class ImpactModel:
         >>> hit.sliding_speed.round(2), hit.impulse_ratio.round(3)
         (array([-0.26,  0.83]), array([0.061, 0.2  ]))
         """
-        edges = edge, edge_distance, hole_radius
-        by = by_method(self._tabulated, method)
-        return oblique(by, speed, sliding_speed, radius, thickness, friction, *edges, mass)
+        given = speed, radius, thickness, edge, edge_distance, hole_radius, mass
+        return oblique(by_method(self._tabulated, method), given, sliding_speed, friction)
 
     def collide(
         self,
@@ -558,7 +554,7 @@ class ImpactModel:
         (0.239, 0.176)
         """
         impacts = self._bodies.given(speed, radius, thickness, mass=mass)
-        inside = TableLookup(self._bodies, self._tabulated.given, Border("raise")).rebounds(impacts)
+        inside = TableLookup(self._bodies, self._tabulated.given, "raise").rebounds(impacts)
         return sensitivity(self._variants, impacts, np.ravel(inside.overload) > 1.0)
 
     def uncertainty(
@@ -621,14 +617,7 @@ class ImpactModel:
         return uncertainty(self._variants, impacts, errors)
 
     def thickness(
-        self,
-        restitution: ArrayLike,
-        speed: ArrayLike,
-        radius: ArrayLike,
-        *,
-        layers: Stack = (),
-        speed_error: float = 0.0,
-        radius_error: float = 0.0,
+        self, restitution: ArrayLike, speed: ArrayLike, radius: ArrayLike, plate: PlateOf | None = None
     ) -> Solutions | NDArray[np.object_]:
         """Every thickness of the plate that gives a COR; the COR may pass through a maximum.
 
@@ -638,11 +627,9 @@ class ImpactModel:
             Coefficients of restitution [-], between 0 and 1.
         speed, radius : array_like
             As in `restitution`; all three are broadcast.
-        layers : sequence of (Material or str, float or None), optional
-            Of a plate that is lined or clad, as in `Layers`, with None for the thickness that is
-            sought: that of a liner, or of what lies under it.
-        speed_error, radius_error : float, optional
-            Relative standard errors, as in `uncertainty`.
+        plate : callable, optional
+            Of a plate that is no bare sheet: a function of the thickness that is sought [m], such as that
+            of a liner or of what lies under it, whose result goes where a thickness goes, as `Layers`.
 
         Returns
         -------
@@ -659,26 +646,17 @@ class ImpactModel:
         >>> import contactlaw as cl
         >>> model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
         >>> found = model.thickness(0.5, speed=2.0, radius=1.5e-3)
-        >>> (1e3 * found.value).round(2), (1e3 * found.low).round(2), (1e3 * found.high).round(2)
-        (array([2.84]), array([2.78]), array([2.9]))
+        >>> (1e3 * found.value).round(2)
+        array([2.84])
         >>> model.thickness(0.8, speed=2.0, radius=1.5e-3).remark
         'no thickness: a half-space gives 0.6106, the largest COR; the range is 1.592e-06 to 0.6106'
-        >>> clad = [("aluminium-6061-t6", None), ("steel-s235", 1e-3)]
-        >>> (1e3 * model.thickness(0.5, speed=2.0, radius=1.5e-3, layers=clad).value).round(2)
+        >>> clad = lambda h: cl.Layers([("aluminium-6061-t6", h), ("steel-s235", 1e-3)])
+        >>> (1e3 * model.thickness(0.5, speed=2.0, radius=1.5e-3, plate=clad).value).round(2)
         array([1.15])
         """
-        plate, errors = stacked(layers, self.pair.given[1]), {"speed": speed_error, "radius": radius_error}
-        return find(self._tabulated, restitution, {"speed": speed, "radius": radius}, plate, self._variants, errors)
+        return find(self._tabulated, restitution, {"speed": speed, "radius": radius}, plate)
 
-    def speed(
-        self,
-        restitution: ArrayLike,
-        radius: ArrayLike,
-        thickness: ArrayLike,
-        *,
-        radius_error: float = 0.0,
-        thickness_error: float = 0.0,
-    ) -> Solutions | NDArray[np.object_]:
+    def speed(self, restitution: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Solutions | NDArray[np.object_]:
         """Every impact speed, from 0.1 mm/s, that gives a COR; all else is as in `thickness`.
 
         Examples
@@ -688,9 +666,7 @@ class ImpactModel:
         >>> model.speed(0.5, radius=1.5e-3, thickness=3e-3).value.round(3)
         array([2.2])
         """
-        plate, errors = described(thickness, self.pair.given[1]), {"radius": radius_error, "thickness": thickness_error}
-        sizes = {"radius": radius, "thickness": thickness}
-        return find(self._tabulated, restitution, sizes, plate, self._variants, errors)
+        return find(self._tabulated, restitution, {"radius": radius, "thickness": thickness})
 
     def constant(
         self,
@@ -822,7 +798,8 @@ class ImpactModel:
         >>> round(model.sphere_sphere_curve(1e-3, 1e-3)(20.0), 4)
         0.9616
         """
-        return self._beads(other).curve(radius, other_radius)
+        beads, sizes = self._beads(other), scalars(radius=radius, other_radius=other_radius)
+        return beads.curve(beads.between(1.0, *sizes))
 
     @functools.cached_property
     def kernel(self) -> Callable[..., float]:

@@ -12,8 +12,9 @@ import math
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import enable_caching, kernel, tuple_of
 from contactlaw.answers.solver import Solver
@@ -26,19 +27,9 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.vectors import dot
-from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import EdgeEcho, edge_echo
 from contactlaw.stepping.friction import DEEPEST, FRICTION, check_friction, clear_friction, tangential_force
-from contactlaw.stepping.softened import (
-    DAMPED,
-    DEEPEST_OVERLAP,
-    SoftState,
-    advance_softened,
-    check_softening,
-    keep_drag,
-    must_ask,
-    tangential_push,
-)
+from contactlaw.stepping.softened import DEEPEST_OVERLAP, SoftState, advance_softened, check_softening
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
@@ -69,8 +60,6 @@ __all__ = [
     "unit_spring",
 ]
 
-Array = NDArray[np.float64]
-
 _UP = 0.0, 0.0, 1.0
 # Largest error of COR times (steps per contact)^2.5, at any phase of the first touch: 0.86 measured
 # with velocity Verlet and the law myc, for lambda to 2 and speeds to 7 V_Y0, at 20, 50, 100 steps.
@@ -90,15 +79,12 @@ class _Batch(NamedTuple):
     tangential: float  # stiffness along the surface over that across it
     plate: PlateConstants
     near: EdgeEcho | None
-    softening: float
     springs: Any  # a row with the fields of Spring for each contact
-    states: Any  # a row with the fields of State, or of SoftState
+    states: Any  # a row with the fields of State
     values: Array  # the numbers of these rows
     friction: Any  # rows of FRICTION
     force: Array  # [N]
     largest: Array  # largest compression before the last step [m]
-    approach: Array  # normal speed at which a softened contact began [m/s]; 0 until its second step
-    restitution: Array  # of the true impact with this speed
 
 
 @kernel(inline=True)
@@ -151,55 +137,6 @@ def _slide_all(
         batch.largest[n] = state.largest_compression
 
 
-@kernel(cache=True)
-def _soften_all(batch: _Batch, overlap: Array, step: float) -> None:
-    """`advance_softened` for arrays, as `_advance_all`.
-
-    The COR of an impact is known from its second step on; a bead that was struck gets a new one.
-    """
-    for n in range(overlap.size):
-        spring, last = _spring_at(batch, n), tuple_of(SoftState, batch.states[n])
-        u = (overlap[n] - last.overlap) / step + last.force * step / spring.mass  # before the first force
-        if last.force == 0.0:
-            batch.approach[n] = 0.0
-        elif u > 0.0 and must_ask(batch.approach[n] == 0.0, overlap[n] > last.largest, u, batch.approach[n]):
-            batch.approach[n] = u
-            near, rows = _near_at(batch.near, n), batch.friction[0:0]
-            e = bounce(batch.law, spring, (0.0, 0.0, -u), _UP, near, 0.0, 1.0, rows).restitution
-            batch.restitution[n] = e if last.lost == 0.0 else min(e, batch.restitution[n])
-        stiffness, e = spring.stiffness / batch.softening, batch.restitution[n]
-        state = advance_softened(stiffness, spring.mass, e, last, overlap[n], step)
-        for k in range(len(state)):
-            batch.values[n, k] = state[k]
-        batch.force[n] = state.force + state.kick
-
-
-@kernel(cache=True)
-def _slide_softened_all(
-    batch: _Batch, friction: float, overlap: Array, normal: Array, velocity: Array, step: float, force: Array
-) -> None:
-    """Friction of arrays of softened contacts."""
-    for n in range(overlap.size):
-        at, slip, _ = _sliding_at(normal, velocity, n)
-        state, spring, out = tuple_of(SoftState, batch.states[n]), _spring_at(batch, n), (0.0, 0.0, 0.0)
-        row, f, kappa, speed = batch.friction[n], batch.force[n], batch.tangential, batch.approach[n]
-        if f == 0.0:
-            clear_friction(row)
-        else:
-            if row.normal != speed > 0.0:  # an impact whose speed has just become known
-                v = slip[0] - speed * at[0], slip[1] - speed * at[1], slip[2] - speed * at[2]
-                rows, near = batch.friction[n : n + 1], _near_at(batch.near, n)
-                keep_drag(row, bounce(batch.law, spring, v, at, near, friction, kappa, rows).drag, slip)
-                row.normal = speed
-            lasting, e, x, largest = state.damped * DAMPED, batch.restitution[n], overlap[n], state.largest
-            out = tangential_push(row, lasting, e, friction, kappa, x, largest, f, spring.mass, at, slip, step)
-        force[n, 0], force[n, 1], force[n, 2] = out
-
-
-def _rows(size: int, kind: Any) -> Any:
-    return np.zeros(size, [(name, "f8") for name in kind._fields]).view(np.recarray)
-
-
 def law_of(model: ImpactModel) -> Array:
     """Force law of a model at any strength, for `advance`.
 
@@ -224,9 +161,6 @@ class Contacts:
         Of the beads and of their plates [m]; broadcast to one entry per contact.
     edge, edge_distance, hole_radius, mass
         As in `ImpactModel.restitution`.
-    softening : float, optional
-        Number by which the modulus of the contacts is divided, for longer steps; a bead leaves with
-        the speed, sliding speed and spin of the true impact. An overlap is then below 0 for a gap.
 
     Raises
     ------
@@ -265,9 +199,7 @@ class Contacts:
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
         mass: ArrayLike | None = None,
-        softening: float = 1.0,
     ) -> None:
-        check_softening(softening, 1.0)
         bodies = SphereOnPlate(model.pair, model.force_law)
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h = given.radius, given.thickness
@@ -285,21 +217,18 @@ class Contacts:
             "relaxation": relaxation,
             "ratio": r / h,
         }
-        states = _rows(r.size, SoftState if softening > 1.0 else State)
+        states = np.zeros(r.size, [(name, "f8") for name in State._fields]).view(np.recarray)
         self._batch = _Batch(
             law=law_of(model),
             tangential=model.pair.tangential_ratio,
             plate=unit.plate,
             near=edge_echo(model.pair.plate, h, edge, *near, relaxation / (RELAXATION * CONTACT_TIME)),
-            softening=float(softening),
             springs=np.rec.fromarrays([*springs.values()], dtype=[(name, "f8") for name in springs]),
             states=states,
             values=states.view(np.float64).reshape(r.size, len(states.dtype)),
             friction=np.zeros(r.size, FRICTION),
             force=np.zeros(r.size),
             largest=np.zeros(r.size),
-            approach=np.zeros(r.size),
-            restitution=np.ones(r.size),
         )
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._pair, self._overlap, self._step, self._sliding = model.pair, np.zeros(r.size), 0.0, np.zeros((r.size, 3))
@@ -312,22 +241,17 @@ class Contacts:
     @property
     def plate_displacement(self) -> Array:
         """Displacement u2 of the plate under the contact [m]."""
-        return self._state("plate_displacement")
+        return np.asarray(self._batch.states.plate_displacement)
 
     @property
     def largest_compression(self) -> Array:
         """Largest compression so far [m]."""
-        return self._state("largest_compression" if self._batch.softening == 1.0 else "largest")
+        return np.asarray(self._batch.states.largest_compression)
 
     @property
     def force(self) -> Array:
         """Contact force at the end of the last step [N]."""
         return self._batch.force
-
-    def _state(self, name: str) -> Array:
-        """Numbers of all contacts; those that softened ones do not have are 0."""
-        states = self._batch.states
-        return np.asarray(states[name]) if name in states.dtype.names else np.zeros(states.size)
 
     def advance(self, overlap: Array, step: float) -> Array:
         """Go to the end of a step.
@@ -338,8 +262,7 @@ class Contacts:
             Depth of each sphere in the undeformed plate at the end of the step [m]; 0 or less:
             apart. At most its diameter plus the `plate_displacement`.
         step : float
-            Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s. While softened
-            contacts last it stays the same.
+            Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s.
 
         Returns
         -------
@@ -364,15 +287,11 @@ class Contacts:
             longest = f"{self._longest:.3g} s, far longer than any contact"
             remedy = "contactlaw.softsphere.time_step advises one"
             raise ArgumentError("step", step, f"must be positive and at most {longest}; {remedy}")
-        softened = self._batch.softening > 1.0
-        if softened and step != self._step and self.force.any():
-            reason = f"must stay {self._step:g} s while softened contacts last"
-            raise ArgumentError("step", step, reason)
         # a sphere is at most as deep as its diameter below where the plate is now
         possible = (overlap > -math.inf) & (overlap <= self._diameters + self.plate_displacement)
         if not possible.all():
             self._refuse(overlap, int(np.argmin(possible)))
-        (_soften_all if softened else _advance_all)(self._batch, overlap, step)
+        _advance_all(self._batch, overlap, step)
         self._overlap[:], self._step = overlap, step
         return self.force
 
@@ -405,8 +324,7 @@ class Contacts:
         normals, velocities = (
             np.ascontiguousarray(np.broadcast_to(one, shape), np.float64) for one in (normal, velocity)
         )
-        slide = _slide_softened_all if self._batch.softening > 1.0 else _slide_all
-        slide(self._batch, float(friction), self._overlap, normals, velocities, self._step, self._sliding)
+        _slide_all(self._batch, float(friction), self._overlap, normals, velocities, self._step, self._sliding)
         for n in np.flatnonzero(~np.isfinite(self._sliding.sum(axis=1))):
             reason = f"no finite friction at {velocities[n]} m/s, {self._pair}"
             raise ArgumentError("velocity", None, reason)

@@ -7,7 +7,6 @@ figure is made.
 from __future__ import annotations
 
 import io
-import re
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -82,7 +81,7 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    head, lines = balanced(title, 7.6 * width), balanced(subtitle, 10.6 * width)
+    head, lines = textwrap.wrap(title, int(7.6 * width)), textwrap.wrap(subtitle, int(10.6 * width))
     # The axes leave room for the lines above them.
     below = 0.22 + 0.28 * len(head)
     room = below + 0.02 + 0.2 * len(lines)
@@ -95,26 +94,6 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     made.text(left, 1.0 - 0.15 / height, "\n".join(head), fontsize=16, fontweight="bold", color=INK, **plain)
     made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, **plain)
     return made
-
-
-def balanced(text: str, letters: float) -> list[str]:
-    """Break a text into as few lines as fit, about equally long, so that no last word is alone.
-
-    A number stays with its unit.
-
-    Examples
-    --------
-    >>> balanced("the quick brown fox jumps over it", 30)
-    ['the quick brown', 'fox jumps over it']
-    >>> balanced("steel of 1.5 mm, beads of 2 mm", 23)
-    ['steel of 1.5 mm,', 'beads of 2 mm']
-    """
-    text = re.sub(r"(?<=\d) (?=\S{1,3}(\W|$))", "\N{NO-BREAK SPACE}", text)
-    fewest = textwrap.wrap(text, int(letters))
-    widths = range(len(text) // max(1, len(fewest)), int(letters))
-    tried = (textwrap.wrap(text, width) for width in widths)
-    lines = next((even for even in tried if len(even) == len(fewest)), fewest)
-    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 
 def decades(axis: Axis, steps: Sequence[float]) -> None:

@@ -46,7 +46,7 @@ FILES = """
 equation: force outcome elastic tangential corrections edge recall numbers legs losses motion notes integrator
   near_edge zener
 table: lookup grid sweep shapes certificate table slides file cache
-answers: few backend solver tabulated yields edges beads compiled constant loads oblique derivatives
+answers: few backend solver tabulated yields beads compiled constant loads oblique derivatives
   sensitivity speed_table law_errors uncertainty find
 walls: memory profile edges motion plate round mesh facet grid frame surface rest
 stepping: edge spring energy friction rigid bounce softened plate_rows trouble contact bead step

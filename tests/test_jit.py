@@ -9,7 +9,6 @@ import runpy
 import subprocess
 import sys
 import time
-from pathlib import Path
 from warnings import catch_warnings, simplefilter
 
 import needs
@@ -234,25 +233,6 @@ def test_only_machine_code_that_nobody_uses_is_deleted(tmp_path, monkeypatch):
     assert used_by("9") and used.is_dir()
     gone = {unused} if os.geteuid() == 0 else {unused, theirs}
     assert {path for path in before if not path.exists() and path.parent == home} == gone
-
-
-DAMAGES = {
-    "emptied": lambda content: b"",
-    "its last bit": lambda content: content[:-1] + bytes([content[-1] ^ 1]),
-    "lengthened": lambda content: content + b"\0",
-}
-
-
-@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
-@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
-def test_a_damaged_file_of_machine_code_is_made_anew(damage, suffix, twice, tmp_path, monkeypatch):
-    monkeypatch.setattr(_kept.config, "CACHE_DIR", str(tmp_path / "kept"))
-    folder = Path(twice().cache_path)
-    (path,) = folder.glob(f"little.twice*.{suffix}")
-    path.write_bytes(damage(path.read_bytes()))
-    hits = [sum(twice().cache_hits.values()) for _ in range(2)]
-    assert hits == [0, 1]  # compiled, and then read
-    assert len(list(folder.iterdir())) == 2
 
 
 TWINS = """

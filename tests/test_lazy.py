@@ -70,18 +70,6 @@ def test_a_table_of_a_wrong_type_is_refused_by_name(wrong):
         cl.ImpactModel(STEEL_ON_GLASS, table=wrong)
 
 
-def test_a_warning_about_the_table_shows_the_users_line(pair):
-    coarse = cl.table.Settings(rows=8, columns=8)
-    model = cl.ImpactModel(pair, law="myc", table=coarse)  # the table is made on first use
-    with pytest.warns(UserWarning, match="less accurate") as caught:
-        model.restitution(5.0, 1e-3, 1e-3)
-        exec(
-            "cl.ImpactModel(pair, law='myc', table=table).lookup(5.0, 1e-3, 1e-3)",  # no __name__
-            {"cl": cl, "pair": pair, "table": coarse},
-        )
-    assert [one.filename for one in caught] == [__file__, "<string>"]
-
-
 def test_a_law_that_is_not_made_for_auxetic_bodies_says_so():
     foam = cl.Material("foam", 1e9, -0.3, 1000, yield_strength=1e7, kind="metal")
     for pair in (cl.Pair(foam, "glass"), cl.Pair("glass", foam)):

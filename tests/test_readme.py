@@ -1,6 +1,5 @@
 """What README and pages show is what the code does."""
 
-import os
 import re
 import shlex
 import shutil
@@ -168,13 +167,9 @@ def test_examples_run(script):
         needs.lammps()
     if script.stem == "own_loop":
         return  # its loop takes half a minute to compile: tests/stepping runs it, beside LAMMPS
-    command, environment = [sys.executable, script], os.environ
     if "yade" in script.stem:
-        if not shutil.which("yade") or "CONTACTLAW_PATH" not in os.environ:
-            pytest.skip("no YADE on PATH, or no CONTACTLAW_PATH to what it needs for contactlaw")
-        command = ["yade", "-x", "-n", script]
-        environment = os.environ | {"PYTHONPATH": os.environ["CONTACTLAW_PATH"]}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+        return  # YADE has a Python of its own: tests/engines/test_yade.py runs it
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) >= 2
 

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from verlet import drop, fallen
 
-import contactlaw as cl
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, advance, resized, time_step, unit_spring
@@ -106,33 +105,6 @@ def test_a_bead_that_slides_is_that_of_the_integration(model):
     assert np.abs(point - hit.sliding_speed).max() < 0.012 * mu * v
 
 
-def test_softened_contacts_have_the_rebound_of_the_integration():
-    """Their steps are fifteen times as long; each bead touches at another phase of a step."""
-    model = cl.ImpactModel(cl.Pair("steel-s235", "glass"), outside="solve")
-    rng, n, mu = np.random.default_rng(3), 80, 0.3
-    v, r = 10 ** rng.uniform(-1.0, 0.8, n), rng.uniform(0.5e-3, 2e-3, n)
-    h, slide = r * rng.uniform(0.6, 8.0, n), mu * v * rng.uniform(0.0, 8.0, n)
-    contacts = Contacts(model, r, h, softening=1000.0)
-    dt = min(time_step(model, *one, softening=1000.0) for one in zip(v, r, h, strict=True))
-    x, u, force = -rng.random(n) * v * dt, v.copy(), np.zeros(n)
-    surface, normal, mass = np.column_stack([slide, 0.0 * v, 0.0 * v]), (0.0, 0.0, 1.0), contacts.mass
-    contacts.advance(x, dt)
-    for _ in range(1500):
-        u -= 0.5 * dt * force / mass
-        x += dt * u
-        surface[:, 2] = -u
-        force = contacts.advance(x, dt).copy()
-        surface += 3.5 * dt / mass[:, None] * contacts.slide(normal, surface, mu)
-        u -= 0.5 * dt * force / mass
-    hit = model.oblique(v, slide, r, h, mu, method="solve")
-    assert not contacts.force.any() and hit.restitution.min() < 0.3
-    assert -u / v == pytest.approx(hit.restitution, abs=1.5e-4)
-    assert (abs(surface[:, 0] - hit.sliding_speed) < 0.015 * mu * v).all()
-    contacts.advance(np.full(n, 1e-6), dt)
-    with pytest.raises(ValueError, match="step: got .*; must stay .* s while softened contacts last"):
-        contacts.advance(np.full(n, 1e-6), 0.5 * dt)
-
-
 @pytest.mark.parametrize("distance", [0.0, 1e-4, 1e-3])
 def test_contacts_right_at_the_rim_of_a_hole_are_as_in_the_equation(model, distance):
     """Nearer than contacts for which the response was fitted, they are at the distance of these."""
@@ -140,19 +112,6 @@ def test_contacts_right_at_the_rim_of_a_hole_are_as_in_the_equation(model, dista
     dt = float(model.solve(1.0, 2e-3, 1e-3).contact_time) / 100
     rebound = fallen(Contacts(model, 2e-3, 1e-3, **near), 1.0, dt)
     assert rebound == pytest.approx(model.solve(1.0, 2e-3, 1e-3, **near).restitution, abs=2e-4)
-
-
-@pytest.mark.parametrize("gap_known", [True, False])
-def test_a_softened_contact_may_begin_anywhere_in_its_first_step(gap_known):
-    model, v, r, h = cl.ImpactModel(cl.Pair("nylon-66", "zirconia")), 0.839, 0.594751e-3, 2.492565e-3
-    contacts, dt = Contacts(model, np.full(40, r), h, softening=100.0), time_step(model, v, r, h, softening=100.0)
-    x, u = -np.linspace(0.0, 0.99, 40) * v * dt, np.full(40, v)
-    if gap_known:
-        contacts.advance(x, dt)
-    for _ in range(80):
-        x += dt * u
-        u -= dt * contacts.advance(x, dt) / contacts.mass
-    assert -u / v == pytest.approx(model.solve(v, r, h).restitution, abs=1e-7)
 
 
 @pytest.mark.parametrize("error", [4e-4, 1e-4])
@@ -170,7 +129,6 @@ def test_the_advised_step_keeps_its_promise(model, law, error):
     [
         (lambda m, pair: time_step(m, 5.0, R, 1e-3, error=1e-7), "error"),
         (lambda m, pair: Contacts(m, R, [1e-3, -1.0]), "thickness"),
-        (lambda m, pair: Contacts(m, R, 1e-3, softening=0.9), "softening: got 0.9"),
         (lambda m, pair: pair.advance(np.zeros(3), 1e-7), "overlap: expected a value"),
         (lambda m, pair: pair.advance([0.0, 0.0], 1e-7), "overlap"),
         (lambda m, pair: pair.slide((0, 0, 1), (1, 0, 0), -0.1), "friction"),

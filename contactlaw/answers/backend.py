@@ -15,14 +15,14 @@ from contactlaw.physical.impacts import Impacts
 class Part(NamedTuple):
     """Impacts whose outcomes were found in one way, and these outcomes on Hertz's scale."""
 
-    places: Any  # of these among all impacts of the question
     impacts: Impacts
     time: Array  # T_H [s]
     numbers: tuple[Array, Array]  # inelasticity and yield ratio; the outcome's are a border's where it is clamped
     outcome: Outcome
     flags: Integers
-    edges: Edges | None
-    interpolated: bool
+    edges: Edges | None = None
+    interpolated: bool = False
+    places: Any = slice(None)  # of these among all impacts of the question
 
 
 Ask = Callable[[Impacts], list[Part]]
@@ -46,10 +46,9 @@ def joined(columns: list[tuple[Any, dict[str, Any]]], impacts: Impacts) -> dict[
     whole: dict[str, Any] = {}
     for places, named in columns:
         for name, values in named.items():
-            all_of_it = whole.setdefault(name, np.empty((impacts.speed.size, *values.shape[1:]), values.dtype))
-            all_of_it[places] = values
-    shape = impacts.shape or ()
-    return {name: values.reshape(*shape, *values.shape[1:]) for name, values in whole.items()}
+            shape = impacts.speed.size, *values.shape[1:]
+            whole.setdefault(name, np.empty(shape, values.dtype))[places] = values
+    return {name: values.reshape(*(impacts.shape or ()), *values.shape[1:]) for name, values in whole.items()}
 
 
 class OutsideTableError(ValueError):
@@ -61,18 +60,15 @@ class OutsideTableError(ValueError):
         Index of the impact in the arguments.
     reason : str
         Which limit of the table it exceeds, and by how much.
-    mass : float or None
-        Mass that answers at the contact [kg], if it was given.
     """
 
-    def __init__(self, impact: int, reason: str, mass: float | None = None) -> None:
-        super().__init__(impact, reason, mass)  # the arguments as given: pickle needs them
-        self.impact, self.reason, self.mass = impact, reason, mass
+    def __init__(self, impact: int, reason: str) -> None:
+        super().__init__(impact, reason)  # the arguments as given: pickle needs them
+        self.impact, self.reason = impact, reason
 
     def __str__(self) -> str:
-        heavy = "" if self.mass is None else f", mass={self.mass:g}"
         return (
-            f"speed, radius, thickness{heavy}: impact {self.impact} is outside the table, "
+            f"speed, radius, thickness: impact {self.impact} is outside the table, "
             f'{self.reason}. ImpactModel(..., outside="solve") integrates the equation there, '
             '"clamp" takes the value at the table\'s border.'
         )
@@ -95,28 +91,6 @@ class UnsolvedError(RuntimeError):
 
     def __str__(self) -> str:
         return f"the equation did not solve at {self.where} (element {self.impact}): {self.reason}"
-
-
-def too_thin(lam: float, limit: float) -> str:
-    """Say why an impact is outside a table whose largest lambda is exceeded."""
-    return f"its inelasticity lambda = {_above(lam, limit)}: the plate is too thin for the bead"
-
-
-def too_fast(chi: float, limit: float) -> str:
-    """Say why an impact is outside a table whose largest overload is exceeded."""
-    return f"its overload chi = {_above(chi, limit)}: the impact is too fast"
-
-
-def _above(value: float, limit: float) -> str:
-    """Write a value and its limit with four digits, or as many as tell them apart.
-
-    Examples
-    --------
-    >>> _above(7.0, 6.0), _above(0.3300004, 0.33)
-    ('7 is above 6', '0.3300004 is above 0.33')
-    """
-    pairs = ((f"{value:.{digits}g}", f"{limit:.{digits}g}") for digits in range(4, 18))
-    return " is above ".join(next(pair for pair in pairs if pair[0] != pair[1]))
 
 
 @contextmanager

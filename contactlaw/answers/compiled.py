@@ -1,15 +1,23 @@
-"""The COR of a model as compiled functions: for loops of numba, for C."""
+"""The COR of a model as compiled functions: for loops of numba, near an edge and far from any, and for C."""
 
 import math
 from collections.abc import Callable
 from typing import Any
 
-import numba
+import numpy as np
 
 from contactlaw import _jit
+from contactlaw._arrays import Array
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.tabulated import TableLookup
-from contactlaw.equation.numbers import share_of_solid
+from contactlaw.equation import near_edge
+from contactlaw.equation.force import at_strength
+from contactlaw.equation.notes import Notes
+from contactlaw.equation.numbers import Impact, PairConstants, numbers, share_of_solid
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import check_kind
+from contactlaw.physical.responses import response_of
+from contactlaw.physical.scaling import coupling_of, wave_path, wave_rate
 from contactlaw.table import lookup
 
 
@@ -28,6 +36,38 @@ def kernel_of(tabulated: TableLookup) -> Callable[..., float]:
 
 def c_function(tabulated: TableLookup) -> Any:
     """COR as a C function of speed, radius and thickness, which belongs to one table."""
-    signature = numba.float64(numba.float64, numba.float64, numba.float64)
     on_plate, packed = lookup.solid_on_plate, in_memory(tabulated.packed)
-    return _jit.c_function(signature, lambda v, r, h: on_plate(packed(), v, r, h))
+    return _jit.c_function("f8(f8, f8, f8)", lambda v, r, h: on_plate(packed(), v, r, h))
+
+
+def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
+    """COR near an edge as a jitted function of speed, radius, thickness, distance and mass."""
+    check_kind(kind)
+    pair, path, law = bodies.constants, wave_path(bodies.pair.plate), in_memory(bodies.data)
+    response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
+
+    @kernel(entry=True)
+    def cor(speed: float, radius: float, thickness: float, edge_distance: float, mass: float = math.inf) -> float:
+        impact = Impact(speed, radius, thickness, share_of_solid(pair.mass, radius, mass))
+        return _cor_near(law(), response(), pair, path, impact, edge_distance)
+
+    return cor
+
+
+# Its machine code is kept on disk, which is not possible for callers that know a law in memory.
+@kernel(cache=True)
+def _cor_near(
+    law: Array, response: Array, pair: PairConstants, path: float, impact: Impact, edge_distance: float
+) -> float:
+    h = impact.thickness
+    if not (lookup.is_valid(impact.speed, impact.radius, h) and edge_distance >= 0.0 and impact.mass > 0.0):
+        return math.nan
+    known, rate, coupling = numbers(pair, law, impact), 0.0, 1.0
+    if h < math.inf:
+        rate = wave_rate(path, h, edge_distance) * known.time
+        coupling = coupling_of(pair, known, impact)
+    y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
+    own, none = at_strength(law, known.strength), np.empty((0, 0))
+    notes = Notes(none, none, none, none, none)
+    contact = near_edge.follow(own, response, known.inelasticity, y, coupling, rate, near_edge.QUICK, notes, 0)
+    return contact.restitution if contact.ended else math.nan

@@ -7,6 +7,7 @@ import numpy as np
 
 from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
+from contactlaw.physical.arguments import check
 from contactlaw.physical.validity import Validity, count_flags
 
 Keep = Literal["energy", "momentum"]
@@ -71,9 +72,7 @@ def constant(speed: Array, radius: Array, weights: Array, e: Array, flags: Integ
         raise ArgumentError("keep", keep, "must be 'energy' or 'momentum'")
     if speed.size == 0:
         raise ArgumentError("speed", None, "got no impact, at least one is needed")
-    if not (np.isfinite(weights) & (weights >= 0.0)).all():
-        wrong = float(weights[~(np.isfinite(weights) & (weights >= 0.0))][0])
-        raise ArgumentError("weights", wrong, "must be finite and not negative")
+    check(weights=weights)
     if not weights.any():
         raise ArgumentError("weights", None, "all of them are 0, at least one has to be positive")
     share = weights / weights.max()
@@ -104,6 +103,6 @@ def _energy_error(one: float, e: Array, energy: Array) -> float:
 
 def _rebound_error(one: float, e: Array, share: Array) -> float:
     height, off = e**2, np.abs(one**2 - e**2)
-    with np.errstate(over="ignore"):
-        errors = np.divide(off, height, out=np.where(off > 0.0, np.inf, 0.0), where=height > 0.0)
+    with np.errstate(all="ignore"):
+        errors = np.nan_to_num(off / height, posinf=np.inf)  # no error where neither rebounds
     return float(np.quantile(errors, _BEADS, weights=share, method="inverted_cdf"))

@@ -7,7 +7,7 @@ of a logarithm divided by the step are elasticities; over a standard error they 
 import dataclasses
 import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,14 +34,8 @@ FINE = Fineness(1e-8, 3.0, 0.02, REACH, 1e-4)
 # Step of central differences of a logarithm. They err by 2e-9 times the third derivative, which is
 # up to 3e4 next to a corner, and by 2e-9 from the solver, whose errors are alike at the two ends.
 STEP = 1e-4
-_RTOL = 1e-10  # error per step of the integration that such differences need
 _MARGIN = 1.001  # of the rate beyond that of the impacts
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
-
-
-def central(answer: Callable[[float], Array], step: float = STEP) -> Array:
-    """Differentiate an answer with respect to the logarithm of a factor, at the factor 1."""
-    return np.asarray((answer(math.exp(step)) - answer(math.exp(-step))) / (2.0 * step))
 
 
 class Variants:
@@ -68,7 +62,7 @@ class Variants:
         values = {
             (role, name): min(x * self._value(role, name), _LARGEST.get(name, math.inf)) for (role, name), x in factors
         }
-        return solver(with_numbers(self.pair.given, values), self.law, 10.0 ** np.array(decades), _RTOL)
+        return solver(with_numbers(self.pair.given, values), self.law, 10.0 ** np.array(decades))
 
     def _value(self, role: str, name: str) -> float:
         body = self.pair.given[role == "plate"]
@@ -118,14 +112,13 @@ class _Varied(SphereOnPlate):
         return alone(self.limits)
 
 
-def solver(pair: Pair, law: Law, rates: Array, rtol: float, fineness: Fineness = FINE) -> Solver:
+def solver(pair: Pair, law: Law, rates: Array, fineness: Fineness = FINE) -> Solver:
     """Solver of a pair, with its own numbers in the law, for impacts at `contactlaw.physical.rate.rates`.
 
     Answers are right but for the flags of pairs with a rate of strain.
     """
     if not flow_with_rate(pair, law):
-        return Solver(_Varied(pair, law_for_pair(pair, law), fineness), rtol)
-    scale = per_rate(pair)
-    low, high = scale * rates.min(initial=REACH).item() / _MARGIN, scale * rates.max(initial=0.0).item() * _MARGIN
-    fineness = fineness._replace(slowest=low, fastest=high)
-    return Solver(_Varied(pair, without_curves(pair, law), fineness), rtol)
+        return Solver(_Varied(pair, law_for_pair(pair, law), fineness))
+    low, high = rates.min(initial=REACH) / _MARGIN, rates.max(initial=0.0) * _MARGIN
+    fineness = fineness._replace(slowest=per_rate(pair) * low, fastest=per_rate(pair) * high)
+    return Solver(_Varied(pair, without_curves(pair, law), fineness))

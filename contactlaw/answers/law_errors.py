@@ -49,13 +49,15 @@ def law_errors(law: Law, pair: Pair, hit: Rebound, slenderness: Array) -> Array 
         return None
     inside, beyond = (np.array(rms)[:, None] for rms in known)
     rms = np.where(doubtful(hit, slenderness), beyond, inside)
-    flows = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
-    if law.family == "fem" and any(flow.hardening or flow.rate for flow in flows):
-        rms = np.maximum(rms, np.array(HARDENING_ERRORS)[:, None])
-    if max(law.parameters.get(f"{role}_ratio", 0.0) for role in ("sphere", "plate")) > RATIOS[1]:
-        rms = np.maximum(rms, np.array(SOFT_ERRORS)[:, None])
-    if tan_delta := law.parameters.get("loss_factor"):
-        more = np.array([*LOSS_ERRORS[:2], LOSS_ERRORS[2] * tan_delta])[:, None]
-        rms = np.maximum(rms, more)
+    hardens = [flow.hardening or flow.rate for flow in (pair.sphere.flow, pair.plate.flow) if flow is not None]
+    softest = max(law.parameters.get(f"{role}_ratio", 0.0) for role in ("sphere", "plate"))
+    tan_delta = law.parameters.get("loss_factor", 0.0)
+    with_losses = *LOSS_ERRORS[:2], LOSS_ERRORS[2] * tan_delta
+    for applies, errors in (
+        (law.family == "fem" and any(hardens), HARDENING_ERRORS),
+        (softest > RATIOS[1], SOFT_ERRORS),
+        (tan_delta, with_losses),
+    ):
+        rms = np.maximum(rms, np.array(errors)[:, None]) if applies else rms
     cor = np.maximum(hit.restitution, _LEAST_COR)
     return np.asarray(rms * np.array([cor, hit.contact_time, hit.peak_force]))

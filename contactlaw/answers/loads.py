@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw.physical.arguments import broadcast, check, number
+from contactlaw.physical.arguments import broadcast, positive, within
 from contactlaw.physical.plates import check_contact
 
 if TYPE_CHECKING:
@@ -89,25 +89,18 @@ def load_signal(
     from scipy.interpolate import CubicHermiteSpline
 
     start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
-    check(speed=v, radius=r, thickness=h)
     check_contact(thickness, model.pair.given[1])
-    if not np.isfinite(start).all():
-        reason = f"must be finite [s], got {start[~np.isfinite(start)][0]}"
-        raise ArgumentError("times", None, reason)
-    rate = number("rate", rate)
-    if not (0.0 < rate < math.inf and 1.0 / rate < math.inf):
-        raise ArgumentError("rate", rate, "must be positive and finite [1/s], as 1/rate")
-    if duration is not None:
-        duration = number("duration", duration)
-    else:
+    within("times", start, -1e300, 1e300, "[s]")
+    rate = positive("rate", rate, "1/s")
+    if duration is None:
         ends = start + np.ravel(model.lookup(v, r, h).contact_time)
         duration = max(float(ends.max(initial=0.0)), 1.0 / rate)
-    if not 0.0 < duration * rate <= _LONGEST:
-        reason = f"must be positive and at most {_LONGEST} samples at rate {rate:g} /s"
-        raise ArgumentError("duration", duration, reason)
+    duration = positive("duration", duration, "s")
+    if duration * rate > _LONGEST:
+        raise ArgumentError("duration", duration, f"must be at most {_LONGEST} samples at rate {rate:g} /s")
     force = np.zeros(math.ceil(duration * rate * (1.0 - 1e-12)))  # 0.07 s at 100 /s are 7 samples
-    within = np.flatnonzero((start > -_LONGEST_CONTACT) & (start < duration))
-    for part in np.split(within, range(_CHUNK, within.size, _CHUNK)):
+    during = np.flatnonzero((start > -_LONGEST_CONTACT) & (start < duration))
+    for part in np.split(during, range(_CHUNK, during.size, _CHUNK)):
         contacts = model.force_history(v[part], r[part], h[part], samples=_SAMPLES)
         columns = start[part], contacts.time, contacts.force, contacts.impulse
         for begin, time, push, impulse in zip(*columns, strict=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,42 +13,30 @@ from numpy.typing import ArrayLike
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
 from contactlaw._jit import in_memory, kernel, switched_off
-from contactlaw.answers.backend import Part, renumbered
+from contactlaw.answers.backend import renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
-from contactlaw.equation.edge import Edge
 from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical import oblique as kernels
 from contactlaw.physical.arguments import broadcast, check, vectors
-from contactlaw.physical.impacts import Impacts, check_finite
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound
-from contactlaw.physical.plates import Thickness
 from contactlaw.physical.vectors import Vector
 from contactlaw.table import lookup
 
+_SMALLEST = 1e-300  # [m/s]: without friction nothing slides
 Collide = Callable[..., tuple[Vector, Vector]]
 
 
-def oblique(
-    by: Solver,
-    speed: ArrayLike,
-    sliding_speed: ArrayLike,
-    radius: ArrayLike,
-    thickness: Thickness,
-    friction: ArrayLike,
-    edge: Edge,
-    edge_distance: ArrayLike,
-    hole_radius: ArrayLike,
-    mass: ArrayLike | None,
-) -> ObliqueRebound:
-    """Everything about oblique impacts, see `contactlaw.ImpactModel.oblique`.
+def oblique(by: Solver, given: tuple[Any, ...], sliding_speed: ArrayLike, friction: ArrayLike) -> ObliqueRebound:
+    """Everything about oblique impacts, see `contactlaw.ImpactModel.oblique`; `given` is as `restitution` takes it.
 
     The tangential motion reads the normal history and does not act back on it. Beads are solid
     spheres, without rolling and drilling friction. `contactlaw.equation.tangential` has the method.
     """
+    speed, *sizes = given
     v, _, _, shape = broadcast(speed=speed, sliding_speed=sliding_speed, friction=friction)
-    given = v.reshape(shape or ()), radius, thickness, edge, edge_distance, hole_radius, mass
-    impacts = by.bodies.given(*given, memory=True)
+    impacts = by.bodies.given(v.reshape(shape or ()), *sizes, memory=True)
     whole = impacts.speed.reshape(impacts.shape or ())
     s, mu, _, _ = broadcast(sliding_speed=sliding_speed, friction=friction, speed=whole)
     check(sliding_speed=s, friction=mu)
@@ -74,20 +63,17 @@ def collide(
     given = tabulated.bodies.given(np.ones(around or ()), radius, thickness, mass=mass)
     whole = given.shape or ()
     mu = np.broadcast_to(mu.reshape(around or ()), whole).ravel()
-    if whole != shape[:-1]:
-        v, omega, n, w = (
-            np.broadcast_to(one.reshape(shape), (*whole, 3)).reshape(-1, 3).copy() for one in (v, omega, n, w)
-        )
+    v, omega, n, w = (
+        np.broadcast_to(one.reshape(shape), (*whole, 3)).reshape(-1, 3).copy() for one in (v, omega, n, w)
+    )
     speed, size, e, changed = np.zeros((4, mu.size))
     kernels.approach_all(v, omega, n, w, given.radius, speed, size)
     moving = np.flatnonzero(speed >= lookup.V_MIN)
     check(speed=speed[moving], sliding_speed=size[moving])
     impacts = replace(given.part(moving), speed=speed[moving])
     with renumbered(moving):
-        parts, changed[moving] = _outcomes(tabulated, impacts, mu[moving], size[moving])
-    for part in parts:
-        e[moving[part.places]] = part.outcome.restitution
-    check_finite(tabulated.bodies.pair, replace(given, speed=speed), e + changed)
+        hit = answer(tabulated, impacts, mu[moving], size[moving])
+    e[moving], changed[moving] = hit.restitution, size[moving] - hit.sliding_speed
     kernels.rebound_all(v, omega, n, w, given.radius, e, changed)
     return v.reshape(*whole, 3), omega.reshape(*whole, 3)
 
@@ -99,31 +85,8 @@ def collide_kernel(tabulated: TableLookup) -> Collide:
             "numba is switched off (NUMBA_DISABLE_JIT is set), and without its compiler the "
             "table of oblique impacts takes hours: call collide, which integrates then"
         )
-    return _jitted(tabulated.packed, tabulated.slides, tabulated.bodies.constants.mass)
-
-
-def answer(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
-    """Everything about impacts with these sliding speeds [m/s]."""
-    parts, changed = _outcomes(solver, impacts, friction, size)
-    return kernels.of(solver.bodies, solver.together(parts, impacts), impacts, friction, size, changed)
-
-
-def _outcomes(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> tuple[list[Part], Array]:
-    """Outcomes of the normal motion, and the change of the sliding speed [m/s]."""
-    limit = friction * impacts.speed
-    psi = np.zeros_like(limit)
-    with np.errstate(over="ignore"):  # with next to no friction psi is inf
-        np.divide(size, limit, out=psi, where=limit > 0.0)
-    psi = np.clip(psi, -FASTEST, FASTEST)
-    parts, changed = solver.parts(impacts), np.empty_like(psi)
-    for part in parts:
-        changed[part.places] = solver.slid(part, psi[part.places])
-    return parts, limit * changed
-
-
-def _jitted(table: Array, slides: Array, density: float) -> Collide:
-    """One collision as a jitted function that belongs to one table."""
-    of_one, packed, tangential = kernels.collide, in_memory(table), in_memory(slides)
+    of_one, packed, slides = kernels.collide, in_memory(tabulated.packed), in_memory(tabulated.slides)
+    density = tabulated.bodies.constants.mass
 
     @kernel(entry=True)
     def collide(
@@ -137,6 +100,16 @@ def _jitted(table: Array, slides: Array, density: float) -> Collide:
         mass: float = math.inf,
     ) -> tuple[Vector, Vector]:
         share = share_of_solid(density, radius, mass)
-        return of_one(packed(), tangential(), velocity, spin, normal, radius, thickness, share, friction, wall_velocity)
+        return of_one(packed(), slides(), velocity, spin, normal, radius, thickness, share, friction, wall_velocity)
 
     return collide
+
+
+def answer(solver: Solver, impacts: Impacts, friction: Array, size: Array) -> ObliqueRebound:
+    """Everything about impacts with these sliding speeds [m/s]."""
+    limit = friction * impacts.speed
+    psi = np.clip(size, -FASTEST * limit, FASTEST * limit) / np.maximum(limit, _SMALLEST)
+    parts, changed = solver.parts(impacts), np.empty_like(psi)
+    for part in parts:
+        changed[part.places] = limit[part.places] * solver.slid(part, psi[part.places])
+    return kernels.of(solver.bodies, solver.together(parts, impacts), impacts, friction, size, changed)

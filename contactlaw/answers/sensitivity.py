@@ -1,11 +1,12 @@
 """How much the COR moves with each input: elasticities d ln e/d ln x, by `derivatives`."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from contactlaw._arrays import Array, ByValue, Mask
-from contactlaw.answers.derivatives import Number, Variants, central
+from contactlaw.answers.derivatives import STEP, Number, Variants
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.impacts import Impacts
 
@@ -71,7 +72,7 @@ def sensitivity(variants: Variants, impacts: Impacts, yields: Mask) -> Sensitivi
                 factors["impact", "mass"] = factor ** _MASS_POWERS.get(name, 0.0)
             return np.log(variants.answers(impacts, factors).restitution)
 
-        return central(log_cor)
+        return np.asarray((log_cor(math.exp(STEP)) - log_cor(math.exp(-STEP))) / (2.0 * STEP))
 
     found = {name: elasticity(name) for name in _INPUTS}
     found["yield_strength"] *= yields

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import functools
-import inspect
 import math
 import os
-import threading
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal, NoReturn
+from typing import Literal
 
 import numpy as np
 
 from contactlaw import laws
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
-from contactlaw._jit import direct, enable_caching, switched_off
+from contactlaw._jit import direct, switched_off
 from contactlaw.answers.backend import OutsideTableError, Part, renumbered, split
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import outcome
@@ -41,47 +39,31 @@ TableArgument = Table | Settings | str | os.PathLike[str] | None  # what users m
 _NEXT_TO_YIELD = {"residual_compression", "plastic_fraction"}
 
 
-class Border:
-    """What to do with impacts outside a table; counts those that got the value at its border."""
+class TableLookup(Solver):
+    """Looks impacts up; the table, the law's own if none is given, is made when first needed.
 
-    def __init__(self, outside: Outside) -> None:
+    Outside the table `outside` says what to do; `clamped` counts impacts that got the value at its border.
+    """
+
+    def __init__(self, bodies: SphereOnPlate, given: TableArgument, outside: Outside) -> None:
+        super().__init__(bodies)
         if outside not in ("raise", "solve", "clamp"):
             raise ArgumentError("outside", outside, "must be 'raise', 'solve' or 'clamp'")
-        self.outside = outside
-        self.clamped = 0
-        self._lock = threading.Lock()
-
-    def count(self, more: int) -> None:
-        """Count impacts that were clamped."""
-        with self._lock:
-            self.clamped += more
-
-
-class TableLookup(Solver):
-    """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
-
-    def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
-        super().__init__(bodies)
-        self.given, self.border = given, border
-
-    @functools.cached_property
-    def law(self) -> Law:
-        """The law of the table, with all strengths that it has."""
-        return with_strengths(self.bodies.pair, self.bodies.law)
+        self.given, self.outside = given, outside
+        self.clamped = np.zeros(1, np.int64)  # an array, which models of two spheres share; numpy adds under a lock
 
     @functools.cached_property
     def table(self) -> Table:
         """The table that serves the law."""
-        return table_for(self.law, self.given)
+        return table_for(with_strengths(self.bodies.pair, self.bodies.law), self.given)
 
     @functools.cached_property
     def instead(self) -> Solver | None:
         """The solver in place of a table that takes minutes to build without the compiler."""
         ships = self.given is not None or file.packaged(_law_with_table(self.bodies.law))
-        if ships or self.border.outside == "clamp" or not switched_off():
+        if ships or self.outside == "clamp" or not switched_off():
             return None
-        limits = extent(self.bodies.law) if self.border.outside == "raise" else None
-        return Solver(self.bodies, extent=limits)
+        return Solver(self.bodies, extent=extent(self.bodies.law) if self.outside == "raise" else None)
 
     @functools.cached_property
     def packed(self) -> Array:
@@ -91,9 +73,7 @@ class TableLookup(Solver):
     @functools.cached_property
     def shapes(self) -> Array:
         """The shapes of force histories, which a first one takes a second to add to the table."""
-        found = cache.cached_shapes(self.table).histories
-        assert found is not None
-        return found
+        return np.asarray(cache.cached_shapes(self.table).histories)
 
     @functools.cached_property
     def slides(self) -> Array:
@@ -103,7 +83,8 @@ class TableLookup(Solver):
     @functools.cached_property
     def restitution(self) -> Callable[[float, float, float, float], float]:
         """COR of one impact by speed, sizes and mass over that of a solid sphere, all floats; NaN outside the table."""
-        return functools.partial(_python_entry(), self.packed)
+        entry = direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)")
+        return functools.partial(entry, self.packed)
 
     @property
     def largest_inelasticity(self) -> float:
@@ -111,11 +92,6 @@ class TableLookup(Solver):
         if self.given is None:
             return grid.largest_inelasticity(_law_with_table(self.bodies.law))
         return self.table.settings.largest_inelasticity
-
-    def given_for(self, law: Law) -> Table | None:
-        """Table that the user gave, if it fits another law, too, as that of two spheres."""
-        fits = self.given is not None and (law == self.law or self.table.law.follows(law))
-        return self.table if fits else None
 
     def restitutions(self, impacts: Impacts) -> Array:
         """COR of impacts; sizes are checked only if the kernel has no answer for one of them."""
@@ -138,33 +114,25 @@ class TableLookup(Solver):
         if missed:
             return split(impacts, np.isnan(found.restitution), self._beyond, self.far)
         time = self.bodies.constants.time * impacts.radius / root
-        return [Part(slice(None), impacts, time, numbers, found, flags, None, True)]
+        return [Part(impacts, time, numbers, found, flags, None, True)]
 
     def _beyond(self, impacts: Impacts) -> list[Part]:
         """Outcomes beyond the range of speeds and sizes of a lookup, and beyond the table."""
         units = self.bodies.numbers(self.bodies.impact(impacts))
-        numbers, flags = (units.inelasticity, units.yield_ratio), np.zeros(impacts.speed.size, dtype=np.int64)
+        numbers, flags = (units.inelasticity, units.yield_ratio), np.zeros_like(units.time, np.int64)
         found = outcome.at(*numbers, units.strength)
         if lookup.fields(self.packed, False, found):
             beyond = np.flatnonzero(np.isnan(found.restitution))
-            if self.border.outside == "solve":
+            if self.outside == "solve":
                 return self.integrated(impacts)
-            if self.border.outside == "raise":
+            if self.outside == "raise":
                 with renumbered(beyond):
-                    self._refuse(impacts.part(beyond[:1]), units.strength[beyond[0]])
+                    self.refuse_outside(self.table.settings, outcome.part(units, beyond))
+                    raise OutsideTableError(0, "its rate makes the bodies stronger than those of the table")
             lookup.fields(self.packed, True, found)
             flags[beyond] = int(Validity.CLAMPED)
-            self.border.count(beyond.size)
-        return [Part(slice(None), impacts, units.time, numbers, found, flags, None, True)]
-
-    def _refuse(self, impacts: Impacts, strength: float) -> NoReturn:
-        """Say why an impact is outside the table."""
-        most = lookup.strongest(self.packed, lookup.axes_of(self.packed))
-        if not math.exp(strength) > most:
-            Solver(self.bodies, extent=self.table.settings).far(impacts)
-        times = f"{math.exp(strength):.4g} times stronger, above {most:.4g}"
-        mass = None if impacts.mass is None else float(impacts.mass[0])
-        raise OutsideTableError(0, f"its rate makes the bodies {times}", mass)
+            self.clamped += beyond.size
+        return [Part(impacts, units.time, numbers, found, flags, None, True)]
 
     def slid(self, part: Part, psi: Array) -> Array:
         """Change of sliding speeds psi [mu V0]."""
@@ -189,9 +157,7 @@ class TableLookup(Solver):
         known = impacts.radius.item(), impacts.thickness.item(), self.bodies.impact(impacts).mass.item()
 
         def restitution(speed: float) -> float:
-            if not isinstance(speed, float):  # the entry would take "5" and True for numbers
-                speed = scalars(speed=speed)[0].item()
-            value = at(speed, *known)
+            value = at(speed, *known) if isinstance(speed, float) else math.nan  # it would take "5" for a number
             if value != value:  # NaN; half the time of a call of isnan
                 one = replace(impacts, speed=scalars(speed=speed)[0])
                 return self.restitutions(one).item()
@@ -211,12 +177,6 @@ def by_method(tabulated: TableLookup, method: str) -> Solver:
     return tabulated if method == "table" else Solver(tabulated.bodies)
 
 
-@functools.cache
-def _python_entry() -> Callable[..., float]:
-    """Python's entry of `restitution_on_plate`; each argument a float."""
-    return direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)")
-
-
 def extent(law: Law) -> Settings:
     """Extent of a law's own table, which is known before the table is made."""
     return grid.on_demand(_law_with_table(law))
@@ -229,7 +189,6 @@ def _law_with_table(law: Law) -> Law:
 
 def table_for(law: Law, table: TableArgument) -> Table:
     """Table that serves a law: the user's, or the law's own."""
-    enable_caching()
     served = _law_with_table(law)
     if table is None:
         table = file.packaged(served) or cache.cached(served)
@@ -244,7 +203,7 @@ def table_for(law: Law, table: TableArgument) -> Table:
         warnings.warn(
             f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "
             f"are above {bounds(table.law)}: take finer Settings",
-            stacklevel=_stack_level(),
+            stacklevel=2,
         )
     if not table.law.follows(served):
         raise ArgumentError(
@@ -256,14 +215,3 @@ def table_for(law: Law, table: TableArgument) -> Table:
             "the law takes numbers from them",
         )
     return table
-
-
-def _stack_level() -> int:
-    """Count the frames up to the user's line, for a warning."""
-    level, frame = 0, inspect.currentframe()
-    while frame:
-        package = frame.f_globals.get("__name__", "").partition(".")[0]
-        if package not in ("contactlaw", "functools"):
-            break
-        level, frame = level + 1, frame.f_back
-    return level

@@ -9,14 +9,12 @@ overload add up. Which body yields depends on the strengths of both: these are a
 
 import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from statistics import NormalDist
 
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._errors import ArgumentError
 from contactlaw.answers.derivatives import Number, Variants
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.physical.arguments import number, shaped, within
@@ -31,8 +29,7 @@ _FLOW: tuple[Number, ...] = ("sphere", "flow_stress"), ("plate", "flow_stress")
 _PROBES = 1.2, 0.6, 0.4, 0.2, 0.1, 0.05, 0.0, -0.05, -0.1, -0.2, -0.4, -0.6, -0.9, -1.2
 _ENDS = -1.0, 1.0  # changes, in standard errors
 _DRAWS = 2048
-_QUANTILES = NormalDist().cdf(-1.0), NormalDist().cdf(1.0)  # 16 and 84 %
-_LEAST = 1e-12  # of an answer: the lower end of a range that would reach below zero
+_QUANTILES = 0.15865525, 0.84134475  # those of a normal deviate of -1 and 1
 Cause = tuple[tuple[Number, ...], float]  # numbers that err alike, and their relative standard error
 
 
@@ -86,75 +83,49 @@ def causes_of(pair: Pair, sizes: Mapping[str, float]) -> dict[str, Cause]:
 
 def uncertainty(variants: Variants, impacts: Impacts, sizes: Mapping[str, float]) -> Uncertainty:
     """Bands of the answers of impacts by the errors of materials and sizes, and by the law."""
-    causes = causes_of(variants.pair, sizes)
-    hit = variants.answers(impacts, {})
+    from scipy.special import ndtri
 
-    def logs(*moved: tuple[Cause, float]) -> Array:
-        factors = {one: math.exp(z * error) for (numbers, error), z in moved for one in numbers}
-        try:
-            answers = variants.answers(impacts, factors)
-        except ArgumentError as error:
-            ((((_, name), *_), size), z), *_ = moved
-            reason = f"{name} is too large, for {math.exp(z * size):.3g} times the value: {error}"
-            raise ArgumentError("uncertainty", size, reason) from None
+    causes = causes_of(variants.pair, sizes)
+
+    def logs(*moved: tuple[tuple[Number, ...], float]) -> Array:
+        """Logarithms of the answers with some numbers multiplied by exp(size)."""
+        factors = {one: math.exp(size) for numbers, size in moved for one in numbers}
+        answers = variants.answers(impacts, factors)
         return np.log(np.maximum([getattr(answers, name) for name in _FIELDS], 1e-300))
 
-    base, known = logs(), list(causes.values())
-    each = np.reshape([[logs((one, z)) for z in _ENDS] for one in known], (len(known), 2, *base.shape)) - base
-    strengths = [n for n, (numbers, _) in enumerate(known) if numbers[0][1] in _STRENGTHS]
-    both = None
-    if len(strengths) == 2:
-        first, second = (known[n] for n in strengths)
-        both = np.array([[logs((first, a), (second, b)) for b in _ENDS] for a in _ENDS]) - base
+    # of normal deviates each number has a permutation of the same quantiles; the last are those of the law
+    shares = np.tile((np.arange(_DRAWS) + 0.5) / _DRAWS, (len(causes) + 1, 1))
+    *deviates, by_chance = ndtri(np.random.default_rng(0).permuted(shares, axis=1))
+    base, ends = logs(), [(numbers, z * error) for numbers, error in causes.values() for z in _ENDS]
+    states = [logs(end) for end in ends]
+    weights = np.reshape([np.maximum(z * deviate, 0.0) for deviate in deviates for z in _ENDS], (-1, _DRAWS))
+    strengths = [n for n, (numbers, _) in enumerate(ends) if numbers[0][1] in _STRENGTHS]
+    if len(strengths) == 4:
+        states += [logs(ends[n], ends[m]) for n in strengths[:2] for m in strengths[2:]]
+        a, b = np.split(weights[strengths], 2)
+        weights[strengths] *= 1.0 - np.repeat([b.sum(axis=0), a.sum(axis=0)], 2, axis=0)
+        weights = np.vstack([weights, *(one * b for one in a)])
+    changes = np.reshape(states, (len(states), *base.shape)) - base
+    each = changes[: len(ends)].reshape(len(causes), 2, *base.shape)
     probes = _PROBES if causes and variants.law.yields else (0.0,)
-    flow = np.array([logs(((_FLOW, 1.0), z)) for z in probes]) - base
+    flow = np.array([logs((_FLOW, z)) for z in probes]) - base
+    hit = variants.answers(impacts, {})
     errors = law_errors(variants.law, variants.pair, hit, impacts.radius / impacts.thickness)
     bands = []
     for n, value in enumerate(np.exp(base[:3])):
         most = 1.0 if n == 0 else math.inf  # of a COR
-        ends = np.minimum(value * np.exp(each[:, :, n]), most)
-        widths = 0.5 * (np.maximum(ends.max(axis=1), value) - np.minimum(ends.min(axis=1), value))
+        reached = np.minimum(value * np.exp(each[:, :, n]), most)
+        widths = 0.5 * (np.maximum(reached.max(axis=1), value) - np.minimum(reached.min(axis=1), value))
         by_law = np.full_like(value, math.inf) if errors is None else errors[n]
         low, high = -by_law, by_law.copy()
         for i in range(value.size if errors is not None else 0):
-            some = (..., [n, 3], i)
-            moved = _moved(each[some], None if both is None else both[some], strengths, flow[some])
-            drawn = np.minimum(value[i] * np.exp(moved), most) + by_law[i] * _deviates(len(each) + 1)[-1]
-            low[i], high[i] = np.quantile(np.clip(drawn, _LEAST * value[i], most), _QUANTILES)
+            by_flow = functools.partial(np.interp, xp=flow[:, 3, i], fp=flow[:, n, i])
+            overload = changes[:, 3, i]
+            moved = (changes[:, n, i] - by_flow(overload)) @ weights + by_flow(overload @ weights)
+            drawn = np.minimum(value[i] * np.exp(moved), most) + by_law[i] * by_chance
+            low[i], high[i] = np.quantile(np.clip(drawn, 0.0, most), _QUANTILES)
         signs = np.sign(each[:, 1, n] - each[:, 0, n])
         low, high, *columns = (shaped(one, impacts.shape) for one in (low, high, *widths, by_law, *signs))
-        words = [*causes, "model"]
-        parts = dict(zip(words, columns, strict=False)), dict(zip(causes, columns[len(words) :], strict=True))
-        bands.append(Band(low, high, *parts))
+        words, ups = [*causes, "model"], columns[len(causes) + 1 :]
+        bands.append(Band(low, high, dict(zip(words, columns, strict=False)), dict(zip(causes, ups, strict=True))))
     return Uncertainty(*bands)
-
-
-def _moved(each: Array, both: Array | None, strengths: list[int], flow: Array) -> Array:
-    """Add up changes of the logarithm of one answer at random errors.
-
-    On the last axis changes have the logarithm of the answer and that of the overload.
-    """
-    weights = np.maximum(np.multiply.outer(_deviates(len(each) + 1)[:-1], _ENDS), 0.0)
-
-    def by_flow(changed: Array) -> Array:
-        return np.interp(changed, flow[:, 1], flow[:, 0])
-
-    def summed(each: Array, both: Array | None) -> Array:
-        total = np.einsum("ndz,nz->d", weights, each)
-        if both is not None:
-            (a, b), (x, y) = weights[strengths], each[strengths]
-            total += np.einsum("dy,dz,yz->d", a, b, both - np.add.outer(x, y))
-        return np.asarray(total)
-
-    def of(pick: Callable[[Array], Array]) -> Array:
-        return summed(pick(each), None if both is None else pick(both))
-
-    overload = of(lambda one: one[..., 1])
-    return of(lambda one: one[..., 0] - by_flow(one[..., 1])) + by_flow(overload)
-
-
-@functools.lru_cache(maxsize=16)
-def _deviates(count: int) -> Array:
-    """Draw normal deviates (count, draws): for each number a permutation of the same quantiles."""
-    known = [NormalDist().inv_cdf((n + 0.5) / _DRAWS) for n in range(_DRAWS)]
-    return np.random.default_rng(0).permuted(np.tile(known, (count, 1)), axis=1)

@@ -48,7 +48,6 @@ def yield_speeds(tabulated: TableLookup, impacts: Impacts) -> Array:
         n = int(np.abs(gap).argmax())
         raise UnsolvedError(n, f"lambda = {lam[n]:.6g}", "no speed was found at which it yields")
     for n in np.flatnonzero((lam > most) & ~never)[:1]:
-        heavy = "" if impacts.mass is None else f" and mass={impacts.mass[n]:g} kg"
-        thin = f"under a bead of {impacts.radius[n]:g} m{heavy} the inelasticity at yield is above {most:.4g}"
-        raise ArgumentError("thickness", impacts.thickness[n], f"too thin for the table: {thin}")
+        reason = f"too thin for the table: under a bead of {impacts.radius[n]:g} m the inelasticity at yield is "
+        raise ArgumentError("thickness", impacts.thickness[n], f"{reason}above {most:.4g}")
     return np.where(never, math.inf, np.exp(log_speed))

@@ -10,10 +10,10 @@ import numpy as np
 
 from contactlaw import quantities
 from contactlaw._arrays import Array
-from contactlaw.cli.parts import bands, chosen, options, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.cli.parts.impacts import COLUMNS
-from contactlaw.cli.parts.table import Column, Table, in_words
-from contactlaw.parser import wrapped
+from contactlaw.cli.parts.table import Table, in_words
+from contactlaw.physical.plates import Layers
 from contactlaw.quantities import SHARE
 
 _KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
@@ -35,7 +35,6 @@ def add(commands: Any) -> None:
             options.add_speed(command, quantities.values)
             options.add_layers(command)
         options.add_name_of_law(command)
-        options.add_errors(command, _KNOWN[unknown])
         options.add_forms(command)
         command.epilog = f"{options.UNITS} {options.LISTS}"
 
@@ -43,12 +42,11 @@ def add(commands: Any) -> None:
 def _run(unknown: str, arguments: Namespace) -> None:
     chosen.take_drops(arguments)
     model, known = chosen.model(arguments), _KNOWN[unknown]
-    plate, layers = model.pair.given[1], {}
+    layers: dict[str, Any] = {}
     if below := [chosen.layer(text, arguments.materials) for text in getattr(arguments, "on", ())]:
-        layers = {"layers": [(plate, None), *below]}
+        layers["plate"] = lambda thickness: Layers([(model.pair.given[1], thickness), *below])
     questions = np.array([*itertools.product(arguments.cor, *(getattr(arguments, name) for name in known))])
-    errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
-    answers: Any = getattr(model, unknown)(*questions.T, **errors, **layers)
+    answers: Any = getattr(model, unknown)(*questions.T, **layers)
     remarks = [
         f"{in_words(chosen.asked(arguments, model, **dict(zip(known, sizes, strict=True))))}, COR {cor:g}: {one.remark}"
         for (cor, *sizes), one in zip(questions.tolist(), answers, strict=True)
@@ -60,25 +58,14 @@ def _run(unknown: str, arguments: Namespace) -> None:
         wording.print_warning(remark)
 
     _table(unknown, questions, answers, chosen.asked(arguments, model)).write(sys.stdout, arguments.form)
-    if arguments.form == "text":
-        band = next(answer.band for answer in answers if answer.band)
-        of = {"thickness": "thicknesses", "speed": "speeds"}[unknown]
-        subject = f"{of} whose predicted range contains the COR you asked for"
-        print("", *wrapped(f"68 %: {bands.meaning(band, model.pair, subject)}."), sep="\n")
 
 
 def _table(unknown: str, questions: Array, answers: Any, asked: dict[str, Any]) -> Table:
-    """Table of all solutions; ends of a range that are not known become NaN."""
-    value, low, high, flags = (
-        np.concatenate([getattr(one, name) for one in answers]) for name in ("value", "low", "high", "flags")
-    )
-    low[np.isinf(low)] = np.nan
-    high[np.isinf(high) & (np.isnan(low) | (unknown == "speed"))] = np.nan  # a half-space is an end
-    names = "restitution", *_KNOWN[unknown], unknown, f"{unknown}_low", f"{unknown}_high"
+    """Table of all solutions."""
+    value, flags = (np.concatenate([getattr(one, name) for one in answers]) for name in ("value", "flags"))
+    names = "restitution", *_KNOWN[unknown], unknown
     of_each = np.repeat(questions, [one.value.size for one in answers], axis=0)
-    values = dict(zip(names, [*of_each.T, value, low, high], strict=True))
     by_name = {column.name: column for column in COLUMNS}
-    inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in names[:-3])
-    column = by_name[unknown]._replace(is_input=False)
-    ends = column._replace(name=names[-2], title="68 %", to=names[-1]), Column(names[-1], column.unit)
-    return Table([*inputs, column, *ends], values, asked, flags)
+    inputs = (by_name[name]._replace(is_input=True, digits=".4g") for name in names[:-1])
+    columns = [*inputs, by_name[unknown]._replace(is_input=False)]
+    return Table(columns, dict(zip(names, [*of_each.T, value], strict=True)), asked, flags)

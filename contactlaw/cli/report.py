@@ -2,11 +2,10 @@
 
 import dataclasses
 from argparse import Namespace
-from pathlib import Path
 from typing import Any
 
 from contactlaw.cli.parts import options, wording
-from contactlaw.export.scene_file import surface_of
+from contactlaw.export.scene_file import scene_beside, surface_of
 from contactlaw.record.file import read_record
 from contactlaw.reporting.files import report
 from contactlaw.reporting.run import Run
@@ -23,15 +22,15 @@ def add(commands: Any) -> None:
         help="record of a run, or several files of one run: written by an engine's `save` (.h5), or rows of impacts "
         "written by np.save (.npy)",
     )
-    what = "scene of LAMMPS's fix, for the names of the walls and the map (default: the one beside the record)"
+    what = "scene of LAMMPS's fix, for the names of the walls and the map (default: the one that lies beside the "
+    what += "record or in a folder there)"
     add("--scene", metavar="FILE", help=what)
     add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
 def _run(arguments: Namespace) -> None:
     record = read_record(*arguments.files)
-    beside = [*Path(arguments.files[0]).parent.glob("*.scene")] if record.surface is None else []
-    if path := arguments.scene or (beside[0] if len(beside) == 1 else None):
+    if path := arguments.scene or (scene_beside(arguments.files[0]) if record.surface is None else None):
         record = dataclasses.replace(record, surface=surface_of(path, record.rows))
     with wording.reading(arguments.files[0]):
         Run(record)  # refuses what no report can be made of
@@ -39,5 +38,6 @@ def _run(arguments: Namespace) -> None:
         print(report(record, arguments.out))
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")
-    if record.surface is None and (record.rows["triangle"] >= 0).any():
-        wording.print_message("the page has no map of the energy on the walls: add --scene, or save the record as .h5")
+    if record.surface is None and arguments.files[0].endswith(".npy"):
+        text = "the page has neither names of walls nor a map of the energy: no scene lies beside the record or in "
+        wording.print_message(text + "a folder there, or several do; add --scene FILE, or save the record as .h5")

@@ -410,7 +410,7 @@ def check(law: Array) -> None:
 def check_strengths(laws: Array) -> None:
     """Refuse an array that is not a ladder of laws, as `check` does for one."""
     if not 0 < -laws[PIECES] * RUNG < laws.size:
-        raise ValueError("its laws of several strengths have no rungs")
+        raise ValueError("it has no law of any strength")
     for begins, size in _whole(rungs(laws)[:, BEGINS : SIZE + 1], laws.size).tolist():
         if begins + size > laws.size:
             raise ValueError("its laws of several strengths end within one of them")

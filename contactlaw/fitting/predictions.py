@@ -31,7 +31,6 @@ from contactlaw.physical.rate import REACH, rates
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.strengths import Fineness
 
-_RTOL = 1e-10  # error allowed per step, which derivatives need
 # Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
 # model's, and in the scan before, within 5e-2.
 COARSE = Fineness(1e-6, 6.0, 0.04, REACH, 5e-3)
@@ -101,7 +100,7 @@ class Predictor:
 
     def impacts(self, at: Setting) -> Rebound:
         """Everything about rebounds but the flags, which are those of slow ones."""
-        return _integrated(solver(at.pair, self.law, rates(at.speed, at.radius), _RTOL, self.fineness), at)
+        return _integrated(solver(at.pair, self.law, rates(at.speed, at.radius), self.fineness), at)
 
     def predicted(self, *trials: Array) -> Array:
         """Predict the measured values (k, m) at k trials that differ only in sizes, not in materials.
@@ -131,7 +130,7 @@ class Predictor:
 
 def impacts(at: Setting, law: Law) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
-    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at)
+    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law))), at)
 
 
 def _integrated(backend: Solver, at: Setting) -> Rebound:

@@ -45,12 +45,7 @@ class ForceHistory(_Samples):
 
 
 def with_units(
-    contacts: History,
-    units: Numbers,
-    inelasticity: Array,
-    shape: tuple[int, ...] | None,
-    flags: Validity | Integers,
-    path: Array | None = None,
+    contacts: History, units: Numbers, inelasticity: Array, shape: tuple[int, ...] | None, path: Array | None = None
 ) -> ForceHistory:
     """Give contacts (n, samples) their units and the shape of the answer.
 
@@ -66,6 +61,4 @@ def with_units(
         displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
     else:
         displacement = path * units.compression[:, None]
-    found = ForceHistory(*(values.reshape(whole) for values in (time, force, compression, impulse, displacement)))
-    found.flags = flags
-    return found
+    return ForceHistory(*(values.reshape(whole) for values in (time, force, compression, impulse, displacement)))

@@ -701,8 +701,8 @@ def warn_of_softened(body: Material) -> None:
     if strength > _IDEAL_STRENGTH * body.youngs_modulus:
         warnings.warn(
             f"material {body.name!r}: a strength of {strength:.4g} Pa is above a tenth of youngs_modulus "
-            f"{body.youngs_modulus:.4g} Pa, as of no solid. Give the true modulus; for longer time steps "
-            "Contacts, WallContacts and attach have softening=. Of rubber leave the strength out",
+            f"{body.youngs_modulus:.4g} Pa, and no solid is so strong. Give the true modulus; for longer time steps "
+            "WallContacts and attach have softening=. Of rubber leave the strength out",
             stacklevel=3,
         )
 

@@ -210,31 +210,33 @@ def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
     return np.where(hole_radius < math.inf, wide, 0.0)
 
 
-def edges_of(plate: Material, constants: PairConstants, units: Numbers, impact: Impact, near: PlateEdge) -> Edges:
-    """Edges near impacts as the equation has them."""
-    path, thickness, (kind, distance, hole_radius) = wave_path(plate), impact.thickness, near
-    distance = from_rim(path, thickness, distance, hole_radius, units.time)
-    rate = wave_rate(path, thickness, distance) * units.time
-    response = response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness))
-    return Edges(response, _coupling(plate, constants, units, impact), rate, np.zeros(rate.size))
+@kernel
+def coupling_of(pair: PairConstants, units: Numbers, impact: Impact) -> Any:
+    """Mobility of a thin plate over that of the contact, at most 1: what comes back is a bending wave.
+
+    The arguments have numbers or arrays.
+    """
+    root, ratio = pair.time * impact.radius / units.time, impact.radius / impact.thickness
+    thin = pair.plate.inelasticity * root * (ratio * ratio) * impact.mass / units.inelasticity
+    # of bodies with losses both have the moduli of the impact
+    return np.minimum(np.maximum(thin, 1.0 * numbers.relaxes(pair.plate)), 1.0)
 
 
-def _coupling(plate: Material, constants: PairConstants, units: Numbers, impact: Impact) -> Array:
-    """Mobility of a thin plate over that of the contact: what comes back is a bending wave."""
-    if numbers.relaxes(constants.plate):  # of bodies with losses both have those of the impact
-        return np.ones(impact.speed.size)
-    mass = units.force * units.time / impact.speed
-    thin = plate_mobility(plate, impact.thickness)
-    return np.asarray(np.minimum(thin * mass / (units.time * units.inelasticity), 1.0))
-
-
-def swings_of(
-    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, wall: Wall, frequency: Array
-) -> Edges:
-    """Memory of walls that swing at this frequency [1/s]."""
-    none = np.zeros(frequency.size)
-    response = response_of(wall.kind, plate.poissons_ratio, none)
-    return Edges(response, _coupling(plate, constants, units, impact), frequency * units.time, none)
+def edges_of(
+    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, impacts: Impacts
+) -> Edges | None:
+    """Give the equation what comes back to impacts, from edges or from walls that swing; None for neither."""
+    none, kind = np.zeros(impact.speed.size), ""
+    if impacts.edge is not None:
+        path, thickness, (kind, distance, hole_radius) = wave_path(plate), impact.thickness, impacts.edge
+        distance = from_rim(path, thickness, distance, hole_radius, units.time)
+        share, rate = share_of(distance, hole_radius, thickness), wave_rate(path, thickness, distance)
+    elif impacts.frequency is not None and impacts.wall is not None:
+        kind, share, rate = impacts.wall.kind, none, impacts.frequency
+    else:
+        return None
+    response = response_of(kind, plate.poissons_ratio, share)
+    return Edges(response, coupling_of(constants, units, impact), rate * units.time, none)
 
 
 def on_wall(plate: Material, impacts: Impacts, memory: bool) -> Impacts:

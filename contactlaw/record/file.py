@@ -30,7 +30,7 @@ from contactlaw._arrays import Array, Integers, Mask, Rows
 from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._version import VERSION
-from contactlaw.physical.kind import Kind, only_impacts
+from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import wave_path
@@ -183,28 +183,6 @@ class Record:
             point = None if on.point is None else on.point[some]
             on = on._replace(triangle=on.triangle[some], point=point)
         return replace(self, rows=self.rows[some], which=self.which[some], surface=on)
-
-    def to_pandas(self) -> Any:
-        """Return a `pandas.DataFrame` with a row for each contact; kinds and flags are words.
-
-        The materials of bead and target are in the columns ``sphere`` and ``target``.
-
-        Raises
-        ------
-        ImportError
-            Without pandas.
-        """
-        import pandas as pd
-
-        table = pd.DataFrame(self.rows)
-        for column, numbers in ("kind", Kind), ("flags", Validity):
-            if column in table:
-                words = [numbers(one).name or "" for one in table[column]]
-                table[column] = [one.lower().replace("|", ", ") for one in words]
-        for n, name in enumerate(("sphere", "target")):
-            names = [one.materials[n].name for one in self.bodies]
-            table[name] = np.array([*names, ""])[self.which]
-        return table
 
     def content(self, more: Any = None) -> bytes:
         """Return the file's content; `more(file)` adds groups of its own to the open file."""

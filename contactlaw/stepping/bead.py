@@ -363,7 +363,7 @@ def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = Non
     sharing = group_surfaces(bead.r, found, count)
     if clock.advancing:
         _move_contacts(scene, clock, bead, count)
-    touching, disturbance = touches(bead), ALONE
+    touching, disturbance, kept = touches(bead), ALONE, 0
     if count > 1:  # most beads have one contact: they need no search, which is slow in memory
         disturbance = SHARING if sharing else _disturbance_of(bead)
     for k in range(len(bead.contacts)):
@@ -374,7 +374,8 @@ def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = Non
         if n >= 0 and found[n].representative == n:
             row.disturbance = max(row.disturbance, disturbance)
             apply_contact(scene, clock, bead, body, _contact_with(scene, bead, body, n, touching), k)
+            kept += 1
         elif clock.advancing or row.extra_force != 0.0:
             _end_contact(scene, clock, bead, body, k, count)
-    if clock.advancing:
+    if clock.advancing and kept < count:
         _begin_all(scene, clock, bead, body, count, touching)

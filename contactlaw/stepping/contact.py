@@ -224,7 +224,7 @@ def report_trouble(scene: WallScene, trouble: Trouble, wall: int, value: float, 
 @kernel
 def _stretched(scene: WallScene) -> float:
     """Contact time over that of a true contact."""
-    return math.pow(scene.softening, 0.4)
+    return math.pow(scene.softening, 0.4) if scene.softening > 1.0 else 1.0
 
 
 @kernel
@@ -234,7 +234,8 @@ def _check_step(law: Array, scene: WallScene, clock: Clock, contact: Contact, sp
     In a hollow wall a contact is shorter, by 3 % for a cylinder of 4 radii: `time_step` knows none.
     """
     limit = _stretched(scene) * CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
-    limit *= max(contact.bend.ratio, 1.0) ** 0.2
+    if contact.bend.ratio > 1.0:
+        limit *= contact.bend.ratio**0.2
     if clock.dt > limit:
         report_trouble(scene, Trouble.STEP_TOO_LARGE, contact.wall, u, limit)
 
@@ -468,8 +469,16 @@ def _end(
     # Whether the plate comes back later is not known here; the strike will have a row of its own.
     # Flagged is a plate that recedes before the bead.
     recedes = 1.0 if edge.rate > 0.0 and leaves < 0.0 else 0.0
-    scale, time, deepest, force = expected.compression, record.contact_time, last.largest_compression, record.peak_force
-    record.flags = bent | _flags(plate_row, record.radius, scale, time, deepest, force, edge.distance, recedes)
+    record.flags = bent | _flags(
+        plate_row,
+        record.radius,
+        expected.compression,
+        record.contact_time,
+        last.largest_compression,
+        record.peak_force,
+        edge.distance,
+        recedes,
+    )
     return extra
 
 
@@ -492,6 +501,12 @@ def _flags(
 
 
 @kernel
+def _lasting(spring: Spring, speed: float) -> Any:
+    """Contact time of an elastic bead that hits a half-space at this speed [s]."""
+    return spring.relaxation / RELAXATION * math.pow(max(speed, _SLOWEST), -0.2)
+
+
+@kernel
 def _near_edge(scene: WallScene, bead: Bead, contact: Contact, spring: Spring, speed: float) -> NearestEdge:
     """Edge that is nearest to a contact, and how it acts there; far from edges, how the wall swings back."""
     facet, plate_row = scene.facets[contact.facet], scene.plate_rows[bead.kind, contact.plate_row]
@@ -501,9 +516,8 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, spring: Spring, s
     bend = contact.bend
     if bend.around != 0.0:
         place, swing = SPHERE if bend.along != 0.0 else CYLINDER, plate_row.shell_speed * abs(bend.around)
-    lasting = spring.relaxation / RELAXATION * math.pow(max(speed, _SLOWEST), -0.2)
     if swing > 0.0:
-        swing = min(swing, _SWINGS / lasting)
+        swing = min(swing, _SWINGS / _lasting(spring, speed))
     if facet.edge_count == 0:
         return NearestEdge(place, swing, math.inf)
     path, thickness = plate_row.wave_path, plate_row.thickness
@@ -516,7 +530,7 @@ def _near_edge(scene: WallScene, bead: Bead, contact: Contact, spring: Spring, s
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r / scene.parcel))
     if not distance < reach:
         return NearestEdge(place, swing, distance)
-    away = from_rim(path, thickness, distance, hole, lasting / CONTACT_TIME)
+    away = from_rim(path, thickness, distance, hole, _lasting(spring, speed) / CONTACT_TIME)
     return NearestEdge(place_of(kind, away, hole, thickness), wave_rate(path, thickness, away), distance)
 
 

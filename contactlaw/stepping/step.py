@@ -116,13 +116,13 @@ def _forget(head: Any, bead: Bead) -> None:
 @kernel
 def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) -> Bead:
     """One bead in SI units."""
-    per, at = run.length / run.time, 8 * FIRST
+    at = 8 * FIRST
     sliding = beads.places if scene.friction > 0.0 else 0
     return Bead(
         float(beads.tag[i]),
         beads.kind[i] - 1,
         centre,
-        scaled(per, vector(beads.v[i])),
+        scaled(run.length / run.time, vector(beads.v[i])),
         divided(vector(beads.omega[i]), run.time),
         beads.radius[i] * run.length,
         beads.mass[i] * run.mass,
@@ -146,12 +146,11 @@ def _heads_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
 
 
 @kernel
-def _wrapped(run: Any, beads: Beads, i: int, k: int) -> float:
+def _wrapped(x: float, low: float, period: float, length: float) -> float:
     """Coordinate of a bead [m], inside of the box where that is periodic."""
-    x, period = beads.x[i, k], run.period[k]
     if period > 0.0:
-        x -= period * math.floor((x - run.low[k]) / period)
-    return float(run.length * x)
+        x -= period * math.floor((x - low) / period)
+    return length * x
 
 
 @kernel
@@ -282,18 +281,19 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
     """
     run, status = runs[0], scene.status[0]
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
+    # Most beads are far from all walls: they are left out with few reads of memory.
+    group, length, low, period = run.group, run.length, vector(run.low), vector(run.period)
     for i in range(first, beads.n):
-        if not beads.mask[i] & run.group:
+        if not beads.mask[i] & group:
             continue
-        centre = _wrapped(run, beads, i, 0), _wrapped(run, beads, i, 1), _wrapped(run, beads, i, 2)
-        size = beads.radius[i] * run.length
-        reach = MARGIN * size
-        if not (
-            z0 - reach <= centre[2] <= z1 + reach
-            and x0 - reach <= centre[0] <= x1 + reach
-            and y0 - reach <= centre[1] <= y1 + reach
-            and near(scene.frames, centre, size)
-        ):
+        size = beads.radius[i] * length
+        reach, z = MARGIN * size, _wrapped(beads.x[i, 2], low[2], period[2], length)
+        if not z0 - reach <= z <= z1 + reach:
+            continue
+        x = _wrapped(beads.x[i, 0], low[0], period[0], length)
+        y = _wrapped(beads.x[i, 1], low[1], period[1], length)
+        centre = x, y, z
+        if not (x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach and near(scene.frames, centre, size)):
             continue
         if status.impacts + ROWS > len(scene.impacts):
             return i

@@ -36,7 +36,7 @@ class Trouble(enum.IntEnum):
     CLASH = 20
 
 
-_NO_STEPS = "the force of the walls depends on the time steps between, of which these have none"
+_NO_STEPS = "the force of the walls depends on the time steps before it"
 _CHANGED = "; change the diameter, density and type of beads that touch nothing"
 # `value` is the wrong value and `limit` its limit, in SI units; `quotient` is their ratio.
 MESSAGES: dict[Trouble, str] = {
@@ -56,8 +56,8 @@ MESSAGES: dict[Trouble, str] = {
         "{limit:.4g} m in a step, and could jump through the wall; take {quotient:.2g} s at most"
     ),
     Trouble.NOT_FINITE: "its velocity is not finite; the simulation has blown up before",
-    Trouble.NO_STEPS: f"minimize, rerun: {_NO_STEPS}; take the walls out before",
-    Trouble.RESPA: f"run_style respa: {_NO_STEPS}; use 'run_style verlet'",
+    Trouble.NO_STEPS: f"minimize, rerun: {_NO_STEPS}, and here are none; take the walls out before",
+    Trouble.RESPA: f"run_style respa: {_NO_STEPS}, which must have one length; use 'run_style verlet'",
     Trouble.TRICLINIC: "box: it is triclinic, and beads would lose walls at its boundaries; use an orthogonal one",
     Trouble.DEFORMED: "box: a periodic side changes its length during the run, and walls do not; keep it constant",
     Trouble.STARTS_INSIDE: (
@@ -89,8 +89,8 @@ MESSAGES: dict[Trouble, str] = {
         f"type: it is of type {{value:.0f}}, and of {{limit:.0f}}, of another model, when it began to touch{_CHANGED}"
     ),
     Trouble.CLASH: (
-        "softening, parcel: it touches a wall with softening {value:g}, parcel {limit:g}; take these "
-        "again, or wait until it has left"
+        "softening, parcel: it touches a wall with softening {value:g}, parcel {limit:g}; give the "
+        "walls these numbers, or wait until it has left"
     ),
 }
 

@@ -1,6 +1,6 @@
 """One oblique impact on each of three plates in YADE, with ``contactlaw.softsphere``.
 
-Tested by hand with YADE 2023.02a of Debian 12, numpy 1.24.2, numba 0.68.1, h5py 3.16.0. YADE uses
+Tested with YADE 2023.02a of Debian 12, numpy 1.24.2, numba 0.68.1, h5py 3.16.0. YADE uses
 the system's Python and numpy. Run from the repository, pip installs the rest in a folder DIR:
 
     pip install --no-deps --target DIR . numba llvmlite h5py platformdirs filelock tqdm
@@ -16,9 +16,8 @@ from contactlaw.softsphere import Contacts, time_step
 
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, np.array([0.5e-3, 1e-3, 3e-3])  # [m], [m/s], [m]
 ALONG, FRICTION, UP = 3.0, 0.2, np.array([0.0, 0.0, 1.0])  # [m/s], [-], normal of the plate
-SOFTENING = 100  # divides the modulus of the contacts, for longer steps; 1 is a true contact
 model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-contacts = Contacts(model, RADIUS, THICKNESS, softening=SOFTENING)
+contacts = Contacts(model, RADIUS, THICKNESS)
 soft = O.materials.append(engine.FrictMat(young=1e-9))  # YADE's own spring is then negligible
 hard = O.materials.append(engine.FrictMat(density=model.pair.sphere.density))
 plate = O.bodies.append(utils.wall(0.0, axis=2, material=soft))
@@ -27,7 +26,7 @@ beads = [O.bodies.append(utils.sphere(at, RADIUS, material=hard)) for at in plac
 now = [O.bodies[n].state for n in beads]
 for one in now:
     one.vel = (ALONG, 0, -SPEED)
-O.dt = time_step(model, SPEED, RADIUS, THICKNESS.max(), softening=SOFTENING)
+O.dt = time_step(model, SPEED, RADIUS, THICKNESS.max())
 
 
 def push():

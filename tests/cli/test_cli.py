@@ -156,10 +156,8 @@ def test_no_line_is_wider_than_a_terminal(line, folder, answer):
     lines = answer(line).out.splitlines()
     assert lines and max(map(len, lines)) <= 80
     if "find" in line:
-        heads = next(line for line in lines if "68 %" in line).split()
+        heads = next(words for words in map(str.split, lines) if line.split()[1] in words)
         assert len({*heads}) == len(heads)
-        plural = "thicknesses" if "find thickness" in line else "speeds"
-        assert f"68 %: {plural} whose predicted range contains the COR you asked for" in " ".join(lines)
 
 
 def test_materials(answer):

@@ -43,7 +43,7 @@ def test_liners_are_found_and_tables_know_foundations(answer):
     pair = "--sphere glass --plate aluminium-6061-t6 --radius 1mm"
     (row,) = answer(f"find thickness {pair} --speed 2 --cor 0.55 --on steel-s235:0.5mm --csv").rows
     model = cl.ImpactModel(cl.Pair("glass", "aluminium-6061-t6"))
-    exact = model.thickness(0.55, 2.0, 1e-3, layers=[("aluminium-6061-t6", None), ("steel-s235", 5e-4)])
+    exact = model.thickness(0.55, 2.0, 1e-3, lambda h: cl.Layers([("aluminium-6061-t6", h), ("steel-s235", 5e-4)]))
     assert float(row["thickness_m"]) == exact.value and row["plate"].endswith(" on steel-s235:0.5mm")
     words = f"constant {pair} --thickness 1mm --foundation 1e12N/m3 --speed 0.1,10"
     question, _, first, *_ = answer(f"{words} --table").out.splitlines()

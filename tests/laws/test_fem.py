@@ -110,7 +110,7 @@ def test_soft_bodies_follow_the_slope_of_the_law():
     assert cor == pytest.approx(np.full(5, cor[-1]), rel=0.05)
 
 
-@pytest.mark.filterwarnings("ignore:.* as of no solid")
+@pytest.mark.filterwarnings("ignore:.* no solid is so strong")
 @pytest.mark.parametrize(
     ("strength", "speed", "yields", "flagged"),
     [

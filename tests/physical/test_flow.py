@@ -41,11 +41,6 @@ def test_no_hardening_and_no_rate_are_none():
     assert STEEL.flow == (350e6, 0.0, 1.0, 0.0, 1.0)
 
 
-def test_hardness_scales_of_metals_imply_a_metal():
-    kinds = [cl.Material("ball", 200e9, 0.3, 7850, hardness=text).kind for text in ("62 HRC", "200 HB", "800 HV")]
-    assert kinds == ["metal", "metal", None]
-
-
 def test_laws_without_hardening_take_the_flow_stress_of_the_hardness():
     known = dataclasses.replace(STEEL, yield_strength=None, hardness=600e6)
     hardening = dataclasses.replace(known, hardening=0.3)

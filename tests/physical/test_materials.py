@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import tomllib
-from decimal import Decimal
 from fractions import Fraction
 from importlib.resources import files
 
@@ -14,9 +13,7 @@ import numpy as np
 import pytest
 
 import contactlaw
-from contactlaw._errors import ArgumentError
-from contactlaw.answers.derivatives import with_number
-from contactlaw.physical.materials import Material, material, materials, warn_of_softened
+from contactlaw import ArgumentError, Material, material, materials
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
 FLOW = ("hardening", "rate")
@@ -78,50 +75,49 @@ ULTRASONIC = {
 }
 
 
-def raw_catalogue() -> dict[str, dict[str, object]]:
-    return tomllib.loads(files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8"))
+TABLES = tomllib.loads(files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8"))
+REFERENCES = TABLES.pop("references")
 
 
-def sound_speeds(entry: Material) -> tuple[float, float]:
+def sound_speeds(entry):
     """Longitudinal and shear wave speed [m/s] in the bulk."""
     modulus, nu, rho = entry.youngs_modulus, entry.poissons_ratio, entry.density
     longitudinal = math.sqrt(modulus * (1 - nu) / (rho * (1 + nu) * (1 - 2 * nu)))
     return longitudinal, math.sqrt(modulus / (2 * (1 + nu) * rho))
 
 
-def steel(**changes: object) -> Material:
+def steel(**changes):
     values = {"name": "steel", "youngs_modulus": 207e9, "poissons_ratio": 0.293, "density": 7850.0} | changes
-    return Material(**values)  # type: ignore[arg-type]
+    return Material(**values)
 
 
-def test_paper_pair_is_as_printed() -> None:
+def test_paper_pair_is_as_printed():
     bead, plate = material("gamma-alumina"), material("glass")
     assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6, None]
     assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None, None]
     assert "111036, Table 1" in bead.source and "111036, Table 1" in plate.source
 
 
-def test_catalogue_has_what_users_need() -> None:
+def test_catalogue_has_what_users_need():
     assert set(materials()) >= REQUIRED
     assert list(materials()) == sorted(set(materials()))
 
 
 @pytest.mark.parametrize("name", materials())
-def test_every_number_has_its_own_source(name: str) -> None:
-    table, source = raw_catalogue()[name], material(name).source
+def test_every_number_has_its_own_source(name):
+    table, source = TABLES[name], material(name).source
     # What yields needs no hardness, and so no line that says why it has none. What is known by its
     # hardness needs no line that says why it has no yield strength.
-    given = {"yield_strength"} & set(table) or {"hardness"} & set(table)
+    strength = {"yield_strength"} & set(table) or {"hardness"} & set(table)
     metal = "like" in table or table["kind"] == "metal"
     needed = {*(() if "like" in table else NUMBERS[:3])}
-    needed |= given if metal else set(NUMBERS if "yield_strength" not in table else NUMBERS[:-1])
-    sourced = set(table["source"])  # type: ignore[call-overload]
-    assert needed | {"hardness"} & set(table) <= sourced <= {*NUMBERS, "loss_factor"}
+    needed |= strength if metal else set(NUMBERS if "yield_strength" not in table else NUMBERS[:-1])
+    assert needed | {"hardness"} & set(table) <= set(table["source"]) <= {*NUMBERS, "loss_factor"}
     assert ({*FLOW} & set(table) != set()) <= ("of the same fit" in source)
     others = {"grade", "kind", "aliases", "source", "like", "uncertainty", "loss_factor", "specified_minimum"}
     assert set(table) <= {*NUMBERS, *FLOW, *others}
     assert "{" not in source, "a reference key was not expanded"
-    for number, own in table["source"].items():  # type: ignore[attr-defined]
+    for number, own in table["source"].items():
         if number in table:
             # Without a {reference} key the text itself must be long enough to be a citation.
             assert "{" in own or len(own) > 20
@@ -131,14 +127,13 @@ def test_every_number_has_its_own_source(name: str) -> None:
             assert own.startswith("none")
 
 
-def test_every_reference_is_used() -> None:
+def test_every_reference_is_used():
     text = files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
-    assert [key for key in raw_catalogue()["references"] if f"{{{key}}}" not in text] == []
-    assert not any("{" in material(name).source for name in materials())
+    assert [key for key in REFERENCES if f"{{{key}}}" not in text] == []
 
 
 @pytest.mark.parametrize("name", materials())
-def test_entry_is_physically_plausible(name: str) -> None:
+def test_entry_is_physically_plausible(name):
     entry = material(name)
     # Bar wave speed: 300 m/s is below every unfilled plastic (PTFE 470), 20 km/s above diamond.
     slowest, roundest = (30, 0.5) if name in RUBBERS else (300, 0.48)
@@ -151,17 +146,25 @@ def test_entry_is_physically_plausible(name: str) -> None:
         # A perfect crystal, three times its 0.1, is the limit. Brittle bodies are far above metals.
         least = 3e-4 if entry.kind == "metal" else 0.02
         assert least < entry.hardness / entry.youngs_modulus < 0.3
+    if name in ULTRASONIC:
+        # 6 %: the table names "steel" or "aluminum", not the alloy, and its ceramics have some pores.
+        assert sound_speeds(entry)[0] == pytest.approx(ULTRASONIC[name], rel=0.06)
+    if entry.loss_factor is not None:
+        assert entry.kind == "polymer" and 1e3 <= entry.loss_factor[1] <= 1e6
+        assert "Hz" in TABLES[name]["source"]["loss_factor"]
+    elif entry.kind == "polymer":
+        assert "no loss factor" in entry.source
 
 
 @pytest.mark.parametrize("name", materials())
-def test_every_error_has_a_reason_and_a_minimum_has_none(name: str) -> None:
-    table, entry = raw_catalogue()[name], material(name)
-    own: dict[str, tuple[float, str]] = table.get("uncertainty", {})  # type: ignore[assignment]
+def test_every_error_has_a_reason_and_a_minimum_has_none(name):
+    table, entry = TABLES[name], material(name)
+    own = table.get("uncertainty", {})
     for number, (error, reason) in own.items():
         assert 0.0 < error < 0.5 and entry.uncertainty[number] == error
         assert len(reason) > 20 or reason == "{steels}" or reason == "{aluminiums}"
         assert f"standard error of it {100 * error:g} %" in entry.source
-    for number, text in table["source"].items():  # type: ignore[attr-defined]
+    for number, text in table["source"].items():
         assert (number == "yield_strength" and "minimum" in text) == ("{bias}" in text)
         if number == "yield_strength":
             assert entry.specified_minimum == ("minimum" in text)
@@ -175,146 +178,85 @@ def test_every_error_has_a_reason_and_a_minimum_has_none(name: str) -> None:
             assert own[number][0] == pytest.approx((high - low) / math.sqrt(3) / (low + high), rel=0.08)
 
 
-def test_an_error_is_that_of_the_metal_it_is_like() -> None:
-    ball = material("stainless-steel-304-ball")
-    assert ball.uncertainty == {"youngs_modulus": 0.03, "hardness": 0.1}
-    assert material("stainless-steel-304-2b").uncertainty == {"youngs_modulus": 0.03}
-    assert material("stainless-steel-304-2b").specified_minimum and not ball.specified_minimum
-
-
-def test_a_strength_that_is_replaced_is_no_specified_minimum_any_more() -> None:
-    sheet = material("steel-s235")
-    assert sheet.specified_minimum and with_number(sheet, "density", 7.9e3).specified_minimum
-    assert not with_number(sheet, "yield_strength", 3e8).specified_minimum
-    assert not dataclasses.replace(sheet, yield_strength=None, hardness=1.4e9).specified_minimum
-
-
-@pytest.mark.parametrize("name", materials())
-def test_a_loss_factor_is_of_a_polymer_near_the_frequencies_of_impacts(name: str) -> None:
-    entry = material(name)
-    if entry.loss_factor is not None:
-        assert entry.kind == "polymer" and 1e3 <= entry.loss_factor[1] <= 1e6
-        assert "Hz" in raw_catalogue()[name]["source"]["loss_factor"]  # type: ignore[index]
-    elif entry.kind == "polymer":
-        assert "no loss factor" in entry.source
-
-
-@pytest.mark.parametrize("name", sorted(HARD))
-def test_hardness_is_the_number_that_its_source_prints(name: str) -> None:
-    printed = re.search(r"(\d+) kgf/mm2", raw_catalogue()[name]["source"]["hardness"])  # type: ignore[index]
-    assert printed is not None
-    # One kgf is 9.80665 N by definition; the catalogue rounds to three or four digits.
-    assert material(name).hardness == pytest.approx(float(printed[1]) * 9.80665e6, rel=1e-3)
-
-
-@pytest.mark.parametrize(("name", "measured"), ULTRASONIC.items())
-def test_modulus_ratio_and_density_agree_with_ultrasound(name: str, measured: float) -> None:
-    # 6 %: the table names "steel" or "aluminum", not the alloy, and its ceramics have some pores.
-    assert sound_speeds(material(name))[0] == pytest.approx(measured, rel=0.06)
-
-
-def test_tungsten_carbide_returns_the_speeds_it_was_computed_from() -> None:
-    # Half a unit in the last digit of nu = 0.206 moves the longitudinal speed by 0.03 %.
-    longitudinal, shear = sound_speeds(material("tungsten-carbide"))
-    assert longitudinal == pytest.approx(6853, rel=5e-4)
-    assert shear == pytest.approx(4171, rel=5e-4)
-
-
-def test_brittle_materials_have_no_yield_strength() -> None:
-    without = {name for name in materials() if material(name).yield_strength is None}
-    assert without == BRITTLE | BALLS | RUBBERS
-    assert {name for name in without if material(name).strength_from_hardness} == BALLS
-
-
-def test_hardness_is_given_where_there_is_no_yield_strength() -> None:
-    known = {name for name in materials() if material(name).hardness is not None}
-    assert {name for name in known if material(name).kind != "metal"} == HARD
-    assert HARD < BRITTLE and BALLS < known
-
-
-@pytest.mark.parametrize("name", [name for name in materials() if material(name).kind == "metal"])
-def test_hardness_of_a_metal_is_what_its_source_prints(name: str) -> None:
-    table = raw_catalogue()[name]
-    if "hardness" not in table:
-        return
-    printed = re.search(r"([\d.]+)(?: to (\d+))? (HRC|HBW)$", table["source"]["hardness"])  # type: ignore[index]
-    assert printed is not None
-    ends = [float(end) for end in (printed[1], printed[2] or printed[1])]
-    assert table["hardness"] == f"{sum(ends) / 2:g} {printed[3]}"
-
-
-@pytest.mark.parametrize(("name", "printed"), JOHNSON_COOK.items())
-def test_hardening_and_rate_are_johnson_and_cooks(name: str, printed: tuple[float, ...]) -> None:
-    flow = material(name).flow
-    assert flow is not None
-    strength, hardening, exponent, rate = printed
-    assert flow == pytest.approx((strength * 1e6, hardening * 1e6, exponent, rate, 1.0))
-    words = f"n {hardening * 1e6:g}, {exponent:g}: Johnson & Cook", f"[1/s] {rate:g}, 1: Johnson"
-    assert all(word in material(name).source for word in words)
-
-
-def test_only_those_metals_harden() -> None:
-    assert {name for name in materials() if material(name).rate} == set(JOHNSON_COOK)
-    assert {name for name in materials() if material(name).hardening} == set(JOHNSON_COOK)
-
-
-def test_johnson_and_cooks_4340_is_as_hard_as_they_print() -> None:
-    """Their table has 30 HRC beside it: two measurements that Tabor's rule relates."""
-    flow = material("alloy-steel-4340").flow
-    hard = steel(kind="metal", hardness="30 HRC").flow
-    assert flow is not None and hard is not None
-    assert flow.stress(0.08) == pytest.approx(hard.strength, rel=0.1)
-
-
-@pytest.mark.parametrize("names", ORDERS, ids=lambda names: names[0])
-def test_metals_are_in_the_order_of_their_hardness(names: tuple[str, ...]) -> None:
-    flows = [material(name).flow for name in names]
-    stresses = [flow.stress(0.08) for flow in flows if flow is not None]
-    assert len(stresses) == len(names) and stresses == sorted(stresses)
-
-
-def test_a_metal_in_another_temper_is_as_stiff_and_dense() -> None:
-    sheet, ball = material("stainless-steel-304"), material("stainless-steel-304-ball")
+def test_a_metal_in_another_temper_has_the_numbers_and_errors_of_the_one_it_is_like():
+    sheet, ball, smooth = (material(f"stainless-steel-304{temper}") for temper in ("", "-ball", "-2b"))
     for number in ("youngs_modulus", "poissons_ratio", "density", "kind"):
         assert getattr(sheet, number) == getattr(ball, number)
     assert sheet.source.split("; ")[1:4] == ball.source.split("; ")[1:4]
     assert "stainless-steel-304-ball" in sheet.source and "minimum" in sheet.source
+    assert ball.uncertainty == {"youngs_modulus": 0.03, "hardness": 0.1}
+    assert smooth.uncertainty == {"youngs_modulus": 0.03}
+    assert smooth.specified_minimum and not ball.specified_minimum
+
+
+def test_a_strength_that_is_replaced_is_no_specified_minimum_any_more():
+    sheet = material("steel-s235")
+    assert sheet.specified_minimum and dataclasses.replace(sheet, density=7.9e3).specified_minimum
+    assert not dataclasses.replace(sheet, yield_strength=None, hardness=1.4e9).specified_minimum
+
+
+@pytest.mark.parametrize("name", [name for name in materials() if "hardness" in TABLES[name]])
+def test_hardness_is_the_number_that_its_source_prints(name):
+    table = TABLES[name]
+    printed = re.search(r"([\d.]+)(?: to (\d+))? (HRC|HBW|kgf/mm2)", table["source"]["hardness"])
+    mean = (float(printed[1]) + float(printed[2] or printed[1])) / 2
+    if name in HARD:
+        # One kgf is 9.80665 N by definition; the catalogue rounds to three or four digits.
+        assert material(name).hardness == pytest.approx(mean * 9.80665e6, rel=1e-3)
+    else:
+        assert table["hardness"] == f"{mean:g} {printed[3]}"
+
+
+def test_tungsten_carbide_returns_the_speeds_it_was_computed_from():
+    """Half a unit in the last digit of nu = 0.206 moves the longitudinal speed by 0.03 %."""
+    assert sound_speeds(material("tungsten-carbide")) == pytest.approx((6853, 4171), rel=5e-4)
+
+
+def test_strength_and_hardness_are_given_where_they_are_known():
+    entries = {name: material(name) for name in materials()}
+    without = {name for name, entry in entries.items() if entry.yield_strength is None}
+    assert without == BRITTLE | BALLS | RUBBERS
+    assert {name for name in without if entries[name].strength_from_hardness} == BALLS
+    hard = {name for name, entry in entries.items() if entry.hardness is not None}
+    assert {name for name in hard if entries[name].kind != "metal"} == HARD
+    assert HARD < BRITTLE and BALLS < hard
+
+
+def test_hardening_and_rate_are_johnson_and_cooks():
+    for name, (strength, hardening, exponent, rate) in JOHNSON_COOK.items():
+        assert material(name).flow == pytest.approx((strength * 1e6, hardening * 1e6, exponent, rate, 1.0))
+        words = f"n {hardening * 1e6:g}, {exponent:g}: Johnson & Cook", f"[1/s] {rate:g}, 1: Johnson"
+        assert all(word in material(name).source for word in words)
+    for field in FLOW:
+        assert {name for name in materials() if getattr(material(name), field)} == set(JOHNSON_COOK)
+    # Their table has 30 HRC beside the steel 4340: two measurements that Tabor's rule relates.
+    hard = steel(kind="metal", hardness="30 HRC").flow
+    assert material("alloy-steel-4340").flow.stress(0.08) == pytest.approx(hard.strength, rel=0.1)
+
+
+@pytest.mark.parametrize("names", ORDERS, ids=lambda names: names[0])
+def test_metals_are_in_the_order_of_their_hardness(names):
+    stresses = [material(name).flow.stress(0.08) for name in names]
+    assert stresses == sorted(stresses)
 
 
 @pytest.mark.parametrize(
     ("alias", "name"),
     [
         ("304", "stainless-steel-304"),
-        ("AISI 304", "stainless-steel-304"),
         ("aisi_316", "stainless-steel-316"),
         ("gamma-Al2O3", "gamma-alumina"),
         ("  Gamma Alumina ", "gamma-alumina"),
-        ("100Cr6", "bearing-steel-52100"),
-        ("Ti-6Al-4V", "titanium-ti-6al-4v"),
-        ("6061-T6", "aluminium-6061-t6"),
         ("aluminum 2024 t3", "aluminium-2024-t3"),
-        ("Y-TZP", "zirconia"),
-        ("PTFE", "ptfe"),
         ("Nylon 6,6", "nylon-66"),
-        ("polyethylene", "hdpe"),
         ("GLASS", "glass"),
         ("304 ball", "stainless-steel-304-ball"),
-        ("S235JR", "steel-s235"),
         ("cast iron", "ductile-iron-80-55-06"),
+        *((alias, name) for name, table in TABLES.items() for alias in table.get("aliases", ())),
     ],
 )
-def test_names_are_found_however_they_are_typed(alias: str, name: str) -> None:
+def test_names_are_found_however_they_are_typed(alias, name):
     assert material(alias).name == name
-
-
-def test_no_alias_is_ambiguous_or_unreachable() -> None:
-    tables = raw_catalogue()
-    tables.pop("references")
-    spelt = [*tables, *(a for table in tables.values() for a in table.get("aliases", ()))]
-    assert len(spelt) == len(set(spelt))
-    for name, table in tables.items():
-        for alias in table.get("aliases", ()):
-            assert material(alias).name == name
 
 
 @pytest.mark.parametrize(
@@ -322,62 +264,65 @@ def test_no_alias_is_ambiguous_or_unreachable() -> None:
     [
         ("glas", "'glass'"),
         ("gama-alumina", "'gamma-alumina'"),
-        ("stainless steel", "'stainless-steel-304'"),
         ("berring steel", "'bearing-steel-52100'"),
         ("glass-bead", "did you mean 'glass'? "),
         ("steel", "'carbon-steel-1020' or 'stainless-steel-304' or 'stainless-steel-316'"),
+        ("references", ""),
+        ("", ""),
     ],
 )
-def test_unknown_name_lists_near_matches(typed: str, near: str) -> None:
+def test_unknown_name_lists_near_matches(typed, near):
     with pytest.raises(ValueError, match="unknown material") as caught:
         material(typed)
-    message = str(caught.value)
-    assert repr(typed) in message and near in message
-    assert "contactlaw.materials() lists all" in message
+    assert all(words in str(caught.value) for words in (repr(typed), near, "contactlaw.materials() lists all"))
 
 
-@pytest.mark.parametrize("name", [None, 304, "", b"glass", "references"])
-def test_material_refuses_what_is_no_name(name: object) -> None:
-    with pytest.raises(ValueError, match="must be a string|unknown material"):
-        material(name)  # type: ignore[arg-type]
+@pytest.mark.parametrize("name", [None, 304, b"glass"])
+def test_material_refuses_what_is_no_name(name):
+    with pytest.raises(ValueError, match="must be a string"):
+        material(name)
 
 
-NO_NUMBERS = math.nan, math.inf, -math.inf, 10**400, "207e9", True, np.True_, 1j, [1.0], Decimal(1)
+NO_NUMBERS = math.nan, math.inf, 10**400, "207e9", True, [1.0]
+STRONG = {"yield_strength": 350e6}
 REFUSED = [
-    *(({one: bad}, f"^{one}: got {re.escape(repr(bad))}.*material 'steel'") for one in NUMBERS for bad in NO_NUMBERS),
-    *(({one: bad}, f"^{one}: got .* must be positive") for one in NUMBERS if one[0] != "p" for bad in (0, -0.0, -1.0)),
-    *(({one: None}, f"^{one}: must be a number") for one in NUMBERS[:3]),
-    *(({"poissons_ratio": bad}, "^poissons_ratio: got .* must be above -1") for bad in (-1.0, 0.5000001, 29.3)),
-    *(({"name": bad}, "^name: .*must be a non-empty string") for bad in ("", "  ", None, 1)),
+    *(
+        ({name: bad}, f"^{name}: got {re.escape(repr(bad))}.*material 'steel'")
+        for name in NUMBERS
+        for bad in NO_NUMBERS
+    ),
+    *(({name: bad}, f"^{name}: got .* must be positive") for name in NUMBERS if name[0] != "p" for bad in (0, -1.0)),
+    *(({name: None}, f"^{name}: must be a number") for name in NUMBERS[:3]),
+    *(({"poissons_ratio": bad}, "^poissons_ratio: got .* must be above -1") for bad in (-1.0, 0.5000001)),
+    *(({"name": bad}, "^name: .*must be a non-empty string") for bad in ("  ", None)),
     ({"youngs_modulus": 207.0}, "in Pa"),  # GPa
     ({"density": 7.85, "yield_strength": 0.35}, "in Pa"),  # g/cm3 and GPa
-    ({"youngs_modulus": 207e3, "yield_strength": 350e6}, "in Pa"),  # MPa
+    ({"youngs_modulus": 207e3} | STRONG, "in Pa"),  # MPa
     ({"yield_strength": 350e15}, "in Pa"),
-    ({"hardness": 207e9}, "in Pa"),
+    ({"hardness": 207e9}, r"^hardness: got 2\S+; must be below youngs_mod.*in Pa"),
     ({"source": 42}, "^source: got 42; must be a string"),
-    ({"uncertainty": {"yield_strength": math.inf}}, "leave it out, and write specified_minimum = true"),
     ({"uncertainty": {"yield_strength": "minimum"}}, "leave it out, and write specified_minimum = true"),
     *(({"uncertainty": {"density": bad}}, r"from 0 to 1, as 0.1 for 10 % \(") for bad in (1.1, -0.1, math.inf)),
     ({"loss_factor": "handbook"}, r"write loss_factor = \[0.03, 1e4\] with your numbers"),
     ({"specified_minimum": 235e6}, "must be True or False"),
     *(
         ({"hardness": bad}, f"^hardness: got {bad!r}.* HV, HB, HBW, HRC.* .material 'steel'")
-        for bad in ("62 HRB", "7.3 GPa", "62", "HRC", "-62 HRC", "nan HV", "6 2 HV")
+        for bad in ("62 HRB", "62", "HRC", "-62 HRC", "nan HV", "6 2 HV")
     ),
-    *(({"hardness": bad}, "must be from 20 to 68 HRC.*give HV or HB") for bad in ("19.9 HRC", "68.5 HRC", "0 HRC")),
+    *(({"hardness": bad}, "must be from 20 to 68 HRC.*give HV or HB") for bad in ("19.9 HRC", "68.5 HRC")),
     ({"hardness": "0 HV"}, "^hardness: got 0.0; must be positive"),
-    ({"hardening": 0.3, "yield_strength": 350e6}, r"give \(B, n\) with B in Pa, or the hardness.*material 'steel'"),
+    ({"hardening": 0.3} | STRONG, r"give \(B, n\) with B in Pa, or the hardness.*material 'steel'"),
     ({"hardening": (2e8, 0.3, 1.0)}, r"must be \(B, n\)"),
-    ({"hardening": (-1.0, 0.3), "yield_strength": 350e6}, "B must be from 0"),
-    ({"hardening": (2e8, 1.5), "yield_strength": 350e6}, "n must be above 0 and up to 1"),
+    ({"hardening": (-1.0, 0.3)} | STRONG, "B must be from 0"),
+    ({"hardening": (2e8, 1.5)} | STRONG, "n must be above 0 and up to 1"),
     ({"hardening": (2e8, 0.3)}, "needs a yield_strength"),
-    ({"hardening": 0.3, "hardness": 0.9e9, "yield_strength": 350e6}, "as if it softened"),
+    ({"hardening": 0.3, "hardness": 0.9e9} | STRONG, "as if it softened"),
     ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
     ({"hardening": 0.7, "hardness": 3e9}, "n must be up to 0.6"),
-    ({"hardening": (275.0, 0.36), "yield_strength": 350e6}, "give it in Pa"),
-    ({"rate": 0.02, "yield_strength": 350e6}, r"must be \(C, rate0\)"),
-    ({"rate": (0.9, 1.0), "yield_strength": 350e6}, "C must be from 0 to 0.5"),
-    ({"rate": (0.02, 0.0), "yield_strength": 350e6}, "must be positive"),
+    ({"hardening": (275.0, 0.36)} | STRONG, "give it in Pa"),
+    ({"rate": 0.02} | STRONG, r"must be \(C, rate0\)"),
+    ({"rate": (0.9, 1.0)} | STRONG, "C must be from 0 to 0.5"),
+    ({"rate": (0.02, 0.0)} | STRONG, "must be positive"),
     ({"rate": (0.02, 1.0)}, "an elastic body has no flow stress"),
     # Products of these overflow: later on, they would give 'math domain error' or a force of NaN.
     ({"youngs_modulus": 1e12, "density": 1e300, "yield_strength": 1e9}, "^density: .* must .*material 'steel'"),
@@ -387,21 +332,24 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("numbers", "words"), REFUSED)
-def test_wrong_materials_are_refused_in_words(numbers: dict[str, object], words: str) -> None:
+def test_wrong_materials_are_refused_in_words(numbers, words):
     with pytest.raises(ArgumentError, match=words):
         steel(**numbers)
 
 
-@pytest.mark.parametrize("ratio", [0.5, 0.0, -0.99])
-def test_poissons_ratio_limits_are_accepted(ratio: float) -> None:
-    assert steel(poissons_ratio=ratio).poissons_ratio == ratio
-
-
-def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
-    entry = Material("flint", 75e9, 0.2, 2600.0, None, "", "ceramic", 8e9)
-    assert entry.hardness == 8e9 and entry.yield_strength is None
-    with pytest.raises(ValueError, match=r"^hardness: got 8\S+; must be below youngs_mod"):
-        dataclasses.replace(entry, hardness=80e9)
+@pytest.mark.parametrize(
+    "numbers",
+    [
+        {"poissons_ratio": 0.5},
+        {"poissons_ratio": 0.0},
+        {"poissons_ratio": -0.99},
+        {"youngs_modulus": 2e4, "density": 1000.0},  # a hydrogel
+        {"youngs_modulus": 5e6, "density": 20.0},  # expanded polystyrene
+        {"hardness": 8e9, "kind": "ceramic"},
+    ],
+)
+def test_extreme_materials_are_accepted(numbers):
+    assert {name: getattr(steel(**numbers), name) for name in numbers} == numbers
 
 
 @pytest.mark.parametrize(
@@ -412,49 +360,39 @@ def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
         {"youngs_modulus": 15e9, "hardness": "62 HRC", "hardening": 0.2},
     ],
 )
-def test_a_modulus_that_was_softened_draws_a_warning_and_no_solid_does(numbers):
+def test_a_modulus_that_was_softened_draws_a_warning(numbers):
     soft = Material("soft", poissons_ratio=0.3, density=2500.0, **numbers)
-    with pytest.warns(UserWarning, match="'soft': a strength of .* as of no solid. .* softening=") as caught:
+    with pytest.warns(UserWarning, match="'soft': a strength of .* no solid is so strong. .* softening=") as caught:
         contactlaw.ImpactModel(contactlaw.Pair(soft, "glass"))
     assert caught[0].filename == __file__
-    solids = [material(name) for name in materials()]
-    solids += [Material("soft LDPE", 0.1e9, 0.45, 915.0, yield_strength=8e6)]  # of data sheets
-    solids += [Material("fused silica", 72e9, 0.17, 2200.0, hardness=9.8e9, kind="glass")]
-    for solid in solids:
-        warn_of_softened(solid)
     with pytest.raises(ValueError, match="must be below youngs_modulus .* softening="):
         dataclasses.replace(soft, youngs_modulus=1e6)
 
 
-def test_soft_and_light_beads_are_accepted() -> None:
-    assert Material("hydrogel", 2e4, 0.5, 1000.0).youngs_modulus == 2e4
-    assert Material("expanded polystyrene", 5e6, 0.1, 20.0).density == 20.0
-    assert Material("softened for DEM", 1e6, 0.3, 2500.0).youngs_modulus == 1e6
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "solid",
+    [
+        *map(material, materials()),
+        Material("soft LDPE", 0.1e9, 0.45, 915.0, yield_strength=8e6),  # of data sheets
+        Material("fused silica", 72e9, 0.17, 2200.0, hardness=9.8e9, kind="glass"),
+    ],
+    ids=lambda solid: solid.name,
+)
+def test_no_solid_draws_a_warning(solid):
+    contactlaw.ImpactModel(contactlaw.Pair(solid, "glass"), law="hertz")
 
 
-def test_numbers_of_any_real_type_become_floats() -> None:
-    entry = steel(
-        youngs_modulus=207 * 10**9,
-        poissons_ratio=Fraction(3, 10),
-        density=np.int64(7850),
-        yield_strength=np.float32(350e6),
-        hardness=np.int32(1_600_000_000),
-    )
+def test_numbers_of_any_real_type_become_floats():
+    numbers = 207 * 10**9, Fraction(3, 10), np.int64(7850), np.float32(350e6), np.int32(1_600_000_000)
+    entry = steel(**dict(zip(NUMBERS, numbers, strict=True)))
     values = [getattr(entry, number) for number in NUMBERS]
     assert values == [207e9, 0.3, 7850.0, 350e6, 1.6e9]
     assert {type(value) for value in values} == {float}
 
 
-def test_missing_yield_strength_says_what_to_do() -> None:
-    with pytest.raises(ValueError, match="yield strength") as caught:
-        material("glass").require_yield_strength("myc")
-    message = str(caught.value)
-    for part in ("'myc'", "'glass'", "Material(..., yield_strength=...)", 'law="fem"', "Pa"):
-        assert part in message
-
-
-def test_import_reads_no_catalogue() -> None:
-    # In a fresh process, since this one has long read it.
+def test_import_reads_no_catalogue():
+    """In a fresh process, since this one has long read it."""
     code = (
         "import sys, contactlaw; contactlaw.Pair; "
         "print(sys.modules['contactlaw.physical.materials']._catalogue.cache_info().currsize)"

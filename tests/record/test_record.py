@@ -91,17 +91,6 @@ def test_what_is_saved_is_read(run, tmp_path):
             assert again.restitution(*map(float, size)) == row["restitution"]
 
 
-def test_a_table_of_pandas_has_words(run):
-    pandas = pytest.importorskip("pandas")
-    table = run[1].record().to_pandas()
-    assert isinstance(table, pandas.DataFrame) and table.shape == (7, len(IMPACT) + 2)
-    assert set(table["kind"]) == {"impact"}
-    assert sorted(set(table["sphere"])) == ["gamma-alumina", "glass"]
-    rows = run[1].collisions()
-    for words, flags in zip(table["flags"], rows["flags"], strict=True):
-        assert len(words.split(", ")) * bool(words) == int(flags).bit_count()
-
-
 def test_results_are_by_material_and_wall(run, folder, answer, capsys, empty_pictures):
     run[1].save("run.h5")
     answer("report run.h5 --out out")

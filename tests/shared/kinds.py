@@ -18,7 +18,7 @@ OTHER = cl.Material("other", 70e9, 0.3, 2700, 400e6, kind="metal")
 RATED = {
     "rate of the sphere": cl.Pair(COPPER, "glass"),
     "rate of the plate": cl.Pair("glass", STEEL),
-    "rate of both": cl.Pair(STEEP, STEEP),
+    "rate of both": cl.Pair(STEEP, STEEL),
     "the other becomes the weaker": cl.Pair(STEEL, OTHER),
     "a corner of the law": cl.Pair(HARD, "glass"),
     "rate and losses": polymer.PAIRS[2],

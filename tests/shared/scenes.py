@@ -1,13 +1,23 @@
 """Scenes that every engine runs alike: beads of two sizes over walls, by `attach` and by a loop of one's own.
 
 An engine is a function of a `Scene` that gives an `Outcome`. To add one, write such a function.
+YADE runs a scene of its own, that of the example of `docs/engines.md`.
 """
 
+import importlib.util
 import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 from loops import loop
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw.record.columns import IMPACT
@@ -92,6 +102,17 @@ SCENES = {
     "softened": Scene([_floor()], *_FALL, softening=5.0),
 }
 
+# The beads and plates of docs/examples/yade_softsphere.py.
+YADE = Scene(
+    [Plate((0.01 * n - 4e-3, -0.01, 0), (8e-3, 0, 0), (0, 0.02, 0), h) for n, h in enumerate((0.5e-3, 1e-3, 3e-3))],
+    np.array([(0.01 * n, 0.0, 0.99e-3) for n in range(3)]),
+    np.tile((3.0, 0.0, -5.0), (3, 1)),
+    np.full(3, 0.9e-3),
+    friction=0.2,
+    softening=100.0,
+    steps=2000,
+)
+
 
 def model():
     return cl.ImpactModel(PAIR, law="myc")
@@ -133,9 +154,9 @@ def _fly(
                 omega[i] += 0.5 * dt / (0.4 * mass[i] * radius[i] ** 2) * torque[i]
 
 
-def by_loop(scene):
+def by_loop(scene, mine=None):
     """By velocity Verlet and the kernel of a step, without an engine."""
-    n, mine = len(scene.radius), model()
+    n, mine = len(scene.radius), mine or model()
     contacts = WallContacts(
         scene.walls,
         mine,
@@ -174,3 +195,26 @@ def by_loop(scene):
     rows = np.sort(contacts.scene.impacts[: contacts.scene.status["impacts"][0]], order=["bead", "time"])
     rows["bead"] -= FIRST_ID - 1
     return Outcome(rows, x, v, omega)
+
+
+def by_yade(folder):
+    """What the example prints in YADE: of each plate its thickness [mm], COR, COR integrated, and both tangential CORs.
+
+    YADE has the system's Python and numpy; what else contactlaw needs is linked to in `folder`.
+    """
+    if not shutil.which("yade"):
+        pytest.skip("YADE: yade is missing: apt-get install --no-install-recommends yade")
+    version = "import sys; sys.exit(sys.version_info[:2] != " + repr(sys.version_info[:2]) + ")"
+    if subprocess.run(["/usr/bin/python3", "-c", version]).returncode:
+        pytest.skip("YADE: the system's Python has another version than this one, whose packages it cannot use")
+    for name in "contactlaw", "numba", "llvmlite", "h5py", "platformdirs", "filelock", "tqdm":
+        package = Path(importlib.util.find_spec(name).origin).parent
+        for part in package, package.with_name(f"{name}.libs"):
+            (folder / part.name).symlink_to(part)
+    script, kept = ROOT / "docs/examples/yade_softsphere.py", str(folder / "machine-code")  # of another numpy
+    environment = os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": kept}
+    done = subprocess.run(["yade", "-x", "-n", script], env=environment, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    number = r"([\d.]+)"
+    line = rf"{number} mm: COR {number}, integrated {number};\s+along {number}, integrated {number}"
+    return np.array(re.findall(line, done.stdout), float)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import style
-from contactlaw.answers.solver import solved
 from contactlaw.cli.compare import curve as model_curve
 from contactlaw.cli.parts.figure import Curve, Points, draw_curve, draw_points
+from contactlaw.equation import outcome, zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge, Edges
 from contactlaw.equation.force import HERTZ
@@ -392,15 +392,17 @@ def fig31_walls() -> chart.Drawn:
     numbers: dict[str, float] = {}
     for lam, place in ((0.1, 0.79), (0.3, 0.54), (0.6, 0.28)):
         for kind, colour, _ in _CURVED:
-            none, one = np.zeros(swings.size), np.ones(swings.size)
+            none = 0.0 * swings
+            one = none + 1.0
             edges = Edges(response_of(kind, 0.3, none), one, swings / CONTACT_TIME, none)
-            found = solved(HERTZ, lam * one, math.inf * one, 1e-10, edges=edges).restitution
+            found = outcome.at(lam * one, math.inf * one)
+            zener.solve_all(HERTZ, 1e-10, found, edges=edges)
             exact = np.array([restitution(lam, one / CONTACT_TIME, kind) for one in swings[4::8]])
-            left.plot(swings, found, color=colour, linewidth=2.6)
+            left.plot(swings, found.restitution, color=colour, linewidth=2.6)
             left.plot(
                 swings[4::8], exact, "o", color=colour, markersize=8, markerfacecolor="white", markeredgewidth=1.8
             )
-            off.append(np.abs(found[4::8] - exact).max())
+            off.append(np.abs(found.restitution[4::8] - exact).max())
         chart.note(left, 0.1, place, rf"$\lambda$ = {lam:g}")
     steel, radii = cl.ImpactModel(cl.Pair("glass", "steel-s235")), np.geomspace(8.0, 1100.0, 60)
     for kind, colour, name in _CURVED:

@@ -87,5 +87,5 @@ def _text(content: bytes) -> Impacts:
         listed = ", ".join(table.names)[:200]
         raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
     if "plate" in table.names:
-        raise ValueError("a column plate: leave it and beads on beads out; of an engine's record take .h5 or .npy")
+        raise ValueError("a column plate: remove it and rows of bead on bead; give an engine's record as .h5 or .npy")
     return table.values

@@ -39,11 +39,9 @@ def with_bands(table: Table, bands: Uncertainty | None) -> Table:
     return dataclasses.replace(table, columns=columns, values=values)
 
 
-def meaning(band: Band, pair: Pair, subject: str = _HERE) -> str:
-    """Say what is in a band, and what may move real impacts out of it; ends without a full stop.
-
-    The subject is a clause of the things that are in the band.
-    """
+def meaning(band: Band, pair: Pair) -> str:
+    """Say what is in a band, and what may move real impacts out of it; ends without a full stop."""
+    subject = _HERE
     bodies = {"bead": pair.given[0], "plate": pair.given[1]}
     unstated = [role for role, body in bodies.items() if body.strength is not None and not _has_error(body)]
     if not np.isfinite(band.low).any():

@@ -18,7 +18,7 @@ from contactlaw.cli.parts import figure, own, rebounds, wording
 from contactlaw.fitting.drops import rebounds_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.materials import Material
+from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.plates import Foundation, Layers, Shell
 from contactlaw.record.file import HDF5
@@ -157,7 +157,7 @@ def bead_radius(arguments: Namespace) -> float:
 def density(arguments: Namespace) -> float:
     """Density of the beads [kg/m3]; of those with a mass of their own, over their volume."""
     if (mass := getattr(arguments, "mass", None)) is not None:
-        return float(mass) / (4.0 / 3.0 * math.pi * bead_radius(arguments) ** 3)
+        return float(mass) / sphere_mass(1.0, bead_radius(arguments))
     return pair(arguments).given[0].density
 
 

@@ -4,7 +4,6 @@ import itertools
 from collections.abc import Sequence
 
 from contactlaw.answers.beads import Beads
-from contactlaw.answers.tabulated import Border
 from contactlaw.laws import DEFAULT
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
@@ -74,18 +73,19 @@ def pair_coeff(
     >>> pair_coeff("gamma-alumina", radius=0.9e-3, speed=40.0).split(" tangential")[0]
     'pair_coeff * * hertz/material 1.223e+10 0.86996 0.21'
     """
-    found = sphere if isinstance(sphere, (list, tuple)) else [sphere]
+    found = sphere if isinstance(sphere, list | tuple) else [sphere]
     scalars(radius=radius, speed=speed)
     check_friction(friction)
     check_softening(softening, parcel)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
     lines = []
     for (i, one), (j, two) in itertools.combinations_with_replacement(enumerate(found, 1), 2):
-        beads = Beads(one, two, DEFAULT, Border("raise"))
-        ratio = 0.5 * (beads.pair.sphere.poissons_ratio + beads.pair.plate.poissons_ratio)
-        modulus = 2.0 * (1.0 - ratio**2) * beads.pair.effective_modulus * parcel**2.5 / softening
-        restitution = float(beads.integrated(speed, radius, radius).restitution)
+        beads = Beads(one, two, DEFAULT, "raise")
+        pair = beads.bodies.pair
+        ratio = 0.5 * (pair.sphere.poissons_ratio + pair.plate.poissons_ratio)
+        modulus = 2.0 * (1.0 - ratio**2) * pair.effective_modulus * parcel**2.5 / softening
+        (part,) = beads.integrated(beads.between(speed, radius, radius))
         types = f"{i} {j}" if len(found) > 1 else "* *"
-        contact = hertz_material(modulus, restitution, ratio, tangential)
+        contact = hertz_material(modulus, part.outcome.restitution.item(), ratio, tangential)
         lines.append(f"pair_coeff {types} {contact}")
     return "\n".join(lines)

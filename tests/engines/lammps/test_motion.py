@@ -144,7 +144,7 @@ def test_a_restart_of_other_contacts_or_an_older_version_is_refused(model, tmp_p
     for contact in ({"softening": 30.0}, {}, {"softening": 7.0, "parcel": 2.0}):
         again = restarted(tmp_path / "touching")
         attach(again, model, [flat(1e-3)], **contact)
-        with pytest.raises(RuntimeError, match="a wall with softening 7, parcel 1; take these again"):
+        with pytest.raises(RuntimeError, match="a wall with softening 7, parcel 1; give the walls these numbers"):
             again.command("run 0")
     with pytest.raises(ValueError, match="plates, friction: beads are in contact with other"):
         attach(restarted(tmp_path / "touching"), model, [flat(1e-3)], friction=0.3)
