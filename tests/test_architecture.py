@@ -188,18 +188,11 @@ def test_an_engine_knows_no_other():
 
 
 def test_a_subcommand_knows_no_other():
-    """What serves one is beside it in a folder of its own; a part serves several."""
-    users = {part: set() for part in FILES["cli/parts"]}
+    """What serves several is a part."""
     for path in (ROOT / "cli").rglob("*.py"):
         home = path.relative_to(ROOT / "cli").with_suffix("").parts[0]
         for _, *name in (name for name in own(path) if name[0] == "cli" and len(name) > 1):
             assert home == "__init__" or name[0] in ("parts", home), path
-            if name[0] == "parts" and len(name) > 1:
-                users[name[1]].add(path.stem if home == "parts" else home)
-    assert {"cor", "fit", "constant"} <= users["wording"]
-    for part in reversed(users):  # the parts that import it come later, and are subcommands by now
-        users[part] = set().union(*(users.get(one, {one}) for one in users[part]))
-        assert len(users[part]) > 1, part
 
 
 def test_the_model_is_public_methods():

@@ -143,10 +143,7 @@ def test_each_impact_has_its_own_and_a_hollow_bead_is_flagged():
 )
 def test_masses_that_are_none(mass, words):
     model, at = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), (3.0, RADIUS, 1e-3)
-    for ask in (model.restitution, model.lookup, model.solve, model.force_history):
+    asked = partial(model.lookup, *at), partial(model.oblique, *at, 1e-3, 0.2), partial(Contacts, model, *at[1:])
+    for ask in asked:
         with pytest.raises(ValueError, match=words):
-            ask(*at, mass=mass)
-    with pytest.raises(ValueError, match=words):
-        model.oblique(3.0, 1.0, RADIUS, 1e-3, 0.2, mass=mass)
-    with pytest.raises(ValueError, match=words):
-        Contacts(model, RADIUS, 1e-3, mass=mass)
+            ask(mass=mass)

@@ -186,18 +186,3 @@ def test_sphere_on_sphere(model):
     forth = cl.restitution_sphere_sphere("gamma-alumina", "glass", 20.0, 1e-3, 2e-3)
     back = cl.restitution_sphere_sphere("glass", "gamma-alumina", 20.0, 2e-3, 1e-3)
     assert 0 < forth == back < 1
-
-
-def test_batches_of_every_length(model):
-    """The batch works in chunks; one impact outside the table sends its chunk another way."""
-    speed = np.random.default_rng(4).uniform(0.1, 60, 1100)
-    exact = model.lookup(speed, R, H).restitution
-    for n in (1, 511, 512, 513, 1100):
-        np.testing.assert_allclose(model.restitution(speed[:n], R, H), exact[:n], atol=2e-11)
-    solving = cl.ImpactModel(model.pair, law="myc", outside="solve")
-    speed[700] = 9000.0
-    mixed = solving.restitution(speed, R, math.inf)
-    assert mixed[700] == solving.solve(9000.0, R, math.inf, rtol=1e-10).restitution
-    others = np.arange(1100) != 700
-    fine = model.restitution(speed[others], R, math.inf)
-    np.testing.assert_allclose(mixed[others], fine, rtol=0, atol=2e-11)

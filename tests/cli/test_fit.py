@@ -9,7 +9,7 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli.parts import rebounds as tables
-from contactlaw.cli.parts.figure import MOST_CURVES, Figure
+from contactlaw.cli.parts.figure import Figure
 from contactlaw.engines.record import IMPACT
 from contactlaw.physical import flight
 from contactlaw.physical.kind import Kind
@@ -183,21 +183,6 @@ def test_a_picture(usual, folder, answer, figures):
     assert curve.y[middle] == pytest.approx(model.restitution, rel=0.01)
     assert (curve.low < curve.y).all() and (curve.y < curve.high).all() and points.x.size == points.error.size == 12
     assert "Fit: yield strength of the plate" in figure.title and "thickness 1.2 mm" in figure.about
-
-
-def test_of_several_quantities_the_one_with_the_most_values_is_drawn(table, answer, figures):
-    """And each plate has its curve, up to the most that can be distinguished."""
-    line = FIT.replace("thickness", "plate_yield_strength --plot fit.png")
-    rows = [f"{v},0.3,,{h}" for v in (1, 2) for h in range(1, 13)]
-    table("speed_m/s,COR,contact_time_us,thickness_mm", "1,0.3,20,1", *rows)
-    answer(line)
-    table("speed_m/s,COR,thickness_mm", *(f"{v},0.3,{h}" for v in range(1, 15) for h in range(1, 13)))
-    answer(line)
-    two, many = figures
-    assert (two.x, two.y) == ("thickness", "restitution")
-    assert [curve.label for curve in two.curves] == ["speed 1 m/s", "speed 2 m/s"]
-    assert len(many.curves) == MOST_CURVES and len(many.points) == MOST_CURVES + 1
-    assert sum(points.x.size for points in many.points) == 14 * 12
 
 
 def test_a_record_of_a_run_is_fitted(found, folder, answer, capsys):

@@ -52,15 +52,6 @@ def test_curves_are_the_models_over_any_list(axis, ends, label, scale, picture):
     assert shown.sum() >= 200 and (x.min(), x.max()) == pytest.approx(axes.get_xlim())
 
 
-def test_the_half_space_is_a_thin_line_over_thickness(picture):
-    figure = picture(f"--radius {R} --thickness 1mm,9mm,inf --speed 30 --no-band")
-    curve, thin = figure.axes[0].lines[0], figure.axes[0].lines[-1]
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-    assert curve.get_linewidth() > 2.0 * thin.get_linewidth()
-    assert thin.get_ydata() == pytest.approx([model.restitution(30.0, R, INF)] * 2, abs=1e-12)
-    assert "Thin line: half-space" in caption(figure)
-
-
 def test_a_name_is_no_formula(answer, folder):
     bead = "'E=2GPa nu=0.3 rho=1000 kind=ceramic name=$\\foo{$'"
     answer(f"cor --sphere {bead} --plate glass --radius 1mm --thickness 1mm --speed 1 --no-band --plot it.svg")
