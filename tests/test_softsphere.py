@@ -13,7 +13,6 @@ from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, advance, resized, time_step, unit_spring
 
 R = 0.9e-3
-G = 9.81
 PHASES = np.linspace(0.02, 0.98, 13)  # of the first touch within a step
 # thickness and speed: lambda 0 to 2, below and above yield (7.4 m/s on a half-space)
 CASES = [(math.inf, 3.0), (math.inf, 20.0), (1e-3, 5.0), (1e-3, 15.0), (0.5e-3, 3.0)]

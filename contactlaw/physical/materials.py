@@ -543,7 +543,7 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
 
 def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
     """Add what an entry takes from the one that it is `like`; sources are by number."""
-    if not isinstance(errors := table.get("uncertainty", {}), Mapping):
+    if not isinstance(errors := table.get("uncertainty", {}), dict):
         raise ValueError(f"[{name}]: uncertainty must be a table as {{yield_strength = 0.15}}, got {errors!r}")
     source = _sources(table)
     if "like" in table:
