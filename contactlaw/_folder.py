@@ -18,19 +18,22 @@ def folder() -> Path | None:
 
     Raises
     ------
-    RuntimeError
+    FileNotFoundError
         If it would be in the user's home folder and there is none, as in a container whose user
         has no entry in the list of users.
     """
     if os.environ.get("CONTACTLAW_NO_CACHE", "").lower() not in ("", "0", "no", "off", "false"):
         return None
     chosen = os.environ.get("CONTACTLAW_CACHE_DIR")
-    if not chosen:
-        import platformdirs
+    try:
+        if not chosen:
+            import platformdirs
 
-        # without a home folder old versions of platformdirs leave the ~: expanding it raises
-        chosen = platformdirs.user_cache_dir("contactlaw", appauthor=False)
-    path = Path(chosen).expanduser()
+            # without a home folder old versions of platformdirs leave the ~: expanding it raises
+            chosen = platformdirs.user_cache_dir("contactlaw", appauthor=False)
+        path = Path(chosen).expanduser()
+    except RuntimeError as error:
+        raise FileNotFoundError(str(error)) from error
     return path if is_private(path) else None
 
 

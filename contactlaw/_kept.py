@@ -51,7 +51,7 @@ def code_folder() -> Path | None:
                     file=sys.stderr,
                 )
         return folder
-    except (OSError, RuntimeError) as error:
+    except OSError as error:
         warn_once(str(error))
         return None
 

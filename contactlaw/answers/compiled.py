@@ -36,8 +36,8 @@ def kernel_of(tabulated: TableLookup) -> Callable[..., float]:
 
 def c_function(tabulated: TableLookup) -> Any:
     """COR as a C function of speed, radius and thickness, which belongs to one table."""
-    on_plate, packed = lookup.solid_on_plate, in_memory(tabulated.packed)
-    return _jit.c_function("f8(f8, f8, f8)", lambda v, r, h: on_plate(packed(), v, r, h))
+    on_plate, packed = lookup.restitution_on_plate, in_memory(tabulated.packed)
+    return _jit.c_function("f8(f8, f8, f8)", lambda v, r, h: on_plate(packed(), v, r, h, 1.0))
 
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:

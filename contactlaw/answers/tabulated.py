@@ -73,7 +73,7 @@ class TableLookup(Solver):
     @functools.cached_property
     def shapes(self) -> Array:
         """The shapes of force histories, which a first one takes a second to add to the table."""
-        return np.asarray(cache.cached_shapes(self.table).histories)
+        return cache.cached_shapes(self.table)
 
     @functools.cached_property
     def slides(self) -> Array:

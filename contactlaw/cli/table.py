@@ -48,7 +48,7 @@ def _info(arguments: Namespace) -> None:
 
 def _check(arguments: Namespace) -> None:
     stored = _stored(arguments)
-    certificate = table.certify(stored, arguments.points, secrets.randbits(32), progress=cache.progress_bar)
+    certificate = table.certify(stored, arguments.points, secrets.randbits(32))
     _print_certificate(replace(stored, certificate=certificate))
     if exceeded := certificate.exceeded(table.bounds(stored.law)):
         raise ValueError(f"the table exceeds its bounds: {exceeded}")
@@ -58,8 +58,8 @@ def _build(arguments: Namespace) -> None:
     enable_caching()
     out = Path(arguments.out or f"{arguments.law}.h5")
     with wording.writing("out", out):
-        built = table.build(_law(arguments), progress=cache.progress_bar)
-        built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)
+        built = table.build(_law(arguments))
+        built = table.with_shapes(built, points=10_000)
         file.write(built, out)
     _print_certificate(built)
     print(out)
@@ -70,7 +70,7 @@ def _stored(arguments: Namespace) -> table.Table:
     if arguments.file:
         return file.read(arguments.file)
     law = _law(arguments)
-    return file.packaged(law) or cache.cached_shapes(cache.cached(law))
+    return file.packaged(law) or cache.cached(law)
 
 
 def _law(arguments: Namespace) -> laws.Law:

@@ -243,13 +243,11 @@ def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Ed
     out.force[:, -1] = 0.0
 
 
-def shape(
-    law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0
-) -> tuple[Array, Array, Array]:
-    """Find when, and how fast, q passes given shares of its largest value.
+def shape(law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0) -> Notes:
+    """Find when, how fast and with which force q passes given shares of its largest value.
 
-    Returns the status of each impact, times [T_H] and speeds [V0]: 2 n of each for n rising shares
-    up to 1, first while loading, then back down to 0, separation.
+    There are 2 n points for n rising shares up to 1, first while loading, then back down to 0,
+    separation.
     """
     top = _run(TO_THE_TOP, law, lam, y, rtol, strength=strength)
     w, left = top.peak_compression[:, None], top.residual_compression[:, None]
@@ -257,8 +255,8 @@ def shape(
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    solutions = _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
-    return solutions.status, notes.time, notes.speed
+    _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    return notes
 
 
 def elastic_compression(law: Array, lam: ArrayLike, strength: ArrayLike = 0.0) -> Any:

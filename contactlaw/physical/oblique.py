@@ -114,11 +114,13 @@ def tangential(table: Array, slides: Array, impact: Impact, friction: float, siz
     if not size <= lookup.V_MAX:
         return math.nan, math.nan
     psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
-    at, on, strength = lookup.place_of(table, speed, radius, thickness, share)
-    e = lookup.cor_at(table, at, on)
+    head = lookup.head_of(table)
+    at, on, strength = lookup.place_of(table, head, speed, radius, thickness, share)
+    e = lookup.cor_of(table, head.axes, at, on)
     if not e >= 0.0:
         return math.nan, math.nan
-    return e, limit * change(slides, lookup.spot_of(slides, at.x, at.p, strength), e, psi)
+    near, rung = lookup.place_near(slides, lookup.head_of(slides), at.x, at.p / at.w, strength)
+    return e, limit * change(slides, near, rung, e, psi)
 
 
 @kernel

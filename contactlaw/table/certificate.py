@@ -14,8 +14,7 @@ from contactlaw.equation.outcome import FIELDS, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
 from contactlaw.table.grid import Grid
-from contactlaw.table.lookup import NEXT, STRETCH
-from contactlaw.table.sweep import Progress
+from contactlaw.table.lookup import STRETCH
 
 BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-3}
 """Promised errors: absolute for COR and shares, relative to the largest value for the other fields."""
@@ -29,7 +28,7 @@ _SMALL_DENT = 0.01  # of the largest residual compression, above which errors of
 _SAMPLES = 33  # samples of a force history that are compared
 _HISTORIES = 1000  # at most so many histories are compared
 _AT_ENDS = 0.05  # share of the points with lambda = 0, and of those with the largest
-_NEAR_KINK = 0.02  # in ln p; some of the points lie this near to yield, on either side
+_NEAR_KINK = 0.01  # of a block of columns; some of the points lie this near to yield, on either side
 _CORNER = 1e-3  # jump of a loading curve's slope, relatively, that makes outcomes less smooth
 
 
@@ -88,77 +87,51 @@ class Certificate:
         return {name: e for name, e in self.largest.items() if not e <= bounds[name]}
 
 
-def compare_outcomes(
-    law: Law, rtol: float, packed: Array, points: int, seed: int, progress: Progress
-) -> tuple[Outcome, dict[str, Array]]:
-    """Outcomes that are looked up at random points, and their errors by field."""
+def measured(law: Law, rtol: float, packed: Array, histories: Array | None, points: int, seed: int) -> dict[str, Array]:
+    """Errors by field at random points."""
     if not 100 <= points <= 10_000_000:
         raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
     if seed < 0:
         raise ArgumentError("seed", seed, "must not be negative")
-    lam, y, strength = random_points(Grid.of(packed), points, np.random.default_rng(seed))
-    looked, exact = outcome.at(lam, y, strength), sweep.solved(law, lam, y, strength, _FINER * rtol, progress)
+    numbers, rtol = random_points(Grid.of(packed), points, np.random.default_rng(seed)), _FINER * rtol
+    looked, exact = outcome.at(*numbers), sweep.solved(law, *numbers, rtol)
     lookup.fields(packed, True, looked)  # rounding may put points at the border outside
-    ours, truth = (_named(law, values, balanced) for values, balanced in ((looked, True), (exact, False)))
-    errors = {}
-    for name, values in truth.items():
+    errors, ours = {}, _named(law, looked, True)
+    for name, values in _named(law, exact, False).items():
         scale = 1.0 if name == "restitution" or "fraction" in name else np.abs(values).max()
         if name == "residual_compression":
             scale = np.maximum(np.abs(values), max(_SMALL_DENT * scale, 1e-12))
         errors[name] = np.abs(ours[name] - values) / scale
     errors["contact_time"][exact.restitution < _RETURNING] = 0.0
-    return looked, errors
-
-
-def compare_histories(law: Law, rtol: float, packed: Array, looked: Outcome) -> Array:
-    """Errors of the force histories of outcomes that were looked up."""
-    looked = outcome.part(looked, slice(None, None, -(-looked.restitution.size // _HISTORIES)))
-    ours, exact = (outcome.history(looked.contact_time, _SAMPLES) for _ in range(2))
-    data = law.at_any_strength
-    shapes.sample(data, packed, looked, ours)
-
-    def solve(part: slice) -> None:
-        found = outcome.part(exact, part)
-        zener.histories(data, outcome.part(looked, part), _FINER * rtol, found)
-
-    sweep.in_parts(solve, looked.restitution.size)
-    return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))
+    if histories is not None:
+        some = outcome.part(looked, slice(None, None, -(-points // _HISTORIES)))
+        sampled, solved = (outcome.history(some.contact_time, _SAMPLES) for _ in range(2))
+        shapes.sample(law.at_any_strength, histories, some, sampled)
+        zener.histories(law.at_any_strength, some, rtol, solved)
+        errors["force_history"] = np.abs(sampled.force - solved.force).max(axis=1) / solved.force.max(axis=1)
+    return errors
 
 
 def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array, Array]:
     """Draw inelasticities, yield ratios and ln k: some on the half-space, near yield, and below it."""
-    axes, u = grid.axes, generator.random((6, count))
+    axes, u = grid.axes, generator.random((4, count))
     # uniform in the root: COR changes most where lambda is small
-    largest = STRETCH * axes.x_max / (1.0 - axes.x_max)
-    lam = u[0] ** 2 * largest
-    lam[u[1] < _AT_ENDS], lam[u[1] > 1.0 - _AT_ENDS] = 0.0, largest
-    log_k = np.sort(u[2]) * grid.ladder[-1]
-    x, k = lam / (lam + STRETCH), grid.rungs[:, 0]
-    square, *factors = (np.interp(np.exp(log_k), k, column) for column in grid.rungs[:, 1:].T)
-    g, own = np.sqrt(square), np.array(factors)
-    end = g * np.maximum(grid.end(x, own), 1.0)
-    slowest, top = axes.slowest * g, np.maximum(end * (NEXT if axes.after else 1.0), axes.top * g * own[0])
-    p = g * (end / g) ** u[3]  # even in ln chi up to the end of the law
-    kinds = [u[4] < 0.2, u[4] < 0.4, u[4] < 0.4 + 0.1 * (axes.after > 0.0)]
-    others = [slowest * (g / slowest) ** u[3], g * np.exp(_NEAR_KINK * (2.0 * u[5] - 1.0)), end + u[3] * (top - end)]
-    p = np.clip(np.select(kinds, others, p), slowest, top)
-    return lam, grid.yield_ratios(x, p, g, own), log_k
+    root = np.clip((1.0 + 2.0 * _AT_ENDS) * u[0] - _AT_ENDS, 0.0, 1.0)
+    lam = root**2 * (STRETCH * axes.x_max / (1.0 - axes.x_max))
+    log_k = np.sort(u[1]) * grid.ladder[-1]
+    rung = np.array([np.interp(np.exp(log_k), grid.rungs[:, 0], column) for column in grid.rungs.T])
+    kinds = [u[2] < 0.2, u[2] < 0.4, u[2] < 0.4 + 0.1 * (axes.after > 0.0)]
+    t = np.select(kinds, [u[3], 1.0 + _NEAR_KINK * (2.0 * u[3] - 1.0), 2.0 + u[3]], 1.0 + u[3])
+    return lam, grid.yield_ratios(lam / (lam + STRETCH), t, rung), log_k
 
 
 def _named(law: Law, values: Outcome, balanced: bool) -> dict[str, Array]:
     """Fields of `BOUNDS` from an outcome, computed as in `contactlaw.physical.rebound`."""
+    found = outcome.extremes(values.restitution.size)
+    zener.extremes(law.at_any_strength, values, found)
     compression = values.compression_ratio * values.elastic_compression
-    extremes = outcome.extremes(compression.size)
-    zener.extremes(law.at_any_strength, values, extremes)
-    found = {
-        "restitution": values.restitution,
-        "contact_time": values.contact_time,
-        "peak_compression": compression,
-        "wave_fraction": values.inelasticity * values.wave_rate,
-        **extremes._asdict(),
-    }
+    shares = np.array([found.plastic_fraction, values.inelasticity * values.wave_rate, found.other_fraction])
     if balanced:
-        shares = [name for name in found if "fraction" in name]
-        factor = outcome.balance(values.restitution, sum(found[name] for name in shares))
-        found.update({name: found[name] * factor for name in shares})
-    return found
+        shares *= outcome.balance(values.restitution, shares.sum(axis=0))
+    fields = values.restitution, values.contact_time, found.peak_force, compression, found.residual_compression, *shares
+    return dict(zip(BOUNDS, fields, strict=False))

@@ -6,14 +6,13 @@ altered is refused with a sentence, whatever HDF5 would have made of it. The che
 not intent: a file that fits it is checked for what kernels rely on, no more.
 """
 
-import contextlib
 import dataclasses
 import functools
 import hashlib
 import io
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
@@ -29,27 +28,26 @@ from contactlaw._version import VERSION
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law, Strengths
-from contactlaw.table import lookup, shapes
+from contactlaw.table import grid, shapes
 from contactlaw.table.certificate import Certificate
 from contactlaw.table.grid import Settings
 from contactlaw.table.table import Table
 
 FORMAT = "contactlaw table"
-SCHEMA = 7
+SCHEMA = 8
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: a PC can hold it
 _DATASETS = {
-    "law/data": "force law, see contactlaw.equation.force [d_Y, F_Y]",
-    "law/loading_kinks": "of the loading curve [d_Y]",
-    "law/outcome_kinks": "of the outcomes [d_Y]",
-    "law/waves": "of plates, see contactlaw.equation.corrections; none: thin [-]",
-    "strengths/data": "force laws at all strengths, see contactlaw.equation.force [d_Y, F_Y]",
-    "strengths/knots": "ln of the strength, between which outcomes are smooth [-]",
+    "law": "force law, see contactlaw.equation.force [d_Y, F_Y]",
+    "strengths": "force laws at all strengths, see contactlaw.equation.force [d_Y, F_Y]",
     "table": f"grid and splines, see contactlaw.table.lookup, of: {'; '.join(STORED)}",
-    "histories": "grid and splines, see contactlaw.table.shapes, of times [T_H] and speeds [V0]",
+    "histories": "grid and splines, see contactlaw.table.shapes, of times [T_H], speeds [V0], forces [m V0/T_H]",
+    "shapes": "the same, in a file of its own",
     "slides": "grid and splines, see contactlaw.table.slides, of changes of the sliding speed [-]",
 }
-_NUMBERS = "parameters", "yield_coefficient", "scale", "range"  # of a law
+# Of a law, beside its data.
+_OF_LAW = ["family", "source", "yield_coefficient", "parameters", "scale", "range", "waves"]
+_OF_LAW += ["loading_kinks", "outcome_kinks"]
 
 
 class DamagedTableError(ValueError):
@@ -71,17 +69,14 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
     OSError
         If the folder does not exist, is not writable or full; nothing is left behind then.
     """
-    law, arrays = table.law, {"table": table.packed}
-    for name in ("data", "loading_kinks", "outcome_kinks", "waves"):
-        arrays[f"law/{name}"] = np.array(getattr(law, name) if getattr(law, name) is not None else (), dtype=float)
+    law, arrays = table.law, {"table": table.packed, "law": table.law.data}
+    about: dict[str, Any] = {"law": {name: getattr(law, name) for name in _OF_LAW}, "settings": asdict(table.settings)}
     if law.strengths is not None:
-        arrays |= {"strengths/data": law.strengths.data, "strengths/knots": np.array(law.strengths.knots)}
+        arrays["strengths"], about["knots"] = law.strengths
     if table.histories is not None:
         arrays["histories"] = table.histories
-    about = {"law": law.family, "law_source": law.source, **asdict(table.settings)}
-    about["law_numbers"] = json.dumps({name: getattr(law, name) for name in _NUMBERS})
     if table.certificate is not None:
-        about["certificate"] = json.dumps(asdict(table.certificate))
+        about["certificate"] = asdict(table.certificate)
     store(path, arrays, about)
 
 
@@ -89,16 +84,17 @@ def store(path: str | os.PathLike[str], arrays: Mapping[str, Array], about: Mapp
     """Write arrays, and what is known about them, as one file with a checksum."""
     image = io.BytesIO()
     with h5py.File(image, "w", userblock_size=_BLOCK) as file:
-        file.attrs.update(format=FORMAT, schema=SCHEMA, contactlaw_version=VERSION, **about)
+        file.attrs.update(format=FORMAT, schema=SCHEMA, contactlaw_version=VERSION, about=json.dumps(about))
         for name in sorted(arrays):
             file[name] = arrays[name]
             file[name].attrs["description"] = _DATASETS[name]
-    _atomic.write(path, _sign(image.getvalue()[_BLOCK:]))
+    content = image.getvalue()[_BLOCK:]
+    _atomic.write(path, _signature(content) + content)
 
 
-def _sign(content: bytes) -> bytes:
-    digest = hashlib.sha256(content).hexdigest()
-    return f"{FORMAT} sha256 {digest}\n".encode().ljust(_BLOCK, b"\0") + content
+def _signature(content: Any) -> bytes:
+    """Return the user block before a content."""
+    return f"{FORMAT} sha256 {hashlib.sha256(content).hexdigest()}\n".encode().ljust(_BLOCK, b"\0")
 
 
 def read(path: str | os.PathLike[str]) -> Table:
@@ -122,23 +118,22 @@ def read(path: str | os.PathLike[str]) -> Table:
         If the file is no table, was altered or cut short, has another schema or holds a value
         that no table has; the message says how to rebuild it.
     """
-    with _refused(path):
-        arrays, about = load(path)
-        settings = Settings(**{name: type(one)(about[name]) for name, one in asdict(Settings()).items()})
-        errors = about.get("certificate")
-        table = Table(_law(arrays, about), settings, arrays["table"], arrays.get("histories"))
-        lookup.check(table.packed, len(STORED))
-        if table.histories is not None:
-            lookup.check(table.histories, 2 * shapes.SIZE)
-        return dataclasses.replace(table, certificate=None if errors is None else Certificate(**json.loads(errors)))
-
-
-@contextlib.contextmanager
-def _refused(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Say how to make a table again whose file cannot be used."""
     remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
     try:
-        yield
+        arrays, about = load(path)
+        force.check(arrays["law"])  # kernels follow addresses in it
+        numbers: dict[str, Any] = {
+            name: tuple(one) if isinstance(one, list) else one for name, one in about["law"].items()
+        }
+        if "strengths" in arrays:
+            force.check_strengths(arrays["strengths"])
+            numbers["strengths"] = Strengths(arrays["strengths"], tuple(about["knots"]))
+        grid.check(arrays["table"], len(STORED))
+        if "histories" in arrays:
+            grid.check(arrays["histories"], shapes.FIELDS)
+        certificate = Certificate(**about["certificate"]) if "certificate" in about else None
+        law, settings = Law(data=arrays["law"], **numbers), Settings(**about["settings"])
+        return Table(law, settings, arrays["table"], arrays.get("histories"), certificate)
     except FileNotFoundError:
         raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
     except (OSError, LookupError, ValueError, TypeError, RuntimeError, AttributeError) as error:
@@ -148,47 +143,28 @@ def _refused(path: str | os.PathLike[str]) -> Iterator[None]:
 def load(path: str | os.PathLike[str]) -> tuple[dict[str, Array], dict[str, Any]]:
     """Read arrays, and what is known about them, from a file whose checksum fits."""
     content = content_of(Path(path), LARGEST)
-    head = content[:_BLOCK].rstrip(b"\0").decode("ascii", "replace").split()
-    if head[:-1] != [*FORMAT.split(), "sha256"]:
+    if not content.startswith(f"{FORMAT} sha256 ".encode()):
         raise ValueError("it is not a table, or its first bytes were altered")
-    if head[-1] != hashlib.sha256(memoryview(content)[_BLOCK:]).hexdigest():
+    if content[:_BLOCK] != _signature(memoryview(content)[_BLOCK:]):
         raise ValueError("its checksum does not fit: it was cut short or altered")
     with h5py.File(io.BytesIO(content), "r") as file:
         if (found := file.attrs.get("schema")) != SCHEMA:
             raise ValueError(f"it is a table of schema {found}, not {SCHEMA}: another version of contactlaw made it")
-        return {name: _numbers(file[name]) for name in _DATASETS if name in file}, dict(file.attrs)
+        arrays = {name: _numbers(file[name]) for name in _DATASETS if name in file}
+        return arrays, json.loads(file.attrs["about"])
 
 
 def _numbers(dataset: h5py.Dataset) -> Array:
     """Read a row of numbers; refuse other types, and what no file holds."""
     name = dataset.name.lstrip("/")
-    if dataset.ndim != 1 or dataset.dtype.newbyteorder("=") != np.float64:
+    if dataset.ndim != 1 or dataset.dtype != np.float64:
         raise ValueError(f"its {name} holds {dataset.dtype} of shape {dataset.shape}, not a row of float64")
     if dataset.nbytes > LARGEST:  # a few bytes of a file may declare an array of any size
         raise ValueError(f"its {name} has {dataset.nbytes} bytes, above {LARGEST}")
-    values: Array = dataset[()].astype(np.float64, copy=False)
+    values: Array = dataset[()]
     if np.isnan(values).any():
         raise ValueError(f"its {name} holds nan")
     return values
-
-
-def _law(arrays: Mapping[str, Array], about: Mapping[str, Any]) -> Law:
-    """Make the law of a table; its data are checked, since kernels follow addresses in them."""
-    strengths, numbers = None, json.loads(about["law_numbers"])
-    force.check(arrays["law/data"])
-    if "strengths/data" in arrays:
-        force.check_strengths(arrays["strengths/data"])
-        strengths = Strengths(arrays["strengths/data"], tuple(arrays["strengths/knots"].tolist()))
-    return Law(
-        family=about["law"],
-        source=about["law_source"],
-        data=arrays["law/data"],
-        loading_kinks=tuple(arrays["law/loading_kinks"].tolist()),
-        outcome_kinks=tuple(arrays["law/outcome_kinks"].tolist()),
-        waves=tuple(arrays["law/waves"].tolist()) or None,
-        strengths=strengths,
-        **{**numbers, "range": tuple(numbers["range"])},
-    )
 
 
 @functools.lru_cache(maxsize=16)

@@ -10,8 +10,12 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
+from numpy.polynomial.polynomial import polyfit, polyval
+from scipy.interpolate import CubicSpline
 
 from contactlaw._arrays import Array
 from contactlaw._errors import ArgumentError
@@ -88,7 +92,11 @@ def on_demand(law: Law) -> Settings:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Nodes of a table, and the beginning of its packed array."""
+    """Nodes of a table, and the beginning of its packed array.
+
+    A position t is a column as a number that no count of cells changes: up to 1 in the first block,
+    from 1 to 2 in that up to the law's end, and from 2 to 3 beyond.
+    """
 
     head: Array  # see `contactlaw.table.lookup`; without a pair
     rungs: Array  # likewise, (rungs, RUNG)
@@ -109,77 +117,88 @@ class Grid:
         """Numbers of cells and limits."""
         return Axes(*self.head[: len(Axes._fields)].tolist())
 
-    def with_cells(self, rows: int, below: int, beyond: int, after: int) -> "Grid":
-        """Change the numbers of cells."""
-        head, axes = self.head.copy(), self.axes
-        counts = [below, beyond, after * (axes.after > 0.0)]
-        stride = 1 + sum(count + 3 for count in counts if count)
-        head[: lookup.PAIR] = (*(axes.x_max, rows, *counts, stride, (rows + 4) * stride), *axes[7 : lookup.PAIR])
-        return dataclasses.replace(self, head=head)
+    def with_axes(self, **changed: float) -> "Grid":
+        """Change numbers of the axes, as those of cells."""
+        axes = self.axes._replace(**changed)
+        stride = 1 + sum(count + 3 for count in self._cells(axes))
+        axes = axes._replace(stride=stride, size=(axes.rows + 4) * stride)
+        return dataclasses.replace(self, head=np.concatenate([axes, self.head[len(axes) :]]))
 
     def on_ladder(self, law: Law, ladder: Array) -> "Grid":
         """Change the strengths, which are ln k; where their laws end is found by the solver."""
-        head, axes, rungs = self.head.copy(), self.axes, np.zeros((ladder.size, RUNG))
-        head[Axes._fields.index("rungs")], rungs[:, 0] = ladder.size, np.exp(ladder)
-        rungs[:, [1, 2, 5]] = 1.0
-        x = axes.x_max * np.linspace(0.0, 1.0, 7)
-        lam = STRETCH * x / (1.0 - x)
-        for n, log_k in enumerate(ladder.tolist() if law.strengths else ()):
+        rungs = np.tile([1.0, 1.0, *lookup.ALIKE, *lookup.ALIKE], (ladder.size, 1))
+        x = self.axes.x_max * np.linspace(0.0, 1.0, 7)
+        for row, log_k in zip(rungs, ladder.tolist() if law.strengths else (), strict=False):
             growth = force.growth_at(law.at_any_strength, log_k)
-            w, end = zener.elastic_compression(law.at_any_strength, lam, log_k), self.end(x)
-            if axes.after:
-                end = (_overloads(law, x, w, log_k, _end(law, log_k)) / axes.unit) ** 0.25
-            rungs[n, 1] = math.sqrt(growth)
-            rungs[n, 2:5] = np.polynomial.polynomial.polyfit(x, end / self.end(x), 2)
-            rungs[n, 5:] = np.polynomial.polynomial.polyfit(x, (w / self.elastic(x)) ** 0.25, 2)
-        return dataclasses.replace(self, head=head, rungs=rungs)
+            w, end = zener.elastic_compression(law.at_any_strength, STRETCH * x / (1.0 - x), log_k), self.end(x)
+            if self.axes.after:
+                end = (_overloads(law, x, w, log_k, _end(law, log_k)) / self.axes.unit) ** 0.25
+            row[:2] = math.exp(log_k), math.sqrt(growth)
+            row[2:5], row[5:] = (polyfit(x, one, 2) for one in (end / self.end(x), (w / self.elastic(x)) ** 0.25))
+        return dataclasses.replace(self.with_axes(rungs=ladder.size), rungs=rungs)
 
-    def _polynomial(self, x: Array, begins: int, factors: Array | None) -> Array:
-        """Polynomial of slow impacts, or times the square of a rung (3, ...)."""
-        slow = np.polynomial.polynomial.polyval(x, self.head[begins : begins + DEGREE + 1])
-        return np.asarray(slow if factors is None else slow * (factors[0] + x * (factors[1] + x * factors[2])))
+    def elastic(self, x: Array, factor: Any = lookup.ALIKE) -> Array:
+        """Return w, the largest elastic compression; the factor is `slower` of a rung."""
+        return self._polynomial(lookup.ELASTIC, x, factor) ** 4
 
-    def elastic(self, x: Array, own: Array | None = None) -> Array:
-        """Return w, the largest elastic compression; `own` are the numbers of a rung (6, ...)."""
-        return self._polynomial(x, lookup.ELASTIC, own if own is None else own[3:]) ** 4
+    def end(self, x: Array, factor: Any = lookup.ALIKE) -> Array:
+        """Return p at the end of the law; the factor is `later` of a rung."""
+        return np.maximum(self._polynomial(lookup.END, x, factor), 1.0)
 
-    def end(self, x: Array, own: Array | None = None) -> Array:
-        """Return p/g at the end of the law."""
-        return self._polynomial(x, lookup.END, own)
+    def _polynomial(self, begins: int, x: Array, factor: Any) -> Array:
+        return np.asarray(polyval(x, self.head[begins : begins + DEGREE + 1]) * polyval(x, factor, tensor=False))
 
-    def yield_ratios(self, x: Array, p: Array, g: Array, own: Array) -> Array:
-        """Yield ratios y at places; slower impacts than the slowest have its outcome."""
-        return np.asarray(self.elastic(x, own) / (self.axes.unit * np.maximum(p / g, self.axes.slowest) ** 4))
+    def yield_ratios(self, x: Array, t: Array, rung: Any) -> Array:
+        """Yield ratios y at positions t; slower impacts than the slowest have its outcome."""
+        axes, end = self.axes, self.end(x, rung[2:5])
+        top = np.maximum(axes.top * rung[2], lookup.NEXT * end)
+        q, s, beyond = np.minimum(t, 1.0), np.clip(t - 1.0, 0.0, 1.0), np.maximum(t - 2.0, 0.0)
+        p = q / (2.0 - q) + s * (end - 1.0) / (2.0 - s) + beyond * (top - end)
+        return np.asarray(self.elastic(x, rung[5:]) / (axes.unit * np.maximum(p, axes.slowest) ** 4))
 
     def nodes(self) -> tuple[Array, Array, Array]:
         """Inelasticity, yield ratio and ln k at every node, (rungs, rows, columns)."""
-        axes, rungs = self.axes, self.rungs.T[:, :, None, None]
-        g = np.sqrt(rungs[1])
-        x = np.linspace(0.0, axes.x_max, int(axes.rows) + 1)[:, None] + 0.0 * g
-        end = g * np.maximum(self.end(x, rungs[2:]), 1.0)
-        q, s, t = (np.linspace(0.0, 1.0, int(count) + 1) for count in (axes.below, axes.beyond, axes.after))
-        p = [g * q / (2.0 - q) + 0.0 * x, (2.0 * g + s * (end - 2.0 * g)) / (2.0 - s)]
-        if axes.after:
-            p.append(end + t * (np.maximum(axes.top * g * rungs[2], lookup.NEXT * end) - end))
-        whole = np.concatenate(p, axis=2)
-        y = self.yield_ratios(np.broadcast_to(x, whole.shape), whole, g, rungs[2:])
-        return STRETCH * x / (1.0 - x) + 0.0 * whole, y, np.log(rungs[0]) + 0.0 * whole
+        axes, rung = self.axes, self.rungs.T[:, :, None, None]
+        x = np.linspace(0.0, axes.x_max, int(axes.rows) + 1)[:, None]
+        t = np.concatenate([n + np.linspace(0.0, 1.0, count + 1) for n, count in enumerate(self._cells(axes))])
+        y = self.yield_ratios(x, t, rung)
+        return STRETCH * x / (1.0 - x) + 0.0 * y, y, np.log(rung[0]) + 0.0 * y
 
-    def coefficients(self, values: Array) -> Array:
-        """Coefficients of cubic splines through values at nodes, along rows and columns.
+    @staticmethod
+    def _cells(axes: Axes) -> list[int]:
+        """Return the numbers of cells of each block of columns."""
+        return [int(count) for count in (axes.below, axes.beyond, axes.after) if count]
 
-        Values may have more axes. Rows and columns end with one more coefficient: kernels read it
-        with the weight 0, without a test.
+    def packed(self, values: Array) -> Array:
+        """Pack the grid and splines through values at its nodes, one after the other (nodes, fields).
+
+        Rows and columns end with one more coefficient: kernels read it with the weight 0, without a
+        test.
         """
-        counts = [int(count) + 1 for count in self.axes[2:5] if count]
-        blocks = np.split(values.swapaxes(0, 2), np.cumsum(counts)[:-1])
-        fitted = np.concatenate([spline_coefficients(block) for block in blocks]).swapaxes(0, 2)
-        fitted = spline_coefficients(fitted.swapaxes(0, 1)).swapaxes(0, 1)
-        return np.pad(fitted, [(0, 0), (0, 1), (0, 1), *[(0, 0)] * (values.ndim - 3)], mode="edge")
+        axes = self.axes
+        stride = int(axes.stride) - 2 * len(self._cells(axes)) - 1  # nodes of a row
+        values = values.reshape(int(axes.rungs), int(axes.rows) + 1, stride, -1)
+        blocks = np.split(values, np.cumsum(np.array(self._cells(axes)) + 1)[:-1], axis=2)
+        fitted = spline_coefficients(np.concatenate([spline_coefficients(block, 2) for block in blocks], axis=2), 1)
+        fitted = np.pad(fitted, [(0, 0), (0, 1), (0, 1), (0, 0)], mode="edge")
+        return np.concatenate([self.head, self.rungs.ravel(), np.moveaxis(fitted, 3, 0).ravel()])
 
-    def packed(self, coefficients: Array) -> Array:
-        """Pack all into one array."""
-        return np.concatenate([self.head, self.rungs.ravel(), coefficients.ravel()])
+
+def check(packed: Array, fields: int) -> None:
+    """Refuse an array that is no table of so many numbers at a node.
+
+    Raises
+    ------
+    ValueError
+        If it is none: kernels would read beyond its end.
+    """
+    grid = Grid.of(packed)
+    axes, counts = grid.axes, np.array([*grid.axes[1:5], grid.axes.rungs])
+    whole = np.isfinite(packed).all() and (counts == abs(counts.round())).all() and axes.rungs >= 1.0
+    rises = (np.diff(grid.rungs[:, 0]) > 0.0).all() and (grid.rungs[:, 1] > 0.0).all()
+    size = lookup.HEADER + axes.rungs * (RUNG + fields * axes.size)
+    if not (whole and rises and grid.with_axes().axes == axes and packed.size == size):
+        raise ValueError(f"its table of {packed.size} numbers does not fit its axes")
 
 
 def grid(law: Law, settings: Settings) -> Grid:
@@ -192,26 +211,18 @@ def grid(law: Law, settings: Settings) -> Grid:
     unit, most = 1.0 if law.yields else _ELASTIC * law.range[0], settings.largest_overload
     x_max = settings.largest_inelasticity / (settings.largest_inelasticity + STRETCH)
     x = x_max * (0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES))
-    lam = STRETCH * x / (1.0 - x)
-    w, end = np.asarray(zener.elastic_compression(law.data, lam)), np.full(_NODES, most)
-    after = False
+    w, end = np.asarray(zener.elastic_compression(law.data, STRETCH * x / (1.0 - x))), np.full(_NODES, most)
     if law.range[1] < math.inf:
         found = _overloads(law, x, w, 0.0, law.range[1])
-        after = found.min() < most
-        end = found if after else end
-    series = [_powers_of(x, one**0.25) for one in (w, end / unit)]
-    head = np.zeros(lookup.HEADER)
+        end = found if found.min() < most else end
+    after = bool(end.min() < most)
     slowest = _SLOWEST if law.is_hertz else max(_SLOWEST, 1.001 * (law.range[0] / unit) ** 0.25)
-    head[: lookup.PAIR] = (x_max, 0, 0, 0, after, 0, 0, 1, (most / unit) ** 0.25 * after, unit, slowest)
-    head[lookup.ELASTIC : lookup.END], head[lookup.END :] = series
-    made = Grid(head, np.empty(0)).with_cells(settings.rows, BELOW, settings.columns, AFTER)
-    return made.on_ladder(law, np.zeros(1))
-
-
-def _powers_of(x: Array, values: Array) -> Array:
-    """Coefficients of a polynomial in x, fitted in Chebyshev's polynomials: powers are nearly alike."""
-    fitted = np.polynomial.Chebyshev.fit(x, values, DEGREE)
-    return np.asarray(fitted.convert(kind=np.polynomial.Polynomial).coef)
+    # fitted in Chebyshev's polynomials: powers are nearly alike
+    series = [Chebyshev.fit(x, one**0.25, DEGREE).convert(kind=Polynomial).coef for one in (w, end / unit)]
+    made = Grid(np.concatenate([np.zeros(lookup.ELASTIC), *series]), np.empty(0))
+    top = (most / unit) ** 0.25
+    cells = {"rows": settings.rows, "below": BELOW, "beyond": settings.columns, "after": AFTER * after}
+    return made.with_axes(x_max=x_max, top=top, unit=unit, slowest=slowest, **cells).on_ladder(law, np.zeros(1))
 
 
 def ladder_of(law: Law, widest: float) -> Array:
@@ -243,26 +254,14 @@ def _overloads(law: Law, x: Array, w: Array, log_k: float, deepest: float) -> Ar
     raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {deepest} d_Y")
 
 
-def spline_coefficients(values: Array) -> Array:
-    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends.
+def spline_coefficients(values: Array, axis: int = 0) -> Array:
+    """Coefficients of the cubic B-spline through uniform nodes along an axis, not-a-knot ends.
 
-    With v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node and no jump of the third derivative next to
-    the ends, c is known there; a tridiagonal system is left between. Solved without LAPACK, whose
-    threads would fight for the cores with those of an MPI run.
+    At node i the value is v = (c[i-1] + 4 c[i] + c[i+1])/6 and the second derivative c[i-1] - 2 c[i] +
+    c[i+1], so that c[i] is v less a sixth of that.
     """
-    n = len(values)
-    if n < 4:
-        raise ArgumentError("values", n, "a spline with not-a-knot ends needs at least 4 nodes")
-    c = np.empty((n + 2, *values.shape[1:]))
-    c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
-    gain = np.zeros(n + 2)
-    for k in range(3, n - 1):
-        gain[k] = 1.0 / (4.0 - gain[k - 1])
-        c[k] = (6.0 * values[k - 1] - c[k - 1]) * gain[k]
-    for k in range(n - 2, 2, -1):
-        c[k] -= gain[k] * c[k + 1]
-    for edge, inwards in ((1, 1), (n, -1)):
-        node = edge - 1
-        c[edge] = 6.0 * values[node + inwards] - 4.0 * c[edge + inwards] - c[edge + 2 * inwards]
-        c[edge - inwards] = 6.0 * values[node] - 4.0 * c[edge] - c[edge + inwards]
-    return c
+    nodes = np.arange(values.shape[axis])
+    v = np.moveaxis(values, axis, 0)
+    c = v - CubicSpline(nodes, v)(nodes, 2) / 6.0
+    ends = 6.0 * v[[0, -1]] - 4.0 * c[[0, -1]] - c[[1, -2]]
+    return np.asarray(np.moveaxis(np.concatenate([ends[:1], c, ends[1:]]), 0, axis))

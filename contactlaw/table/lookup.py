@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._jit import kernel
+from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
     NO_RATE,
@@ -57,8 +57,9 @@ V_MIN = 1e-30
 THINNEST = 0.01
 
 STRETCH = 2.0  # c of x = lambda/(lambda + c)
-DEGREE = 15  # of the polynomials w^(1/4) and P
+DEGREE = 11  # of the polynomials w^(1/4) and P
 NO_MASSES = np.empty(0)
+_NUMBERS = Outcome._fields.index("inelasticity")  # where the numbers begin by which an impact is given
 _CHUNK = 256  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
@@ -93,42 +94,20 @@ RUNG = 8
 NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it goes on
 
 
-def check(table: Array, fields: int) -> None:
-    """Refuse an array that is no table of so many numbers at a node.
-
-    Raises
-    ------
-    ValueError
-        If it is none: kernels would read beyond its end.
-    """
-    axes = Axes(*table[: len(Axes._fields)].tolist())
-    counts = np.array([*axes[1:5], axes.rungs])
-    if not (np.isfinite(table).all() and (counts >= 0).all() and (counts == counts.round()).all() and axes.rungs >= 1):
-        raise ValueError("its table has no such axes")
-    stride = 1 + sum(int(count) + 3 for count in axes[2:5] if count)
-    rungs, size = int(axes.rungs), (int(axes.rows) + 4) * stride
-    ladder = table[HEADER : HEADER + rungs * RUNG].reshape(-1, RUNG)
-    rises = (np.diff(ladder[:, 0]) > 0.0).all() and (ladder[:, 1] > 0.0).all()
-    if (axes.stride, axes.size) != (stride, size) or table.size != HEADER + rungs * (RUNG + fields * size) or not rises:
-        raise ValueError(f"its table of {table.size} numbers does not fit its axes")
-
-
 def with_plate(table: Array, pair: PairConstants) -> Array:
     """Copy a table and put in the constants of a pair."""
-    table, plate, yielding = table.copy(), pair.plate, pair.yield_compression
-    unit = table[Axes._fields.index("unit")]
-    table[PAIR:PLATE] = (pair.time / (unit * yielding)) ** 0.25 if yielding < math.inf else 0.0, 0.0, 0.0
+    table, plate, yielding, slope, log_rate = table.copy(), pair.plate, pair.yield_compression, 0.0, 0.0
+    scale = (pair.time / (table[Axes._fields.index("unit")] * yielding)) ** 0.25
     if plate.rate.slope > 0.0:
-        table[PAIR + 1 : PLATE] = plate.rate.slope, math.log(plate.rate.per_speed / yielding)
-    table[PLATE:WAVES] = plate.inelasticity, plate.transit, plate.x_at_one, plate.saturated
-    table[WAVES:GROWTH] = plate.corrections
-    table[GROWTH:ELASTIC] = plate.growth._replace(log_time=plate.growth.log_time - math.log(pair.time))
+        slope, log_rate = plate.rate.slope, math.log(plate.rate.per_speed / yielding)
+    growth = plate.growth._replace(log_time=plate.growth.log_time - math.log(pair.time))
+    table[PAIR:ELASTIC] = [scale, slope, log_rate, *plate[:4], *plate.corrections, *growth]
     return table
 
 
 @kernel(inline=True)
 def axes_of(table: Array) -> Axes:
-    """Read the axes, as numbers: no later write to an array can change them."""
+    """Read the axes."""
     t = table
     return Axes(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], t[12], t[13])
 
@@ -149,45 +128,42 @@ def series_at(table: Array, k: int) -> tuple[float, ...]:
     """Coefficients of a polynomial that begin at k, as numbers."""
     c = table
     return (
-        (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6], c[k + 7])
-        + (c[k + 8], c[k + 9], c[k + 10], c[k + 11], c[k + 12], c[k + 13], c[k + 14], c[k + 15])
+        (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5])
+        + (c[k + 6], c[k + 7], c[k + 8], c[k + 9], c[k + 10], c[k + 11])
     )  # fmt: skip
+
+
+class Head(NamedTuple):
+    """What kernels read of a table once, as numbers: no later write to an array can change them."""
+
+    axes: Axes
+    plate: PlateConstants
+    w: Any  # coefficients of the polynomial w^(1/4)
+    ends: Any  # and of P
+
+
+@kernel(inline=True)
+def head_of(table: Array) -> Head:
+    """Read the beginning of a table."""
+    return Head(axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END))
 
 
 @kernel(inline=True)
 def powers(c: tuple[float, ...], t: float) -> float:
-    """Polynomial of degree 15 by Estrin's scheme: 4 products deep where Horner's has 15."""
+    """Polynomial of degree 11 by Estrin's scheme: 4 products deep where Horner's has 11."""
     t2 = t * t
     t4 = t2 * t2
     p0 = (c[0] + c[1] * t) + (c[2] + c[3] * t) * t2
     p1 = (c[4] + c[5] * t) + (c[6] + c[7] * t) * t2
     p2 = (c[8] + c[9] * t) + (c[10] + c[11] * t) * t2
-    p3 = (c[12] + c[13] * t) + (c[14] + c[15] * t) * t2
-    return (p0 + p1 * t4) + (p2 + p3 * t4) * (t4 * t4)
+    return (p0 + p1 * t4) + p2 * (t4 * t4)
 
 
 _MANTISSA, _ONE = np.int64((1 << 52) - 1), np.int64(1023 << 52)
 _TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
-# Interpolated in Chebyshev's polynomials: a fit by powers alone errs by 2e-14.
-_IN_MANTISSA = np.polynomial.Chebyshev.interpolate(lambda m: (1.5 + m) ** 0.2, DEGREE + 4, (-0.5, 0.5))
-_ROOT = tuple(_IN_MANTISSA.convert(kind=np.polynomial.Polynomial).coef.tolist())
-_ROOTS_OF_TWO = 2.0 ** ((np.arange(2048) - 1023) / 5)
 _LN_2, _HALF_LN_2 = math.log(2.0), 0.5 * math.log(2.0)
 _LOG = tuple(2.0 / n for n in range(1, 2 * DEGREE + 2, 2))  # of 2 artanh(z)/z over z^2
 _EXP = tuple(1.0 / math.factorial(n) for n in range(DEGREE + 1))
-
-
-@kernel(inline=True)
-def fifth_root(v: float) -> float:
-    """Return v^(1/5) of a positive v; without a call, so that loops become vector instructions."""
-    bits = np.float64(v).view(np.int64)
-    m = np.int64((bits & _MANTISSA) | _ONE).view(np.float64)
-    t, c = m - 1.5, _ROOT
-    t2 = t * t
-    t8 = (t2 * t2) * (t2 * t2)
-    root: float = powers(c, t) + ((c[16] + c[17] * t) + (c[18] + c[19] * t) * t2) * (t8 * t8)
-    root *= _ROOTS_OF_TWO[np.uint64(np.uint64(bits) >> np.uint64(52)) & np.uint64(2047)]
-    return root
 
 
 @kernel(inline=True)
@@ -207,6 +183,12 @@ def exp(x: float) -> float:
     series = powers(_EXP, x - (shifted - 1.5 * 2.0**52) * _LN_2)
     bits = np.float64(shifted).view(np.int64) << np.int64(52)
     return np.int64(np.float64(series).view(np.int64) + bits).view(np.float64)
+
+
+@kernel(inline=True)
+def fifth_root(v: float) -> float:
+    """Return v^(1/5) of a positive v."""
+    return exp(0.2 * log(v))
 
 
 @kernel(inline=True)
@@ -231,6 +213,7 @@ def weights(t: float) -> tuple[float, float, float, float]:
 
 Three = tuple[float, float, float]  # coefficients of a square in x
 ALIKE = (1.0, 0.0, 0.0)
+_STRONGEST = 1.0 + 1e-9  # largest way between two rungs; above 1 by rounding
 
 
 class Rung(NamedTuple):
@@ -239,7 +222,7 @@ class Rung(NamedTuple):
     lower: int  # of two rungs
     between: float  # way to the next, from 0 to 1
     g: float
-    later: Three  # factor of P, beside g
+    later: Three  # factor of P
     slower: Three  # factor of w^(1/4)
 
 
@@ -263,63 +246,49 @@ def _between(table: Array, at: int, way: float) -> float:
 
 
 @kernel(inline=True)
+def strength_at(axes: Axes, speed: float, radius: float) -> float:
+    """Strength k at the rate of an impact."""
+    return 1.0 + axes.slope * max(axes.log_rate + RATE_POWER * log(speed) - log(radius), 0.0)
+
+
+@kernel(inline=True)
+def strongest(table: Array, axes: Axes) -> float:
+    """Largest strength k of a table; infinite without a ladder."""
+    return float(table[HEADER + (int(axes.rungs) - 1) * RUNG]) if axes.rungs > 1.0 else math.inf
+
+
+class Place(NamedTuple):
+    """Place of an impact in a table: the nearest one, if it is outside."""
+
+    row: float
+    column: float
+    x: float
+    p: float
+    w: float  # w^(1/4)
+    root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5), if it is known
+    inside: bool
+
+
+@kernel(inline=True)
 def of_rung(series: tuple[float, ...], factor: Three, x: float) -> float:
     """Return P or w^(1/4) of a strength."""
     return powers(series, x) * (factor[0] + x * (factor[1] + x * factor[2]))
 
 
 @kernel(inline=True)
-def strongest(table: Array, axes: Axes) -> float:
-    """Largest strength k of a table; infinite without a ladder."""
-    rungs = int(axes.rungs)
-    return float(table[HEADER + (rungs - 1) * RUNG]) * (1.0 + 1e-9) if rungs > 1 else math.inf
-
-
-class Contact(NamedTuple):
-    """What plate, frequency and mass make of an impact."""
-
-    x: float
-    above: float  # p times stiff, over w^(1/4)
-    stiff: float  # exp(eta/4) of the plate's stiffening eta
-    root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5)
-
-
-@kernel(inline=True)
-def contact(
-    plate: PlateConstants,
-    scale: float,
-    speed: float,
-    radius: float,
-    thickness: float,
-    mass: float,
-    g: float,
-    thin: bool,
-    usual: bool,
-) -> Contact:
-    """Coordinate x of an impact, and what p follows from.
-
-    Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
-    without losses and of a solid sphere: then they become vector instructions.
-    """
-    root, slower = fifth_root(speed), 1.0
-    above = scale * root
-    if not usual:
-        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
-        plate, slower = pair.plate, pair.time
-        above *= math.sqrt(math.sqrt(slower))
-        if relaxes(plate):
-            log_time = math.log(radius * slower) - 0.2 * math.log(speed)
-            plate, root, growth = relaxed(plate, root, log_time)
-            above *= math.exp(-0.25 * (0.4 + plate.growth.yield_power) * growth)
-    if thin:  # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
-        part = plate.inelasticity * root * (radius * radius)
-        return Contact(part / (part + STRETCH * (thickness * thickness)), above, 1.0, root / slower)
-    ratio = radius / thickness
-    plate = scaled(plate, 1.0, 1.0, 1.0, g)
-    quarter = exp(0.25 * plate_stiffening(plate, root, ratio))
-    stiffer = (quarter * quarter) * (quarter * quarter)
-    lam = inelasticity_of(plate, root, ratio, stiffer)
-    return Contact(lam / (lam + STRETCH), above, quarter, root * stiffer / slower)
+def on_grid(head: Head, on: Rung, x: float, above: float, root: float) -> Place:
+    """Place of x and of p, which is `above` times w^(1/4)."""
+    axes = head.axes
+    near_x = x if 0.0 <= x <= axes.x_max else axes.x_max
+    elastic, end = of_rung(head.w, on.slower, near_x), max(of_rung(head.ends, on.later, near_x), 1.0)
+    p, top = above * elastic, max(axes.top * on.later[0], NEXT * end) if axes.after > 0.0 else end
+    near_p = p if p <= top else top
+    over, under, first = 2.0 * axes.beyond * (near_p - 1.0), near_p + end - 2.0, axes.below + 3.0
+    over, under, first = (2.0 * axes.below * near_p, near_p + 1.0, 0.0) if near_p <= 1.0 else (over, under, first)
+    after, last = (near_p > end) & (axes.after > 0.0), axes.below + axes.beyond + 6.0
+    over, under, first = (axes.after * (near_p - end), top - end, last) if after else (over, under, first)
+    inside = (near_x == x) & (near_p == p)
+    return Place(near_x * (axes.rows / axes.x_max), first + over / under, near_x, near_p, elastic, root, inside)
 
 
 @kernel(inline=True)
@@ -330,86 +299,85 @@ def is_valid(speed: float, radius: float, thickness: float) -> bool:
 
 
 @kernel(inline=True)
-def top_of(axes: Axes, end: float, later: float, g: float) -> float:
-    """Largest p of a table in which the law ends at `end`, by a factor later than that of slow impacts."""
-    beyond = max(axes.top * later, NEXT * end)
-    return max(beyond if axes.after > 0.0 else end, g)
-
-
-@kernel(inline=True)
-def column_of(axes: Axes, p: float, end: float, top: float, g: float) -> float:
-    """Column of p."""
-    over, under, first = 2.0 * axes.beyond * (p - g), p + end - 2.0 * g, axes.below + 3.0
-    over, under, first = (2.0 * axes.below * p, p + g, 0.0) if p <= g else (over, under, first)
-    after, last = (p > end) & (axes.after > 0.0) & (p > g), axes.below + axes.beyond + 6.0
-    over, under, first = (axes.after * (p - end), top - end, last) if after else (over, under, first)
-    return first + over / under
-
-
-class Place(NamedTuple):
-    """Place of an impact in a table."""
-
-    row: float
-    column: float  # -1 for bad input, and outside the table
-    x: float
-    p: float
-    root: float  # as in `Contact`
-    w: float  # w^(1/4)
-
-
-@kernel(inline=True)
 def place(
-    axes: Axes,
-    w: tuple[float, ...],
-    ends: tuple[float, ...],
-    plate: PlateConstants,
-    speed: float,
-    radius: float,
-    thickness: float,
-    mass: float,
-    g: float,
-    later: Three,
-    slower: Three,
-    thin: bool,
-    usual: bool,
+    head: Head, speed: float, radius: float, thickness: float, mass: float, on: Rung, thin: bool, usual: bool
 ) -> Place:
-    """Place of one impact; `contact` says what the last two are."""
-    one = contact(plate, axes.scale, speed, radius, thickness, mass, g, thin, usual)
-    elastic, end, stiff = of_rung(w, slower, one.x), g * of_rung(ends, later, one.x), one.stiff
-    p, top = one.above * elastic, top_of(axes, end, g * later[0], g)
-    good = (one.x >= 0.0) & (one.x <= axes.x_max) & (p <= top * stiff) & is_valid(speed, radius, thickness)
-    # all p times stiff: one division less
-    row, column = one.x * (axes.rows / axes.x_max), column_of(axes, p, end * stiff, top * stiff, g * stiff)
-    return Place(row if good else 0.0, column if good else -1.0, one.x, p / stiff, one.root, elastic)
+    """Place of one impact.
+
+    Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
+    without losses and of a solid sphere: then they become vector instructions.
+    """
+    plate, root, slower = head.plate, fifth_root(speed), 1.0
+    above = head.axes.scale * root
+    if not usual:
+        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
+        plate, slower = pair.plate, pair.time
+        above *= math.sqrt(math.sqrt(slower))
+        if relaxes(plate):
+            log_time = math.log(radius * slower) - 0.2 * math.log(speed)
+            plate, root, growth = relaxed(plate, root, log_time)
+            above *= math.exp(-0.25 * (0.4 + plate.growth.yield_power) * growth)
+    if thin:  # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
+        part = plate.inelasticity * root * (radius * radius)
+        x, above = part / (part + STRETCH * (thickness * thickness)), above / on.g
+    else:
+        ratio = radius / thickness
+        plate = scaled(plate, 1.0, 1.0, 1.0, on.g)
+        quarter = exp(0.25 * plate_stiffening(plate, root, ratio))
+        stiffer = (quarter * quarter) * (quarter * quarter)
+        lam = inelasticity_of(plate, root, ratio, stiffer)
+        x, above, root = lam / (lam + STRETCH), above / (quarter * on.g), root * stiffer
+    at = on_grid(head, on, x, above, root / slower)
+    return tuple_of(Place, at, inside=at.inside & is_valid(speed, radius, thickness))
+
+
+@kernel(inline=True)
+def place_of(
+    table: Array, head: Head, speed: float, radius: float, thickness: float, mass: float
+) -> tuple[Place, Rung, float]:
+    """Place of an impact, that of its strength, and this k."""
+    strength = strength_at(head.axes, speed, radius) if head.axes.rungs > 1.0 else 1.0
+    on, usual = rung_of(table, head.axes, strength), not relaxes(head.plate) and mass == 1.0
+    at = place(head, speed, radius, thickness, mass, on, is_thin(head.plate.corrections), usual)
+    return tuple_of(Place, at, inside=at.inside & (on.between <= _STRONGEST)), on, strength
+
+
+@kernel(inline=True)
+def place_near(table: Array, head: Head, x: float, above: float, strength: float) -> tuple[Place, Rung]:
+    """Nearest place to dimensionless numbers; p is `above` times w^(1/4)."""
+    most = strongest(table, head.axes)
+    on = rung_of(table, head.axes, strength if strength <= most else most)
+    at = on_grid(head, on, x, above, math.nan)
+    return tuple_of(Place, at, inside=at.inside & (strength <= most * _STRONGEST)), on
+
+
+@kernel(inline=True)
+def place_at(table: Array, head: Head, lam: float, y: float, log_strength: float) -> tuple[Place, Rung]:
+    """Nearest place to an inelasticity, a yield ratio and ln of a strength."""
+    above = 1.0 / math.sqrt(math.sqrt(head.axes.unit * y))
+    return place_near(table, head, lam / (lam + STRETCH), above, math.exp(log_strength))
 
 
 @kernel(inline=True)
 def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
-    """Interpolate a field from 4 x 4 of its coefficients in one rung, which begin at `at`; no index is negative."""
-    i, j = whole(row), whole(max(column, 0.0))
-    a0, a1, a2, a3 = weights(row - i)
-    b0, b1, b2, b3 = weights(column - j)
+    """Interpolate in 4 x 4 coefficients of one rung, whose block begins at `at`; no index is negative."""
+    i, j = whole(row), whole(column)
+    a, b, c = weights(row - i), weights(column - j), (0.0, 0.0, 0.0, 0.0)
     p = at + np.uint64(i) * stride + np.uint64(j)
-    q = p + stride
-    r = q + stride
-    o = r + stride
-    i1, i2, i3 = np.uint64(1), np.uint64(2), np.uint64(3)
-    c0 = a0 * table[p] + a1 * table[q] + a2 * table[r] + a3 * table[o]
-    c1 = a0 * table[p + i1] + a1 * table[q + i1] + a2 * table[r + i1] + a3 * table[o + i1]
-    c2 = a0 * table[p + i2] + a1 * table[q + i2] + a2 * table[r + i2] + a3 * table[o + i2]
-    c3 = a0 * table[p + i3] + a1 * table[q + i3] + a2 * table[r + i3] + a3 * table[o + i3]
-    found: float = ((b0 * c0 + b1 * c1) + (b2 * c2 + b3 * c3)) * (1.0 / 36.0)
-    return found
+    for k in range(4):
+        c0, c1 = c[0] + a[k] * table[p], c[1] + a[k] * table[p + np.uint64(1)]
+        c = (c0, c1, c[2] + a[k] * table[p + np.uint64(2)], c[3] + a[k] * table[p + np.uint64(3)])
+        p += stride
+    return ((b[0] * c[0] + b[1] * c[1]) + (b[2] * c[2] + b[3] * c[3])) * (1.0 / 36.0)
 
 
 @kernel(inline=True)
-def field(table: Array, axes: Axes, which: int, rung: int, between: float, row: float, column: float) -> float:
+def field(table: Array, axes: Axes, which: int, at: Place, on: Rung) -> float:
     """Interpolate a field at a place and between two rungs."""
-    size, stride = np.uint64(int(axes.size)), np.uint64(int(axes.stride))
-    rungs = int(axes.rungs)
-    at = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + rung) * size
-    low = value(table, at, stride, row, column)
-    return low + between * (value(table, at + size, stride, row, column) - low) if rungs > 1 else low
+    size, stride, rungs = np.uint64(int(axes.size)), np.uint64(int(axes.stride)), int(axes.rungs)
+    begin = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + on.lower) * size
+    low = value(table, begin, stride, at.row, at.column)
+    return low + on.between * (value(table, begin + size, stride, at.row, at.column) - low) if rungs > 1 else low
 
 
 @kernel(inline=True)
@@ -419,29 +387,9 @@ def cor_from(lost: float) -> float:
 
 
 @kernel(inline=True)
-def strength_at(axes: Axes, speed: float, radius: float) -> float:
-    """Strength k at the rate of an impact."""
-    return 1.0 + axes.slope * max(axes.log_rate + RATE_POWER * log(speed) - log(radius), 0.0)
-
-
-@kernel(inline=True)
-def place_of(table: Array, speed: float, radius: float, thickness: float, mass: float) -> tuple[Place, Rung, float]:
-    """Place of an impact, that of its strength, and this k."""
-    axes, plate = axes_of(table), plate_of(table)
-    strength = strength_at(axes, speed, radius) if axes.rungs > 1.0 else 1.0
-    on, usual = rung_of(table, axes, strength), not relaxes(plate) and mass == 1.0
-    w, ends, thin = series_at(table, ELASTIC), series_at(table, END), is_thin(plate.corrections)
-    at = place(axes, w, ends, plate, speed, radius, thickness, mass, on.g, on.later, on.slower, thin, usual)
-    column = at.column if strength <= strongest(table, axes) else -1.0
-    return Place(at.row, column, at.x, at.p, at.root, at.w), on, strength
-
-
-@kernel(inline=True)
-def cor_at(table: Array, at: Place, on: Rung) -> float:
+def cor_of(table: Array, axes: Axes, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
-    if not at.column >= 0.0:
-        return math.nan
-    return cor_from(field(table, axes_of(table), 0, on.lower, on.between, at.row, at.column))
+    return cor_from(field(table, axes, 0, at, on)) if at.inside else math.nan
 
 
 @kernel(cache=True)
@@ -450,99 +398,82 @@ def restitution_on_plate(table: Array, speed: float, radius: float, thickness: f
 
     The mass is over that of a solid sphere.
     """
-    if not is_valid(speed, radius, thickness):
-        return math.nan
-    at, on, _ = place_of(table, speed, radius, thickness, mass)
-    return cor_at(table, at, on)
+    head = head_of(table)
+    at, on, _ = place_of(table, head, speed, radius, thickness, mass)
+    return cor_of(table, head.axes, at, on)
 
 
-@kernel(cache=True)
-def solid_on_plate(table: Array, speed: float, radius: float, thickness: float) -> float:
-    """`restitution_on_plate` of a solid sphere."""
-    return restitution_on_plate(table, speed, radius, thickness, 1.0)
-
-
-@kernel(inline=True)
-def _slice(values: Array, start: int, count: int) -> Array:
-    """Part of an array; one kernel for all slices, since each is slow to compile."""
-    return values[start : start + count]
-
-
-class _Chunk(NamedTuple):
-    """Places of some impacts, in scratch memory."""
-
-    row: Any
-    column: Any
-    p: Any
-    root: Any
-    strength: Any
-    g: Any
-    between: Any
-    own: Any  # `later` and `slower` of `Rung`, (6, impacts)
-    rung: Any
+# Where the numbers of a chunk of impacts begin in their scratch memory. It is one array: compilers
+# check that no write alters what is read, and make no vector instructions if there is much to check.
+_ROW, _COLUMN, _P, _W, _ROOTS = range(0, 5 * _CHUNK, _CHUNK)
+_STRENGTH, _LOWER, _BETWEEN, _G, _LATER = range(0, 5 * _CHUNK, _CHUNK)
+_SLOWER, _SCRATCH = 7 * _CHUNK, 10 * _CHUNK
 
 
 @kernel(inline=True)
-def _scratch() -> _Chunk:
-    """Allocate the places of a chunk."""
-    s = np.zeros((13, _CHUNK))
-    return _Chunk(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7:], np.zeros(_CHUNK, dtype=np.int64))
+def _three(s: Array, begin: int, i: int) -> Three:
+    """Coefficients of an impact's square."""
+    return s[begin + i], s[begin + _CHUNK + i], s[begin + 2 * _CHUNK + i]
+
+
+class _Impacts(NamedTuple):
+    """Some of many impacts."""
+
+    speed: Array
+    radius: Array
+    thickness: Array
+    mass: Array  # over those of solid spheres; without any, all are
+
+
+@kernel(inline=True)
+def _part(hit: _Impacts, start: int) -> _Impacts:
+    """Impacts of a chunk."""
+    end = start + _CHUNK
+    return _Impacts(hit.speed[start:end], hit.radius[start:end], hit.thickness[start:end], hit.mass[start:end])
+
+
+@kernel(inline=True)
+def _find_places(head: Head, hit: _Impacts, k: Array, s: Array, thin: bool, usual: bool, rated: bool) -> None:
+    """Places of a chunk of impacts; the column is -1 outside the table."""
+    solid = usual or hit.mass.size == 0
+    for i in range(hit.speed.size):
+        later, slower = (_three(k, _LATER, i), _three(k, _SLOWER, i)) if rated else (ALIKE, ALIKE)
+        on, share = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower), 1.0 if solid else hit.mass[i]
+        at = place(head, hit.speed[i], hit.radius[i], hit.thickness[i], share, on, thin, usual)
+        s[_ROW + i], s[_COLUMN + i] = at.row if at.inside else 0.0, at.column if at.inside else -1.0
+        s[_P + i], s[_W + i], s[_ROOTS + i] = at.p, at.w, at.root
 
 
 @kernel
-def _find_rungs(table: Array, speed: Array, radius: Array, out: _Chunk) -> None:
-    """`rung_of` of the impacts of a chunk."""
-    axes, own = axes_of(table), out.own
-    for i in range(speed.size):
-        out.strength[i] = strength_at(axes, speed[i], radius[i])
-    for i in range(speed.size):
-        on = rung_of(table, axes, out.strength[i])
-        out.rung[i], out.between[i], out.g[i] = on.lower, on.between, on.g
-        own[0, i], own[1, i], own[2, i] = on.later
-        own[3, i], own[4, i], own[5, i] = on.slower
-
-
-@kernel(inline=True)
-def _pair_of(at: Place, scales: bool) -> tuple[float, float]:
-    """Two numbers of a place."""
-    return (at.p, at.root) if scales else (at.row, at.column)
-
-
-@kernel
-def _places(table: Array, v: Array, r: Array, h: Array, mass: Array, at: _Chunk, scales: bool) -> None:
-    """Rows and columns of the impacts of a chunk, or else p and root.
-
-    Each loop writes two arrays: the compiler checks that what it reads is not what it writes, and
-    makes no vector instructions where there is too much to check.
-    """
-    axes, plate, ws, ends = axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END)
-    n, rated, thin, solid = v.size, axes.rungs > 1.0, is_thin(plate.corrections), mass.size == 0
-    usual, own, g = solid and not relaxes(plate), at.own, at.g
-    first, second = (at.p, at.root) if scales else (at.row, at.column)
-    if usual and thin:
-        for i in range(n):
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, True, True)
-            first[i], second[i] = _pair_of(one, scales)
-    elif usual and not rated:
-        for i in range(n):
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, 1.0, ALIKE, ALIKE, False, True)
-            first[i], second[i] = _pair_of(one, scales)
-    elif usual:
-        for i in range(n):
-            later, slower = (own[0, i], own[1, i], own[2, i]), (own[3, i], own[4, i], own[5, i])
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], 1.0, g[i], later, slower, False, True)
-            first[i], second[i] = _pair_of(one, scales)
+def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
+    """Places of a chunk of impacts, and those of their strengths."""
+    rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
+    if rated:
+        for i in range(hit.speed.size):
+            k[_STRENGTH + i] = strength_at(head.axes, hit.speed[i], hit.radius[i])
+        for i in range(hit.speed.size):
+            on = rung_of(table, head.axes, k[_STRENGTH + i])
+            k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
+            k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
+            k[_SLOWER + i], k[_SLOWER + _CHUNK + i], k[_SLOWER + 2 * _CHUNK + i] = on.slower
+    if not usual or hit.mass.size > 0:
+        _find_places(head, hit, k, s, thin, False, rated)
+    elif thin:
+        _find_places(head, hit, k, s, True, True, False)
+    elif rated:
+        _find_places(head, hit, k, s, False, True, True)
     else:
-        for i in range(n):
-            share, grown = 1.0 if solid else mass[i], g[i] if rated else 1.0
-            later = (own[0, i], own[1, i], own[2, i]) if rated else ALIKE
-            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-            one = place(axes, ws, ends, plate, v[i], r[i], h[i], share, grown, later, slower, thin, False)
-            first[i], second[i] = _pair_of(one, scales)
-    if rated and not scales:
-        most = strongest(table, axes)
-        for i in range(n):
-            second[i] = second[i] if at.strength[i] <= most else -1.0
+        _find_places(head, hit, k, s, False, True, False)
+    for i in range(hit.speed.size):
+        s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
+
+
+@kernel(inline=True)
+def _found(axes: Axes, k: Array, s: Array, i: int) -> tuple[Place, Rung]:
+    """Place of impact i of a chunk, and that of its strength."""
+    row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
+    at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
+    return at, Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
 
 
 @kernel(cache=True)
@@ -551,33 +482,16 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
 
     Masses are over those of solid spheres; without any, all spheres are.
     """
-    axes, at, bad = axes_of(table), _scratch(), 0
+    head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     for start in range(0, out.size, _CHUNK):
-        n = min(_CHUNK, out.size - start)
-        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
-        m, values = _slice(mass, start, n), _slice(out, start, n)
-        if axes.rungs > 1.0:
-            _find_rungs(table, v, r, at)
-        _places(table, v, r, h, m, at, False)
-        for i in range(n):
-            lost = field(table, axes, 0, at.rung[i], at.between[i], at.row[i], at.column[i])
-            values[i] = cor_from(lost) if at.column[i] >= 0.0 else math.nan
-        for i in range(n):
-            bad += values[i] != values[i]
+        hit = _part(_Impacts(speed, radius, thickness, mass), start)
+        _find(table, head, hit, k, s)
+        for i in range(hit.speed.size):
+            at, on = _found(head.axes, k, s, i)
+            out[start + i] = cor_of(table, head.axes, at, on)
+        for i in range(hit.speed.size):
+            bad += s[_COLUMN + i] < 0.0
     return bad
-
-
-@kernel(inline=True)
-def _overload(axes: Axes, p: float, g: float) -> float:
-    """Overload chi of p."""
-    square = (p / g) * (p / g)
-    return axes.unit * (square * square)
-
-
-@kernel(inline=True)
-def _fourth(root: float) -> float:
-    """Fourth power."""
-    return (root * root) * (root * root)
 
 
 @kernel(cache=True)
@@ -588,97 +502,18 @@ def outcomes(
 
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
-    axes, w, at, bad = axes_of(table), series_at(table, ELASTIC), _scratch(), 0
-    rated = axes.rungs > 1.0
+    head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
+    axes = head.axes
     for start in range(0, speed.size, _CHUNK):
-        n = min(_CHUNK, speed.size - start)
-        v, r, h, m = (
-            _slice(speed, start, n),
-            _slice(radius, start, n),
-            _slice(thickness, start, n),
-            _slice(mass, start, n),
-        )
-        if rated:
-            _find_rungs(table, v, r, at)
-        _places(table, v, r, h, m, at, False)
-        _places(table, v, r, h, m, at, True)
-        for i in range(n):
-            k, x, own = start + i, at.row[i] * (axes.x_max / axes.rows), at.own
-            slower = (own[3, i], own[4, i], own[5, i]) if rated else ALIKE
-            elastic = _fourth(of_rung(w, slower, x))
-            root[k], out.elastic_compression[k] = at.root[i], elastic
-            out.yield_ratio[k] = elastic / _overload(axes, at.p[i], at.g[i] if rated else 1.0)
-            out.inelasticity[k] = STRETCH * x / (1.0 - x)
-            out.strength[k] = log(at.strength[i]) if rated else 0.0
-        for i in range(n):
-            _write_fields(table, axes, at.rung[i], at.between[i], at.row[i], at.column[i], out, start + i)
-        for i in range(n):
-            if not at.column[i] >= 0.0:
-                _write_nan(out, start + i)
-                bad += 1
+        hit = _part(_Impacts(speed, radius, thickness, mass), start)
+        _find(table, head, hit, k, s)
+        for i in range(hit.speed.size):
+            at, on = _found(axes, k, s, i)
+            log_strength = log(k[_STRENGTH + i]) if axes.rungs > 1.0 else 0.0
+            _write(table, axes, at, on, log_strength, at.inside, out, start + i)
+            root[start + i] = at.root
+            bad += not at.inside
     return bad
-
-
-@kernel(inline=True)
-def _write_fields(
-    table: Array, axes: Axes, rung: int, between: float, row: float, column: float, out: Outcome, n: int
-) -> None:
-    """Write the four fields that tables store, of impact n."""
-    out.restitution[n] = cor_from(field(table, axes, 0, rung, between, row, column))
-    out.contact_time[n] = 1.0 / field(table, axes, 1, rung, between, row, column)
-    out.wave_rate[n] = field(table, axes, 2, rung, between, row, column)
-    out.compression_ratio[n] = field(table, axes, 3, rung, between, row, column)
-
-
-@kernel(inline=True)
-def _write_nan(out: Outcome, n: int) -> None:
-    """Write NaN for the fields of impact n."""
-    out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
-    out.compression_ratio[n] = out.elastic_compression[n] = math.nan
-
-
-class Spot(NamedTuple):
-    """Place in a table of dimensionless numbers."""
-
-    row: float
-    column: float
-    rung: int
-    between: float
-    x: float
-    p: float
-    g: float
-    elastic: float  # w
-    inside: bool
-
-
-@kernel(inline=True)
-def spot_of(table: Array, x: float, p: float, strength: float) -> Spot:
-    """Nearest place in a table to x, p and a strength k."""
-    axes = axes_of(table)
-    most = strongest(table, axes)
-    within_x = x if 0.0 <= x <= axes.x_max else axes.x_max
-    within_k = strength if 1.0 <= strength <= most else min(most, 1e300)
-    on = rung_of(table, axes, within_k)
-    end = on.g * of_rung(series_at(table, END), on.later, within_x)
-    top = top_of(axes, end, on.g * on.later[0], on.g)
-    within_p = p if p <= top else top
-    column = column_of(axes, within_p, end, top, on.g)
-    inside = within_x == x and within_p == p and within_k == strength
-    w = _fourth(of_rung(series_at(table, ELASTIC), on.slower, within_x))
-    row = within_x * (axes.rows / axes.x_max)
-    return Spot(row, column, on.lower, on.between, within_x, within_p, on.g, w, inside)
-
-
-@kernel(inline=True)
-def spot_at(table: Array, lam: float, y: float, log_strength: float) -> Spot:
-    """Nearest place in a table to an inelasticity, a yield ratio and ln of a strength."""
-    axes, x, strength = axes_of(table), min(lam / (lam + STRETCH), 1.0), math.exp(log_strength)
-    within, on = (
-        x if 0.0 <= x <= axes.x_max else axes.x_max,
-        rung_of(table, axes, min(strength, strongest(table, axes))),
-    )
-    w = of_rung(series_at(table, ELASTIC), on.slower, within)
-    return spot_of(table, x, on.g * w / math.sqrt(math.sqrt(axes.unit * y)), strength)
 
 
 @kernel(cache=True)
@@ -688,17 +523,36 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     Outside the table fields are NaN, unless `clamp` takes the nearest point of its border, and
     puts that point's coordinates in place of the impact's.
     """
-    axes, outside = axes_of(table), 0
+    head, bad = head_of(table), 0
+    most = math.log(strongest(table, head.axes))
     for n in range(out.inelasticity.size):
-        at = spot_at(table, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
-        if not at.inside:
-            outside += 1
-            if not clamp:
-                _write_nan(out, n)
-                continue
-            out.inelasticity[n] = STRETCH * at.x / (1.0 - at.x)
-            out.yield_ratio[n] = at.elastic / _overload(axes, at.p, at.g)
-            out.strength[n] = min(out.strength[n], math.log(strongest(table, axes)))
-        _write_fields(table, axes, at.rung, at.between, at.row, at.column, out, n)
-        out.elastic_compression[n] = at.elastic
-    return outside
+        at, on = place_at(table, head, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
+        if at.inside or clamp:
+            _write(table, head.axes, at, on, min(out.strength[n], most), True, out, n)
+        else:
+            _write(table, head.axes, at, on, out.strength[n], False, out, n)
+        bad += not at.inside
+    return bad
+
+
+@kernel(inline=True)
+def _write(
+    table: Array, axes: Axes, at: Place, on: Rung, log_strength: float, known: bool, out: Outcome, n: int
+) -> None:
+    """Write the fields of impact n; those that are not known are NaN."""
+    lost, ratio = field(table, axes, 0, at, on), at.w / at.p
+    values = (
+        cor_from(lost),
+        1.0 / field(table, axes, 1, at, on),
+        field(table, axes, 2, at, on),
+        field(table, axes, 3, at, on),
+        (at.w * at.w) * (at.w * at.w),
+        STRETCH * at.x / (1.0 - at.x),
+        (ratio * ratio) * (ratio * ratio) / axes.unit,
+        log_strength,
+    )
+    for k in range(len(values)):
+        if known:
+            out[k][n] = values[k]
+        elif k < _NUMBERS:
+            out[k][n] = math.nan

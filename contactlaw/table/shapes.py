@@ -1,14 +1,15 @@
-"""Shapes of contacts: how compression, force and speed go with time, from the table.
+"""Shapes of contacts: how force, compression and speed go with time, from the table.
 
 A contact is followed through its root compression q: from touch up to the largest one and, on the
-unloading curve, down to separation. A shape is the list of times and speeds at which q passes given
-shares of its largest value. Between two of these states runs the cubic through both (Hermite), with
-the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f.
+unloading curve, down to separation. A shape is the list of times, speeds of the sphere and forces at
+which q passes given shares of its largest value. Between two of these states the speed is the cubic
+through both (Hermite) with the rates -f, and its derivative is the force; the compression is the
+cubic with the rates of the equation of motion, dd/dt = u - lam f.
 
-Times and speeds at given shares are smooth in the coordinates of a table. They need fewer nodes than
-COR does: the grid here is coarser than the table's, but its strengths are closer.
+What happens at given shares is smooth in the coordinates of a table. It needs fewer nodes than COR
+does: the grid here is coarser than the table's, but its strengths are closer.
 
-Legend: d compression, q its root, f force, u speed of the sphere, t time; w_m, lam, y as in
+Legend: d compression, q its root, f force, u speed of the sphere, t time; lam as in
 `contactlaw.equation.zener`; all on Hertz's scale.
 """
 
@@ -21,115 +22,63 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force, zener
-from contactlaw.equation.force import BlendedLaw, UnloadingCurve
-from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.notes import cubic
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import Grid, ladder_of
-from contactlaw.table.sweep import Progress
+from contactlaw.table.lookup import field
 
 STATES = 16  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
-_ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 8  # cells along lambda, up to yield, to the law's end and beyond
+FIELDS = 3 * SIZE  # times [T_H], speeds [V0] and forces [m V0/T_H]
+_ROWS, _BELOW, _BEYOND, _AFTER = 20, 4, 56, 16  # cells along lambda, up to yield, to the law's end and beyond
 _APART = 0.015  # largest distance of rungs in ln k
 
 
-def build(law: Law, grid: Grid, rtol: float, progress: Progress) -> Array:
-    """Solve shapes at nodes, times [T_H] and speeds [V0], and fit splines."""
-    coarse = grid.with_cells(_ROWS, _BELOW, max(_BEYOND, int(grid.axes.beyond)), _AFTER)
+def build(law: Law, grid: Grid, rtol: float) -> Array:
+    """Solve shapes at nodes and fit splines."""
+    after = _AFTER * (grid.axes.after > 0.0)
+    coarse = grid.with_axes(rows=_ROWS, below=_BELOW, beyond=max(_BEYOND, grid.axes.beyond), after=after)
     coarse = coarse.on_ladder(law, ladder_of(law, _APART))
-    lam, y, strength = coarse.nodes()
-    flat = lam.ravel(), y.ravel(), strength.ravel()
-    states = np.empty((lam.size, 2, SIZE))
 
-    def solve(part: slice) -> None:
-        lams, ys, strengths = (each[part] for each in flat)
-        status, time, speed = zener.shape(law.at_any_strength, lams, ys, rtol, SHARES, strengths)
-        if status.any():
-            raise sweep.failure("shape", law, lams, ys, *zener.failure(status))
-        states[part] = np.stack((time, speed), axis=1)[:, :, :-1]
+    def states(out: Outcome) -> Array:
+        found = zener.shape(law.at_any_strength, out.inelasticity, out.yield_ratio, rtol, SHARES, out.strength)
+        return np.hstack([one[:, :-1] for one in (found.time, found.speed, found.force)])
 
-    sweep.in_parts(solve, lam.size, progress)
-    return coarse.packed(coarse.coefficients(states.reshape(*lam.shape, 2 * SIZE)))
-
-
-@kernel
-def _states(shapes: Array, at: lookup.Spot, out: Array) -> None:
-    """Put times and speeds of one contact, between touch and separation, into out (2 SIZE,)."""
-    axes = lookup.axes_of(shapes)
-    rungs, stride, size, row, column = int(axes.rungs), int(axes.stride), int(axes.size), int(at.row), int(at.column)
-    a, b = lookup.weights(at.row - row), lookup.weights(at.column - column)
-    first = (at.rung * size + row * stride + column) * out.size + lookup.HEADER + lookup.RUNG * rungs
-    for n in range(out.size):
-        out[n] = 0.0
-    for k in range(16 * min(rungs, 2)):
-        i, j, m = k // 4 % 4, k % 4, k // 16
-        weight = (at.between if m == 1 else 1.0 - at.between) * a[i] * b[j] / 36.0
-        p = first + (m * size + i * stride + j) * out.size
-        for n in range(out.size):
-            out[n] += weight * shapes[p + n]
-
-
-@kernel
-def _force(law: BlendedLaw, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
-    """Force at a compression; y = inf for a contact that follows Hertz's law."""
-    if y == math.inf:
-        return d * math.sqrt(d)
-    if loading:
-        return force.loading(law, math.sqrt(d / y)) * (y * math.sqrt(y))
-    q = math.sqrt(max(d / y - curve.residual, 0.0))
-    return force.unloading_force(law, curve, q) * (y * math.sqrt(y))
+    return sweep.at_nodes(law, coarse, rtol, states)
 
 
 @kernel(cache=True)
 def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
-    samples = out.time.shape[1]
-    inner = np.empty(2 * SIZE)
-    t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
+    samples, head = out.time.shape[1], lookup.head_of(shapes)
+    t, u, f, d = np.zeros(SIZE + 2), np.ones(SIZE + 2), np.zeros(SIZE + 2), np.zeros(SIZE + 2)
     for n in range(out.time.shape[0]):
-        e, end = found.restitution[n], found.contact_time[n]
-        w_m, lam, y = (found.elastic_compression[n], found.inelasticity[n], found.yield_ratio[n])
+        lam, y, i = found.inelasticity[n], found.yield_ratio[n], 0
+        top, left = found.compression_ratio[n] * found.elastic_compression[n], 0.0
         own = force.at_strength(law, found.strength[n])
-        _states(shapes, lookup.spot_at(shapes, lam, y, found.strength[n]), inner)
-        t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
-        for k in range(SIZE):  # to assign to a slice takes the compiler a second
-            t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]
-        top = found.compression_ratio[n] * w_m
-        curve = NO_CURVE
-        residual = 0.0
-        if top <= y * force.leaves_hertz(own):
-            y = math.inf
-        else:
-            curve = force.unloading(own, top / y)
-            residual = curve.residual * y
+        if top > y * force.leaves_hertz(own):
+            left = force.unloading(own, top / y).residual * y
+        at, on = lookup.place_at(shapes, head, lam, y, found.strength[n])
+        for k in range(SIZE):
+            t[k + 1] = field(shapes, head.axes, k, at, on)
+            u[k + 1] = field(shapes, head.axes, SIZE + k, at, on)
+            f[k + 1] = field(shapes, head.axes, 2 * SIZE + k, at, on)
         for k in range(STATES):
-            d[k + 1] = top * SHARES[k] ** 2
-            d[SIZE - k] = residual + (top - residual) * SHARES[k] ** 2
-        d[0], d[SIZE + 1] = 0.0, residual
-        step, i = end / (samples - 1), 0
-        f0 = 0.0
+            square = SHARES[k] * SHARES[k]
+            d[k + 1], d[SIZE - k] = top * square, left + (top - left) * square
+        t[SIZE + 1], u[SIZE + 1], d[SIZE + 1] = found.contact_time[n], -found.restitution[n], left
         for k in range(SIZE + 1):
-            loading = k < STATES
-            f1 = _force(own, curve, k + 1 <= STATES, d[k + 1], y)
-            span = t[k + 1] - t[k]
-            # cubics in the share z of the span: d = d0 + z (p1 + z (p2 + z p3)), u likewise
-            p1, last, rise = span * (u[k] - lam * f0), span * (u[k + 1] - lam * f1), d[k + 1] - d[k]
-            p2, p3 = 3.0 * rise - 2.0 * p1 - last, p1 + last - 2.0 * rise
-            r1, last, rise = -span * f0, -span * f1, u[k + 1] - u[k]
-            r2, r3 = 3.0 * rise - 2.0 * r1 - last, r1 + last - 2.0 * rise
-            f0 = f1
-            while i < samples - 1 and i * step < t[k + 1]:
-                z = (i * step - t[k]) / span
-                compression = max(d[k] + z * (p1 + z * (p2 + z * p3)), 0.0 if loading else residual)
-                speed = u[k] + z * (r1 + z * (r2 + z * r3))
-                out.time[n, i] = i * step
-                out.force[n, i] = _force(own, curve, loading, compression, y)
-                out.compression[n, i] = compression
-                out.impulse[n, i] = 1.0 - speed
+            span, rise = t[k + 1] - t[k], u[k + 1] - u[k]
+            rate, last = -span * f[k], -span * f[k + 1]
+            before, after = span * (u[k] - lam * f[k]), span * (u[k + 1] - lam * f[k + 1])
+            while i < samples and (out.time[n, i] < t[k + 1] or k == SIZE):
+                z = (out.time[n, i] - t[k]) / span
+                slope = rate + z * (2.0 * (3.0 * rise - 2.0 * rate - last) + 3.0 * z * (rate + last - 2.0 * rise))
+                out.force[n, i] = max(-slope / span, 0.0)
+                out.impulse[n, i] = 1.0 - u[k] - cubic(rise, rate, last, z)
+                out.compression[n, i] = max(d[k] + cubic(d[k + 1] - d[k], before, after, z), 0.0)
                 i += 1
-        out.time[n, samples - 1], out.force[n, samples - 1] = end, 0.0
-        out.compression[n, samples - 1], out.impulse[n, samples - 1] = residual, 1.0 + e

@@ -26,10 +26,11 @@ from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import ladder_of, spline_coefficients
+from contactlaw.table.lookup import Place, Rung, axes_of, field, weights
 from contactlaw.table.table import Table
 
 _NODES = 49  # of each range of psi
-_CELLS = 24, 4, 32, 4  # along lambda, up to yield, to the end of the law and beyond
+_CELLS = {"rows": 24, "below": 4, "beyond": 32, "after": 4}
 _APART = 0.2  # largest distance of rungs in ln k; straight between them errs by less than 2e-3
 _WIDTH = 2 * (_NODES + 2)  # coefficients along psi
 _SAMPLES, _SPRINGS = 401, 32  # of the histories at the nodes
@@ -45,27 +46,19 @@ def _range(kappa: float, e: float) -> float:
 def build(table: Table, kappa: float) -> Array:
     """Solve oblique impacts at the nodes, on all cores, and fit splines."""
     law = table.law
-    grid = table.grid.with_cells(*_CELLS).on_ladder(law, ladder_of(law, _APART))
-    lam, y, strength = grid.nodes()
-    found = sweep.solved(law, lam.ravel(), y.ravel(), strength.ravel(), _RTOL)
-    change = np.empty((lam.size, 2 * _NODES))
-
-    def solve(part: slice) -> None:
-        change[part] = _changes(law.at_any_strength, outcome.part(found, part), kappa)
-
-    sweep.in_parts(solve, lam.size)
-    along = [spline_coefficients(half).T for half in np.split(change.T, 2)]
-    values = np.concatenate(along, axis=1).reshape(*lam.shape, _WIDTH)
-    return np.append(grid.packed(grid.coefficients(values)), kappa)
+    cells = _CELLS | {"after": _CELLS["after"] * (table.grid.axes.after > 0.0)}
+    grid = table.grid.with_axes(**cells).on_ladder(law, ladder_of(law, _APART))
+    return np.append(sweep.at_nodes(law, grid, _RTOL, lambda found: _along(law.at_any_strength, found, kappa)), kappa)
 
 
-def _changes(law: Array, out: Outcome, kappa: float) -> Array:
-    """Change over psi at the nodes of both ranges, (impacts, 2 _NODES)."""
-    share, e = np.linspace(0.0, 1.0, _NODES), out.restitution[:, None]
+def _along(law: Array, found: Outcome, kappa: float) -> Array:
+    """Coefficients along psi of the change over psi in both ranges, (impacts, _WIDTH)."""
+    share, e = np.linspace(0.0, 1.0, _NODES), found.restitution[:, None]
     sticking = np.maximum(share**2, 1e-8) / kappa  # at rest there is a limit, but no share
     sliding = 1.0 / kappa + _range(kappa, e) * share
     psi = np.hstack((np.broadcast_to(sticking, sliding.shape), sliding))
-    return (psi - after(law, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    changes = (psi - after(law, found, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    return np.hstack([spline_coefficients(half, 1) for half in np.split(changes, 2, axis=1)])
 
 
 def after(
@@ -86,7 +79,7 @@ def after(
 
 
 @kernel(inline=True)
-def change(slides: Array, at: lookup.Spot, e: float, psi: float) -> float:
+def change(slides: Array, at: Place, on: Rung, e: float, psi: float) -> float:
     """Change of the contact point's speed in an impact inside the table [mu V0]."""
     kappa = slides[slides.size - 1]
     size, full = abs(psi), POINT * (1.0 + e)
@@ -97,32 +90,17 @@ def change(slides: Array, at: lookup.Spot, e: float, psi: float) -> float:
         return math.copysign(full, psi) if place >= 2.0 else math.nan
     second = place > 1.0
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
-    cell = min(int(along), _NODES - 2)
-    c = lookup.weights(along - cell)
-    axes = lookup.axes_of(slides)
-    rungs, stride, rungsize = int(axes.rungs), int(axes.stride), int(axes.size)
-    row, column = int(at.row), int(at.column)
-    a, b = lookup.weights(at.row - row), lookup.weights(at.column - column)
-    first = (at.rung * rungsize + row * stride + column) * _WIDTH + lookup.HEADER + lookup.RUNG * rungs
-    first += cell + (_NODES + 2 if second else 0)
-    v0 = v1 = v2 = v3 = 0.0
-    for m in range(min(rungs, 2)):
-        way = at.between if m == 1 else 1.0 - at.between
-        for i in range(4):
-            for j in range(4):
-                p = np.uint64(first + (m * rungsize + i * stride + j) * _WIDTH)
-                w = way * a[i] * b[j]
-                v0 += w * slides[p]
-                v1 += w * slides[p + np.uint64(1)]
-                v2 += w * slides[p + np.uint64(2)]
-                v3 += w * slides[p + np.uint64(3)]
-    value = (c[0] * v0 + c[1] * v1 + c[2] * v2 + c[3] * v3) * (1.0 / 216.0)
+    cell, axes, value = min(int(along), _NODES - 2), axes_of(slides), 0.0
+    first, c = cell + (_NODES + 2 if second else 0), weights(along - cell)
+    for k in range(4):
+        value += c[k] * field(slides, axes, first + k, at, on) / 6.0
     return math.copysign(min(size * value, full), psi)
 
 
 @kernel(cache=True)
 def changes(slides: Array, found: Outcome, psi: Array, out: Array) -> None:
     """`change` of many impacts whose normal outcomes are inside the table."""
+    head = lookup.head_of(slides)
     for n in range(psi.size):
-        at = lookup.spot_at(slides, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
-        out[n] = change(slides, at, found.restitution[n], psi[n])
+        at, on = lookup.place_at(slides, head, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
+        out[n] = change(slides, at, on, found.restitution[n], psi[n])

@@ -8,14 +8,12 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw.equation import outcome, zener
-from contactlaw.equation.outcome import STORED, Outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, sweep
-from contactlaw.table.certificate import CORNERED, Certificate, bounds, compare_histories, compare_outcomes
-from contactlaw.table.grid import AFTER, BELOW, Grid, Settings
-from contactlaw.table.lookup import STRETCH
-from contactlaw.table.sweep import Progress, no_progress
+from contactlaw.table.certificate import CORNERED, Certificate, bounds, measured
+from contactlaw.table.grid import Grid, Settings
 
 POINTS = 2000  # points of the certificate of a table that is built on demand
 _DOUBLINGS = 4  # numbers of columns, and distances of rungs, that are tried
@@ -59,9 +57,7 @@ class Table:
         return {} if self.certificate is None else self.certificate.exceeded(bounds(self.law))
 
 
-def build(
-    law: Law, settings: Settings | None = None, *, points: int = POINTS, progress: Progress = no_progress
-) -> Table:
+def build(law: Law, settings: Settings | None = None, *, points: int = POINTS) -> Table:
     """Solve the equation at all nodes, on all cores, until the certificate of the table passes.
 
     Parameters
@@ -72,8 +68,6 @@ def build(
         Extent and fineness.
     points : int, optional
         Number of random places at which the table is compared with the solver.
-    progress : callable, optional
-        ``progress(parts, total)`` wraps the iterator over finished parts, as ``tqdm`` does.
 
     Returns
     -------
@@ -91,14 +85,13 @@ def build(
     slow = dataclasses.replace(law, strengths=None)
     grid = grids.grid(slow, settings)
     for doubling in range(_DOUBLINGS):
-        grid = grid.with_cells(settings.rows, BELOW, settings.columns * 2**doubling, AFTER)
-        table = _certified(slow, settings, grid, points, progress, {})
+        grid = grid.with_axes(beyond=settings.columns * 2**doubling)
+        table = _certified(slow, settings, grid, points)
         if not _exceeds(table):
             break
-    known: dict[float, Array] = {}
     for halving in range(_DOUBLINGS if law.strengths else 0):
         ladder = grids.ladder_of(law, _APART / 2**halving)
-        table = _certified(law, settings, grid.on_ladder(law, ladder), points, progress, known)
+        table = _certified(law, settings, grid.on_ladder(law, ladder), points)
         if not _exceeds(table):
             break
     return table
@@ -112,42 +105,29 @@ def _exceeds(table: Table) -> bool:
     return bool(table.certificate.exceeded({name: margin * one for name, one in promised.items()}))
 
 
-def _certified(
-    law: Law, settings: Settings, grid: Grid, points: int, progress: Progress, known: dict[float, Array]
-) -> Table:
-    """Make a table from the nodes of a grid; the fields of rungs that are known need no solutions."""
-    lam, y, strength = grid.nodes()
-    rungs = []
-    for n, log_k in enumerate(grid.ladder.tolist()):
-        if log_k not in known:
-            at = lam[n].ravel(), y[n].ravel(), strength[n].ravel()
-            found = sweep.solved(law, *at, settings.rtol, progress)
-            known[log_k] = _stored(law, found, grid, grid.rungs[n, 2:]).reshape(len(STORED), *lam[n].shape)
-        rungs.append(known[log_k])
-    fields = [grid.coefficients(values) for values in np.array(rungs).swapaxes(0, 1)]
-    table = Table(law, settings, grid.packed(np.array(fields)))
+def _certified(law: Law, settings: Settings, grid: Grid, points: int) -> Table:
+    """Make a table from the nodes of a grid."""
+    table = Table(law, settings, sweep.at_nodes(law, grid, settings.rtol, functools.partial(_stored, law)))
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
-def _stored(law: Law, found: Outcome, grid: Grid, own: Array) -> Array:
+def _stored(law: Law, found: Outcome) -> Array:
     """Fields that tables keep, see `contactlaw.equation.outcome.STORED`."""
-    elastic = grid.elastic(found.inelasticity / (found.inelasticity + STRETCH), own)
-    lost, extremes = 1.0 - found.restitution, outcome.extremes(elastic.size)
+    lost, extremes = 1.0 - found.restitution, outcome.extremes(found.restitution.size)
     zener.extremes(law.at_any_strength, found, extremes)
     still = found.inelasticity == 0.0  # no waves: energies alone give the COR, 1 exactly without losses
     lost[still] = 1.0 - np.sqrt(1.0 - extremes.plastic_fraction[still] - extremes.other_fraction[still])
-    peak = found.compression_ratio * found.elastic_compression
-    return np.array([lost, 1.0 / found.contact_time, found.wave_rate, peak / elastic])
+    return np.stack([lost, 1.0 / found.contact_time, found.wave_rate, found.compression_ratio], axis=1)
 
 
-def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:
+def with_shapes(table: Table, *, points: int = POINTS) -> Table:
     """Add the shapes of force histories, and their error to the certificate.
 
     Parameters
     ----------
     table : Table
         Table from `build`.
-    points, progress
+    points : int, optional
         As in `build`.
 
     Returns
@@ -159,11 +139,11 @@ def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_p
     RuntimeError
         If a shape does not solve; the message names it.
     """
-    whole = dataclasses.replace(table, histories=shapes.build(table.law, table.grid, table.settings.rtol, progress))
+    whole = dataclasses.replace(table, histories=shapes.build(table.law, table.grid, table.settings.rtol))
     return dataclasses.replace(whole, certificate=certify(whole, points))
 
 
-def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Progress = no_progress) -> Certificate:
+def certify(table: Table, points: int = 20_000, seed: int = 0) -> Certificate:
     """Compare lookups with the solver at random points off the grid.
 
     A fifth of the points lie below yield, a fifth within 2 % of the speed of yield, a tenth beyond
@@ -177,8 +157,6 @@ def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Prog
         Number of points, at least 100.
     seed : int, optional
         Seed of their generator.
-    progress : callable, optional
-        As in `build`.
 
     Returns
     -------
@@ -190,7 +168,5 @@ def certify(table: Table, points: int = 20_000, seed: int = 0, *, progress: Prog
     ValueError
         If there are too few or too many points, or the seed is negative.
     """
-    looked, errors = compare_outcomes(table.law, table.settings.rtol, table.packed, points, seed, progress)
-    if table.histories is not None:
-        errors["force_history"] = compare_histories(table.law, table.settings.rtol, table.histories, looked)
-    return Certificate.of(errors, looked.restitution.size, seed)
+    errors = measured(table.law, table.settings.rtol, table.packed, table.histories, points, seed)
+    return Certificate.of(errors, points, seed)

@@ -161,7 +161,6 @@ def test_a_bad_table_is_found():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: grid.spline_coefficients(np.ones(3)), "got 3; .*at least 4 nodes"),
         (lambda: table.build(laws.law("hertz")), "got 'hertz'; never yields"),
         (lambda: table.Settings(largest_inelasticity=-1.0), "largest_inelasticity: got -1.0; m"),
         (lambda: table.Settings(largest_overload=math.nan), "largest_overload: got .*; must lie"),
@@ -175,7 +174,7 @@ def test_what_makes_no_table(call, message):
 
 
 def test_packaged_table_is_what_this_version_builds():
-    """Splines and the values of polynomials, whose coefficients of degree 15 hang on the rounding of a machine."""
+    """Splines and the values of polynomials, whose coefficients hang on the rounding of a machine."""
     packaged, built = file.packaged(MYC), table.build(MYC)
     assert packaged.settings == built.settings
     for begin in (lookup.ELASTIC, lookup.END):
@@ -185,7 +184,7 @@ def test_packaged_table_is_what_this_version_builds():
             )
             for one in (packaged, built)
         ]
-        np.testing.assert_allclose(*values, rtol=1e-12)
+        np.testing.assert_allclose(*values, rtol=1e-10)
     np.testing.assert_allclose(packaged.packed[lookup.HEADER :], built.packed[lookup.HEADER :], rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(packaged.packed[: lookup.ELASTIC], built.packed[: lookup.ELASTIC], rtol=1e-8, atol=1e-8)
 
@@ -194,12 +193,6 @@ def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
     monkeypatch.setattr(sweep.zener, "solve_all", lambda *a: (zener.TOO_MANY_STEPS, 0))
     with pytest.raises(RuntimeError, match=r"node lambda = .*, d_Y/\(V0 T_H\) = .* did not solve"):
         table.build(MYC, SMALL)
-
-
-def test_progress_sees_every_part():
-    seen = []
-    table.build(MYC, SMALL, progress=lambda parts, total: (seen.append(total) or n for n in parts))
-    assert len(seen) >= seen[0] > 1
 
 
 def test_impacts_that_turn_next_to_a_kink_are_found():
