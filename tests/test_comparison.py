@@ -120,7 +120,6 @@ def test_the_command_reads_conditions_draws_and_prints_for_other_programs(folder
     ("head", "numbers"),
     [
         ('hardness = "300 HV"', {"yield_strength": None, "hardness": "300 HV"}),
-        ('yield = "300 MPa"', {"yield_strength": 300e6, "uncertainty": {"youngs_modulus": 0.03}}),
         (
             'yield = "300 MPa"\n# uncertainty = {yield_strength = 0.05}',
             {"yield_strength": 300e6, "uncertainty": {"youngs_modulus": 0.03, "yield_strength": 0.05}},
@@ -140,16 +139,6 @@ def test_a_head_of_windows_keeps_its_letters_and_no_head_moves_the_cursor(tmp_pa
     path = tmp_path / "mine.csv"
     path.write_bytes('# title = "Gl\u00e4tte\\u001b[2J"\nspeed_m/s,COR\n1,0.5\n'.encode("cp1252"))
     assert rebounds.read(path, {}, lambda _: cl.Pair("glass", "glass")).title == "Gl\u00e4tte [2J"
-
-
-@pytest.mark.filterwarnings("ignore:the air changes")
-def test_an_export_of_phyphox_is_compared(folder, answer):
-    (folder / "Multiple.csv").write_text('"Start (s)";"Stop 1 (s)";"Stop 2 (s)"\n1,25E0;1,65E0;2,01E0\n')
-    line = "compare Multiple.csv --sphere glass --plate glass --radius 5mm --thickness 1cm --time-error 1ms --json"
-    (rebound,) = answer(line).values["rebounds"]
-    assert rebound["measured"] == pytest.approx(0.9, abs=3e-3)
-    by_times = 1e-3 * np.sqrt(2 / 0.4**2 + 2 / 0.36**2 + 2 / 0.144)
-    assert rebound["error"] == pytest.approx(rebound["measured"] * by_times, rel=0.01)
 
 
 @pytest.mark.parametrize(("share", "is_distinct"), [(0.1, False), (0.001, True)])

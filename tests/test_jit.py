@@ -1,7 +1,5 @@
 """Without numba's compiler, and without a folder to keep its code in."""
 
-import ast
-import gc
 import json
 import math
 import os
@@ -129,26 +127,9 @@ def test_without_a_private_name_of_numba_public_names_serve(tmp_path):
     assert float(load) == pytest.approx(laws.law("myc").loading(2.5), rel=1e-12)
 
 
-def private_names():
-    """What has to be there when `contactlaw._numba` is imported, or public names serve."""
-    for node in ast.walk(ast.parse(PRIVATE.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.module.startswith("numba."):
-            yield from (f"{node.module}.{one.name}" for one in node.names)
-    for method in ("_open_for_write", "_load_index", "_load_data"):
-        yield f"numba.core.caching.IndexDataCacheFile.{method}"
-    yield "numba.core.codegen.CPUCodeLibrary._get_module_for_linking"
-
-
 def test_private_names_of_numba_stand_in_one_file():
     sources = {path: path.read_text() for path in (ROOT / "contactlaw").rglob("*.py")}
     assert {path for path, text in sources.items() if re.search(r"numba\.(core|misc|np)\b", text)} == {PRIVATE}
-
-
-@pytest.mark.parametrize("name", [*private_names()])
-def test_a_private_name_that_is_missing_is_noticed_at_once(name, monkeypatch):
-    monkeypatch.delattr(name)
-    with pytest.raises((ImportError, AttributeError), match=name.rpartition(".")[2]):
-        runpy.run_path(str(PRIVATE))
 
 
 def test_private_names_are_taken_of_versions_that_were_tested_alone(monkeypatch):
@@ -234,21 +215,6 @@ def test_only_machine_code_that_nobody_uses_is_deleted(tmp_path, monkeypatch):
     assert used_by("9") and used.is_dir()
     gone = {unused} if os.geteuid() == 0 else {unused, theirs}
     assert {path for path in before if not path.exists() and path.parent == home} == gone
-
-
-def test_to_compile_sets_nothing_of_the_garbage_collector(monkeypatch):
-    """Its thresholds are the process's: two threads that set and restore them would mix them up."""
-
-    @_jit.kernel
-    def squared(x):
-        return x * x
-
-    @_jit.kernel(entry=True)
-    def powers(x):
-        return squared(squared(x))
-
-    monkeypatch.setattr(gc, "set_threshold", None)
-    assert powers(2.0) == 16.0
 
 
 TWINS = """

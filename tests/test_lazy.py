@@ -1,12 +1,9 @@
 """A model builds nothing before it is asked for: what needs no table leaves none behind."""
 
 import needs
-import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.laws import Law
-from contactlaw.laws._branches import Loading
 from contactlaw.softsphere import Contacts, time_step
 from contactlaw.table import cache
 
@@ -47,29 +44,6 @@ def test_only_what_looks_up_leaves_a_table(tables, ask, tmp_path, monkeypatch):
     cache.cached.cache_clear()
     ask(cl.ImpactModel(STEEL_ON_GLASS))
     assert len([*tmp_path.rglob("table-*.h5")]) == tables
-
-
-def test_the_largest_inelasticity_is_that_of_the_table():
-    elastic = Law.of(
-        name="elastic",
-        source="s",
-        yield_coefficient=None,
-        unloading=[],
-        scale=1.0,
-        loading=[Loading(0.0, np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0]))],
-        range=(0.01, 0.2),
-    )
-    for law in ("fem", "hertz", elastic):
-        model = cl.ImpactModel(STEEL_ON_GLASS, law=law)
-        assert model.largest_inelasticity == model.table.settings.largest_inelasticity
-
-
-def test_a_time_step_is_refused_where_a_lookup_is():
-    model = cl.ImpactModel(STEEL_ON_GLASS)
-    for ask in (model.lookup, lambda *impact: time_step(model, *impact)):
-        with pytest.raises(ValueError, match=r"lambda = 12\.\d+ is above 6: the plate is too thin"):
-            ask(5.0, 1e-3, 2e-4)
-    assert time_step(cl.ImpactModel(STEEL_ON_GLASS, outside="solve"), 5.0, 1e-3, 2e-4) > 0.0
 
 
 @pytest.mark.parametrize("wrong", [5, True, object(), cl.table.Settings])

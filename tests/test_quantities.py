@@ -12,7 +12,6 @@ from contactlaw.cli.parts.options import reader_of
 from contactlaw.quantities import ANGLE, FRICTION, LENGTH, MASS, SPEED, STRESS, TIME, value, values
 
 POWERS = {"m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
-SPEEDS = {"": 1.0, "m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
 
 
 @pytest.mark.parametrize(
@@ -21,7 +20,7 @@ SPEEDS = {"": 1.0, "m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
         ("0.9mm", LENGTH, [0.9e-3]),
         ("500um", LENGTH, [500e-6]),
         (".5mm, +1.mm ,2e0mm", LENGTH, [0.5e-3, 1e-3, 2e-3]),
-        ("36km/h", SPEED, [10.0]),
+        ("36km/h,2cm/s,5mm/s,3m/s", SPEED, [10.0, 0.02, 5e-3, 3.0]),
         ("0:10:5", SPEED, [0.0, 2.5, 5.0, 7.5, 10.0]),
         ("0.1:10:3log", SPEED, [0.1, 1.0, 10.0]),
         ("1mm:1cm:2,inf", LENGTH, [1e-3, 1e-2, math.inf]),
@@ -41,12 +40,6 @@ def test_a_unit_is_a_shift_of_the_decimal_point(number, unit):
     mantissa, _, exponent = f"{number!r}".partition("e")
     shifted = float(f"{mantissa}e{int(exponent or 0) + POWERS[unit]}")
     assert value(f"{number!r}{unit}", LENGTH) == shifted
-
-
-@given(st.floats(1e-30, 1e30), st.sampled_from(sorted(SPEEDS)))
-def test_units_of_speed(number, unit):
-    """Bare numbers are in the unit of the SI."""
-    assert value(f"{number!r}{unit}", SPEED) == pytest.approx(number * SPEEDS[unit], rel=1e-15)
 
 
 @given(st.floats(1e-6, 1e3), st.floats(1e-6, 1e3), st.integers(2, 300), st.booleans())
@@ -95,7 +88,7 @@ def test_one_value_where_one_is_needed():
         value("1,2", LENGTH)
 
 
-@given(st.floats(1e-9, 1e3), st.sampled_from([LENGTH, TIME, MASS, STRESS]))
+@given(st.floats(-9.0, 3.0).map(lambda power: 10.0**power), st.sampled_from([LENGTH, TIME, MASS, STRESS]))
 def test_what_is_written_can_be_read(size, quantity):
     assert value(in_unit(size, quantity.si), quantity) == pytest.approx(size, rel=1e-5)
 

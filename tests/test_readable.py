@@ -35,13 +35,6 @@ def test_value_and_error_are_rounded_to_the_second_digit_of_the_error(value, sha
     assert len(re.sub(r"\D", "", SHOWN.fullmatch(text)[3]).lstrip("0").rstrip("0")) <= 2
 
 
-@given(st.floats(1e-3, 1e6), st.floats(1e-5, 1.0))
-def test_common_sizes_have_no_exponent(size, share):
-    """Between a micrometre and a kilometre, a kPa and a TPa."""
-    for value, unit in ((size * 1e6, "Pa"), (size * 1e-3, "m")):
-        assert "e" not in with_error(value, share * value, unit).replace("GPa", "")
-
-
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [

@@ -524,8 +524,7 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
     source = {field: source.get("yield_strength", "") for field in fitted} | source
     values = {field: table[field] for field in taken if field in table}
     errors = {  # an error has a reason in the catalogue
-        number: error if isinstance(error, list) else [error, ""]
-        for number, error in table.get("uncertainty", {}).items()
+        number: error if isinstance(error, list) else [error, ""] for number, error in table["uncertainty"].items()
     }
     body = Material(name, **values, uncertainty={number: error for number, (error, _) in errors.items()})
     parts = [table.get("grade", name)]
@@ -544,6 +543,8 @@ def _from_table(name: str, table: dict[str, Any], tables: dict[str, Any], refere
 
 def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
     """Add what an entry takes from the one that it is `like`; sources are by number."""
+    if not isinstance(errors := table.get("uncertainty", {}), dict):
+        raise ValueError(f"[{name}]: uncertainty must be a table as {{yield_strength = 0.15}}, got {errors!r}")
     source = _sources(table)
     if "like" in table:
         if (other := tables.get(_key(str(table["like"])))) is None or other is table:
@@ -551,10 +552,9 @@ def _with_like(name: str, table: dict[str, Any], tables: dict[str, Any]) -> dict
         other = _with_like(table["like"], other, tables)
         table = {field: other[field] for field in _ALIKE if field in other} | table
         theirs = other["source"]
-        source = {field: theirs[field] for field in _ALIKE[1:] if field in theirs} | source
-        alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
-        table["uncertainty"] = alike | table.get("uncertainty", {})
-    return table | {"source": source}
+        source = {field: theirs[field] for field in _ALIKE if field in theirs} | source
+        errors = {field: e for field, e in other["uncertainty"].items() if field in _ALIKE} | errors
+    return table | {"source": source, "uncertainty": errors}
 
 
 def _sources(table: dict[str, Any]) -> dict[str, str]:

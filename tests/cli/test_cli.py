@@ -235,7 +235,7 @@ def test_an_output_that_takes_not_all_ends_in_words(words, status, message):
     assert done.stderr.endswith(message) if message else done.stderr == ""
 
 
-def test_a_history_is_csv_with_the_question_and_the_flags_in_each_row(folder, model, answer):
+def test_a_history_is_csv_with_the_question_and_the_flags_in_each_row(model, answer):
     history = f"{IMPACT} --history --samples 5"
     printed = answer(history)
     names = "time_s force_N compression_m impulse_Ns plate_displacement_m".split()
@@ -243,8 +243,6 @@ def test_a_history_is_csv_with_the_question_and_the_flags_in_each_row(folder, mo
     values = [[float(row[name]) for name in names] for row in printed.rows]
     assert values == pytest.approx(np.column_stack(contact), rel=1e-12)
     assert printed.rows[0].items() >= {**ASKED, "speed_m/s": "12.0", "radius_m": "0.0009", "flags": ""}.items()
-    assert answer(f"{history} --out force.csv").out.startswith("force.csv: 5 rows")
-    assert (folder / "force.csv").read_text() == printed.out
     rows = answer(f"{IMPACT} --history --speed 60 --thickness 0.3mm").rows
     assert len(rows) == 256 and {row["flags"] for row in rows} == {"THIN_PLATE|FAST_IMPACT"}
 

@@ -9,7 +9,7 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli.parts import rebounds as tables
-from contactlaw.cli.parts.figure import MOST_CURVES, Figure
+from contactlaw.cli.parts.figure import Figure
 from contactlaw.engines.record import IMPACT
 from contactlaw.physical import flight
 from contactlaw.physical.kind import Kind
@@ -151,16 +151,6 @@ def test_friction_from_a_table_with_angles(table, answer, folder, figures):
     assert curve.y[60] == pytest.approx(hit.tangential_restitution, rel=1e-4)
 
 
-def test_a_rebound_straight_down_stands_at_the_angle_0(table, answer, figures):
-    rows = "3,0,0.9921,", "3,15,0.9922,0.62", "3,40,0.9929,0.70", "3,60,0.9938,0.85"
-    table("speed,angle,COR,tangential restitution", *rows)
-    pair = "--sphere glass --plate glass --radius 1mm --thickness 10mm"
-    assert answer(f"fit a.csv {pair} --unknown friction --plot it.png").err == ""
-    (curve,), (points,) = figures[0].curves, figures[0].points
-    assert (figures[0].x, figures[0].y, points.x[0]) == ("angle", "restitution", 0.0)
-    assert curve.x[0] < 0.1 and np.isfinite(curve.y).all()
-
-
 def test_rows_without_a_rebound_and_unknown_columns_are_left_out_and_named(table, answer):
     """As a spreadsheet has them for beads that were lost; the fit is that of the other rows."""
     head, *rows = "speed,COR,contact time [us],COR_eror", "1,0.4497,,A", "2,0.3716,7.4,B"
@@ -193,21 +183,6 @@ def test_a_picture(usual, folder, answer, figures):
     assert curve.y[middle] == pytest.approx(model.restitution, rel=0.01)
     assert (curve.low < curve.y).all() and (curve.y < curve.high).all() and points.x.size == points.error.size == 12
     assert "Fit: yield strength of the plate" in figure.title and "thickness 1.2 mm" in figure.about
-
-
-def test_of_several_quantities_the_one_with_the_most_values_is_drawn(table, answer, figures):
-    """And each plate has its curve, up to the most that can be distinguished."""
-    line = FIT.replace("thickness", "plate_yield_strength --plot fit.png")
-    rows = [f"{v},0.3,,{h}" for v in (1, 2) for h in range(1, 13)]
-    table("speed_m/s,COR,contact_time_us,thickness_mm", "1,0.3,20,1", *rows)
-    answer(line)
-    table("speed_m/s,COR,thickness_mm", *(f"{v},0.3,{h}" for v in range(1, 15) for h in range(1, 13)))
-    answer(line)
-    two, many = figures
-    assert (two.x, two.y) == ("thickness", "restitution")
-    assert [curve.label for curve in two.curves] == ["speed 1 m/s", "speed 2 m/s"]
-    assert len(many.curves) == MOST_CURVES and len(many.points) == MOST_CURVES + 1
-    assert sum(points.x.size for points in many.points) == 14 * 12
 
 
 def test_a_record_of_a_run_is_fitted(found, folder, answer, capsys):

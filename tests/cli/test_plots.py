@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import contactlaw as cl
-from contactlaw.cli.parts.figure import Points, draw_points
 
 R, INF = 0.9e-3, math.inf
 
@@ -54,25 +52,6 @@ def test_curves_are_the_models_over_any_list(axis, ends, label, scale, picture):
     assert shown.sum() >= 200 and (x.min(), x.max()) == pytest.approx(axes.get_xlim())
 
 
-def test_the_half_space_is_a_thin_line_over_thickness(picture):
-    figure = picture(f"--radius {R} --thickness 1mm,9mm,inf --speed 30 --no-band")
-    curve, thin = figure.axes[0].lines[0], figure.axes[0].lines[-1]
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-    assert curve.get_linewidth() > 2.0 * thin.get_linewidth()
-    assert thin.get_ydata() == pytest.approx([model.restitution(30.0, R, INF)] * 2, abs=1e-12)
-    assert "Thin line: half-space" in caption(figure)
-
-
-@pytest.mark.parametrize("lists", ["--thickness inf,inf --speed 2", "--thickness 1mm,2mm --speed 2,2"])
-def test_a_list_of_equal_values_is_one_value(lists, picture):
-    """Without any other list the axis has the speeds up to the one stated."""
-    figure = picture(f"--radius 0.9mm --no-band {lists}")
-    (axes,) = figure.axes
-    is_half_space = "inf" in lists
-    assert axes.get_xlim() == pytest.approx((0.2, 2.0) if is_half_space else (1.0, 2.0)) and not axes.get_legend()
-    assert len(axes.lines) == 2 and ("half-space" in caption(figure)) == is_half_space
-
-
 def test_a_name_is_no_formula(answer, folder):
     bead = "'E=2GPa nu=0.3 rho=1000 kind=ceramic name=$\\foo{$'"
     answer(f"cor --sphere {bead} --plate glass --radius 1mm --thickness 1mm --speed 1 --no-band --plot it.svg")
@@ -92,20 +71,6 @@ def test_limits_are_dashed(picture):
     assert "radius 0.9 mm. Dashed: plate thinner than" in caption(figure)
     assert "; or faster than the impacts" in caption(figure)
     assert axes.get_xscale() == "log" and axes.get_ylabel() == "coefficient of restitution [-]"
-
-
-def test_points_beyond_a_limit_are_hollow():
-    """Drawn here, because no command draws measured points of a chosen flag."""
-    figure = Figure()
-    axes = figure.subplots()
-    flags = np.array([0, cl.Validity.THIN_PLATE])
-    draw_points(axes, Points(np.array([1.0, 2.0]), np.full(2, 0.5), "measured", flags=flags), "blue", 1, 1)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    pixels = np.asarray(canvas.buffer_rgba())
-    for x, colour in ((1.0, [0, 0, 255, 255]), (2.0, [255, 255, 255, 255])):
-        column, row = axes.transData.transform((x, 0.5)).round().astype(int)
-        assert pixels[len(pixels) - row, column].tolist() == colour
 
 
 def test_a_history_is_the_force_over_time(picture):

@@ -306,7 +306,7 @@ CONTENTS = [
     ("materials", POM, "[my-pom]: give density, in SI units"),
     ("materials", POM + "density = ", "Invalid value"),
     ("materials", POM + "density = " + 3000 * "[", "recursion"),
-    ("materials", POM + "density = 1410\nuncertainty = 0.1", ""),
+    ("materials", POM + "density = 1410\nuncertainty = 0.1", "must be a table as {yield_strength = 0.15}, got 0.1"),
     ("materials", POM + 'rho = "1.4 psi"', "'psi' is no unit of density"),
     ("materials", POM + "density = 1410\nyoungs_modulus = 2.8e9", "give the short name or the long one"),
     ("materials", '[a]\nlike = "304L"', "[a]: like = '304L' is no entry"),
