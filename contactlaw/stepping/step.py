@@ -134,15 +134,14 @@ def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) ->
 
 
 @kernel
-def _heads_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
-    """One row, the head of a bead's history; a new bead in the row of a removed one does not inherit that."""
-    heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
-    head = heads[0]
+def _head_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
+    """Head of a bead's history; a new bead in the row of a removed one does not inherit that."""
+    head = array_at(beads.history + beads.bytes * i, 1, HEAD)[0]
     head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
     if head.owner != bead.number:
         _forget(head, bead)
         head.owner, beads.last[i] = bead.number, 0.0
-    return heads
+    return head
 
 
 @kernel
@@ -164,8 +163,7 @@ def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None
         fastest = max(fastest, scene.frames[f].fastest)
     for i in range(beads.n):
         bead = _bead_of(scene, run, beads, i, (0.0, 0.0, 0.0))
-        heads, tag, size, speed = _heads_of(run, beads, i, bead), bead.number, bead.r, norm(bead.v) + fastest
-        head = heads[0]
+        head, tag, size, speed = _head_of(run, beads, i, bead), bead.number, bead.r, norm(bead.v) + fastest
         if not beads.mask[i] & run.group:
             _forget(head, bead)
             continue
@@ -298,8 +296,7 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
         if status.impacts + ROWS > len(scene.impacts):
             return i
         bead = _bead_of(scene, run, beads, i, centre)
-        heads = _heads_of(run, beads, i, bead)
-        head = heads[0]
+        head = _head_of(run, beads, i, bead)
         if head.radius != 0.0:
             _check(scene, run, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
