@@ -15,7 +15,7 @@ import numpy as np
 from contactlaw._jit import kernel
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.vectors import divided, norm, scaled, vector
-from contactlaw.stepping.bead import MOST_CONTACTS, interact, touches
+from contactlaw.stepping.bead import MOST_CONTACTS, apply_walls, touches
 from contactlaw.stepping.contact import CONTACT, Bead, Clock, WallScene, clear_contact
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.plate_rows import SOLID, solid_mass
@@ -116,7 +116,7 @@ def _forget(head: Any, bead: Bead) -> None:
 @kernel
 def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) -> Bead:
     """One bead in SI units."""
-    at = 8 * FIRST
+    first = beads.history + beads.bytes * i + 8 * FIRST
     sliding = beads.places if scene.friction > 0.0 else 0
     return Bead(
         float(beads.tag[i]),
@@ -128,8 +128,8 @@ def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) ->
         beads.mass[i] * run.mass,
         run.forces[0],
         run.forces[1],
-        array_at(beads.history + beads.bytes * i + at, beads.places, CONTACT),
-        array_at(beads.history + beads.bytes * i + at + 8 * WIDTH * beads.places, sliding, FRICTION),
+        array_at(first, beads.places, CONTACT),
+        array_at(first + 8 * WIDTH * beads.places, sliding, FRICTION),
     )
 
 
@@ -303,14 +303,15 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
             recorded = status.impacts
             for k in range(3):
                 run.forces[0, k] = run.forces[1, k] = 0.0
-            interact(scene, clock, bead, body_of(beads.bodies, i))
+            apply_walls(scene, clock, bead, body_of(beads.bodies, i))
             _apply(scene, run, beads, i)
             if run.accounts != 0:
                 _account(run, clock, beads, head, i)
             for n in range(recorded, status.impacts):
-                what, scene.impacts[n].wall_start = scene.impacts[n].kind, run.start + run.ahead
-                if what == Kind.IMPACT.value or what == Kind.OF_BODY.value:  # other kinds have no COR
-                    beads.last[i] = scene.impacts[n].restitution
+                row = scene.impacts[n]
+                row.wall_start = run.start + run.ahead
+                if row.kind == Kind.IMPACT.value or row.kind == Kind.OF_BODY.value:  # other kinds have no COR
+                    beads.last[i] = row.restitution
             if status.trouble != 0:
                 fail(run, head, bead.number, status.trouble, status.wall, status.value, status.limit)
                 head.error = max(head.error, status.worst)
