@@ -140,12 +140,12 @@ class WallContacts:
 
     def warn_of_overlap(self, stacklevel: int = 2) -> None:
         """Warn of an impact for which the contacts are too soft; again if one is twice as deep."""
-        soft, found, status = self.scene.softening, DEEPEST_OVERLAP, self.scene.status[0]
-        if status["overlap"] > max(1.01 * found, 2.0 * self._warned):
-            self._warned, most = status["overlap"], soft * (found / status["overlap"]) ** 2.5
+        soft, status = self.scene.softening, self.scene.status[0]
+        if status["overlap"] > max(1.01 * DEEPEST_OVERLAP, 2.0 * self._warned):
+            self._warned, most = status["overlap"], soft * (DEEPEST_OVERLAP / status["overlap"]) ** 2.5
             warnings.warn(
                 f"softening: an impact at {status['speed']:.3g} m/s had an overlap of {status['overlap']:.1%} of the "
-                f"radius with a softening of {soft:g}; for overlaps below {found:.0%} take "
+                f"radius with a softening of {soft:g}; for overlaps below {DEEPEST_OVERLAP:.0%} take "
                 + (f"at most {most:.3g}" if most > 1.0 else "none"),
                 stacklevel=stacklevel,
             )
@@ -216,7 +216,8 @@ def _contact_with(scene: WallScene, bead: Bead, body: Any, n: int, touching: boo
     Hertz's force is proportional to the overlap to the power 1.5, so the shared part is
     (x_pass/x)^1.5, with the pass of `contactlaw.walls.surface`. Other laws take the same share.
     """
-    found, row = scene.found, scene.found[n]
+    found = scene.found
+    row = found[n]
     along = (row.nx, row.ny, row.nz)
     if row.shared > 0.0:
         share = row.shared / row.x
@@ -293,9 +294,9 @@ def _deepest_new(found: Any, count: int, bead: Bead) -> int:
     """Position in the list of the deepest facet that has no contact yet, else -1."""
     new = -1
     for n in range(count):
-        if found[n].representative == n and (new < 0 or found[n].x > found[new].x):
-            if _row_of(bead, found[n].facet) < 0:
-                new = n
+        row = found[n]
+        if row.representative == n and (new < 0 or row.x > found[new].x) and _row_of(bead, row.facet) < 0:
+            new = n
     return new
 
 
@@ -347,12 +348,9 @@ def _disturbance_of(bead: Bead) -> float:
 
 
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
-@kernel(cache=True, inline=True)
-def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = None) -> None:
-    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``.
-
-    Of a bead that is a part of a rigid body, `body` is a row of `contactlaw.stepping.rigid.BODY`.
-    """
+@kernel(inline=True)
+def apply_walls(scene: WallScene, clock: Clock, bead: Bead, body: Any) -> None:
+    """Do as `interact`, for kernels: numba counts the users of arrays in those that Python may call."""
     if not 0 <= bead.kind < len(scene.plate_rows):
         report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
@@ -379,3 +377,12 @@ def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = Non
             _end_contact(scene, clock, bead, body, k, count)
     if clock.advancing and kept < count:
         _begin_all(scene, clock, bead, body, count, touching)
+
+
+@kernel(cache=True, inline=True)
+def interact(scene: WallScene, clock: Clock, bead: Bead, body: Rows | None = None) -> None:
+    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``.
+
+    Of a bead that is a part of a rigid body, `body` is a row of `contactlaw.stepping.rigid.BODY`.
+    """
+    apply_walls(scene, clock, bead, body)

@@ -582,7 +582,8 @@ def _ask(
     row.plastic_share, row.wave_share, row.true_flags = true.plastic_share, true.wave_share, float(flags)
 
 
-@kernel
+# Inlined into its one caller, because a call would write its arguments, some 250 numbers, to memory.
+@kernel(inline=True)
 def _advance(
     law: Array, scene: WallScene, clock: Clock, bead: Bead, body: Any, contact: Contact, k: int, spring: Spring
 ) -> None:

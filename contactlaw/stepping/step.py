@@ -15,7 +15,7 @@ import numpy as np
 from contactlaw._jit import kernel
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.vectors import divided, norm, scaled, vector
-from contactlaw.stepping.bead import MOST_CONTACTS, interact, touches
+from contactlaw.stepping.bead import MOST_CONTACTS, apply_walls, touches
 from contactlaw.stepping.contact import CONTACT, Bead, Clock, WallScene, clear_contact
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.stepping.plate_rows import SOLID, solid_mass
@@ -116,7 +116,7 @@ def _forget(head: Any, bead: Bead) -> None:
 @kernel
 def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) -> Bead:
     """One bead in SI units."""
-    at = 8 * FIRST
+    first = beads.history + beads.bytes * i + 8 * FIRST
     sliding = beads.places if scene.friction > 0.0 else 0
     return Bead(
         float(beads.tag[i]),
@@ -128,21 +128,20 @@ def _bead_of(scene: WallScene, run: Any, beads: Beads, i: int, centre: Point) ->
         beads.mass[i] * run.mass,
         run.forces[0],
         run.forces[1],
-        array_at(beads.history + beads.bytes * i + at, beads.places, CONTACT),
-        array_at(beads.history + beads.bytes * i + at + 8 * WIDTH * beads.places, sliding, FRICTION),
+        array_at(first, beads.places, CONTACT),
+        array_at(first + 8 * WIDTH * beads.places, sliding, FRICTION),
     )
 
 
 @kernel
-def _heads_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
-    """One row, the head of a bead's history; a new bead in the row of a removed one does not inherit that."""
-    heads = array_at(beads.history + beads.bytes * i, 1, HEAD)
-    head = heads[0]
+def _head_of(run: Any, beads: Beads, i: int, bead: Bead) -> Any:
+    """Head of a bead's history; a new bead in the row of a removed one does not inherit that."""
+    head = array_at(beads.history + beads.bytes * i, 1, HEAD)[0]
     head.layout, head.start = LAYOUT + beads.bytes // 8, run.start
     if head.owner != bead.number:
         _forget(head, bead)
         head.owner, beads.last[i] = bead.number, 0.0
-    return heads
+    return head
 
 
 @kernel
@@ -164,8 +163,7 @@ def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None
         fastest = max(fastest, scene.frames[f].fastest)
     for i in range(beads.n):
         bead = _bead_of(scene, run, beads, i, (0.0, 0.0, 0.0))
-        heads, tag, size, speed = _heads_of(run, beads, i, bead), bead.number, bead.r, norm(bead.v) + fastest
-        head = heads[0]
+        head, tag, size, speed = _head_of(run, beads, i, bead), bead.number, bead.r, norm(bead.v) + fastest
         if not beads.mask[i] & run.group:
             _forget(head, bead)
             continue
@@ -298,22 +296,22 @@ def step(scene: WallScene, runs: Any, clock: Clock, beads: Beads, first: int) ->
         if status.impacts + ROWS > len(scene.impacts):
             return i
         bead = _bead_of(scene, run, beads, i, centre)
-        heads = _heads_of(run, beads, i, bead)
-        head = heads[0]
+        head = _head_of(run, beads, i, bead)
         if head.radius != 0.0:
             _check(scene, run, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
             recorded = status.impacts
             for k in range(3):
                 run.forces[0, k] = run.forces[1, k] = 0.0
-            interact(scene, clock, bead, body_of(beads.bodies, i))
+            apply_walls(scene, clock, bead, body_of(beads.bodies, i))
             _apply(scene, run, beads, i)
             if run.accounts != 0:
                 _account(run, clock, beads, head, i)
             for n in range(recorded, status.impacts):
-                what, scene.impacts[n].wall_start = scene.impacts[n].kind, run.start + run.ahead
-                if what == Kind.IMPACT.value or what == Kind.OF_BODY.value:  # other kinds have no COR
-                    beads.last[i] = scene.impacts[n].restitution
+                row = scene.impacts[n]
+                row.wall_start = run.start + run.ahead
+                if row.kind == Kind.IMPACT.value or row.kind == Kind.OF_BODY.value:  # other kinds have no COR
+                    beads.last[i] = row.restitution
             if status.trouble != 0:
                 fail(run, head, bead.number, status.trouble, status.wall, status.value, status.limit)
                 head.error = max(head.error, status.worst)

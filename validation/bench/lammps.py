@@ -3,9 +3,9 @@
 Contacts between beads are left out: they cost the same with any wall, and would hide its cost.
 Contacts by `attach` and by the exported fix are compared with those of the commit `FORMER`, before
 both had one kernel, on the same plate and in the same process. On two cores that other work shared,
-with 1e4 beads of which 1000 touch and in CPU time, the fix took 0.95 of the time of that commit
-without friction, 0.83 sliding, 0.96 and 0.86 with softened contacts. `attach` took 1.17 and 1.08 of
-it without softening, with 9 beads far from the wall for each in contact; why is not known.
+with 1e4 beads of which 1000 touch and in CPU time, the fix took 0.96 of the time of that commit
+without friction, 0.83 sliding, 0.96 and 0.85 with softened contacts; `attach`, each commit in a
+process of its own, 0.80 and 0.81, with softened contacts 0.96 and 0.93.
 """
 
 from __future__ import annotations
