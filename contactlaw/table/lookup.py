@@ -178,9 +178,10 @@ def log(v: float) -> float:
 
 @kernel(inline=True)
 def exp(x: float) -> float:
-    """Exponential of |x| < 700: x = n ln 2 + r, the series of exp(r), n into the bits of the exponent."""
+    """Exponential of |x| < 700: x = n ln 2 + r, the series of exp(r/2), squared, n into the bits of the exponent."""
     shifted = x * (1.0 / _LN_2) + 1.5 * 2.0**52  # rounds to a whole number, in the last bits
-    series = powers(_EXP, x - (shifted - 1.5 * 2.0**52) * _LN_2)
+    half = powers(_EXP, 0.5 * (x - (shifted - 1.5 * 2.0**52) * _LN_2))
+    series = half * half
     bits = np.float64(shifted).view(np.int64) << np.int64(52)
     return np.int64(np.float64(series).view(np.int64) + bits).view(np.float64)
 

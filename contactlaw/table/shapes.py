@@ -78,7 +78,7 @@ def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
             while i < samples and (out.time[n, i] < t[k + 1] or k == SIZE):
                 z = (out.time[n, i] - t[k]) / span
                 slope = rate + z * (2.0 * (3.0 * rise - 2.0 * rate - last) + 3.0 * z * (rate + last - 2.0 * rise))
-                out.force[n, i] = max(-slope / span, 0.0)
+                out.force[n, i] = max(-slope / span, 0.0) + 0.0  # without the sign of -0.0
                 out.impulse[n, i] = 1.0 - u[k] - cubic(rise, rate, last, z)
                 out.compression[n, i] = max(d[k] + cubic(d[k + 1] - d[k], before, after, z), 0.0)
                 i += 1

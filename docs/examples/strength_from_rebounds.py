@@ -32,8 +32,8 @@ def main():
     print(picture)
 
     plate = cl.ImpactModel(found.pair).thickness(WANTED, SPEED, SIZES["radius"])
-    for best, low, high in 1e3 * np.column_stack([plate.value, plate.low, plate.high]):
-        print(f"COR {WANTED} at {SPEED:g} m/s: a plate of {best:.3f} mm ({low:.3f} to {high:.3f})")
+    for best in 1e3 * plate.value:
+        print(f"COR {WANTED} at {SPEED:g} m/s: a plate of {best:.3f} mm")
 
 
 def draw(found, picture):

@@ -8,7 +8,7 @@ import contactlaw as cl
 
 
 def test_the_example_has_the_impacts_of_a_loop_and_of_the_solver(tmp_path):
-    """The example prints four digits; tangential CORs of softened contacts differ from the solver's by 8e-4."""
+    """The example prints four digits; tangential CORs in its steps differ from the solver's by 1.6e-3."""
     thickness, cor, integrated, along, integrated_along = scenes.by_yade(tmp_path).T
     model, scene = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), scenes.YADE
     loop = scenes.by_loop(scene, model)
@@ -19,4 +19,4 @@ def test_the_example_has_the_impacts_of_a_loop_and_of_the_solver(tmp_path):
     assert integrated_along == pytest.approx(hit.tangential_restitution, abs=6e-5)
     assert cor == pytest.approx(loop.rows["restitution"], abs=3e-4)
     assert along == pytest.approx(loop.v[:, 0] / 3.0, abs=1e-3)
-    assert np.abs(along - integrated_along).max() < 1e-3
+    assert np.abs(along - integrated_along).max() < 2e-3  # steps promise 0.012 mu V, which is 4e-3 here

@@ -75,7 +75,7 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
 def test_table_solver_and_stepping_have_the_same(pair, law):
     """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides.
 
-    The overload of a table errs by 1.7e-9, because w_m is there a polynomial of degree 15.
+    The overload of a table errs by up to 1e-7, because w_m is there a polynomial of degree 11.
     """
     model = cl.ImpactModel(pair, law, outside="solve")
     v, r, h = impacts(cl.ImpactModel(pair, "fem"))
@@ -86,7 +86,7 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
     looked, solved = model.lookup(v, r, h), model.solve(v, r, h)
     for hit in (looked, solved):
         np.testing.assert_allclose(hit.inelasticity, units.inelasticity, rtol=1e-14)
-    np.testing.assert_allclose(looked.overload, solved.overload, rtol=3e-9)
+    np.testing.assert_allclose(looked.overload, solved.overload, rtol=3e-7)
     other = looked.flags ^ solved.flags
     assert not (other & BEFOREHAND).any()
     for n in np.flatnonzero(other):
