@@ -72,13 +72,13 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # line breaks, so that neither longer lines nor missing explanations save any. Other text of the
 # packages (sources of other languages, pages, numbers) counts in lines.
 SIZES = {
-    "contactlaw": 211_248,
+    "contactlaw": 211_250,
     "contactlaw/answers": 11_694,
-    "contactlaw/cli": 24_963,
+    "contactlaw/cli": 25_018,
     "contactlaw/emit": 8_758,
     "contactlaw/engines": 16_798,
     "contactlaw/equation": 15_273,
-    "contactlaw/export": 9_448,
+    "contactlaw/export": 9_395,
     "contactlaw/fitting": 11_988,
     "contactlaw/laws": 10_299,
     "contactlaw/physical": 22_537,
@@ -90,7 +90,7 @@ SIZES = {
     "dem_demo": 15_979,
     "validation": 84_637,
     "tests": 193_262,
-    "all Python": 511_173,
+    "all Python": 511_175,
     "other text": 3_130,
 }
 FREE = {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}

@@ -2,10 +2,11 @@
 
 import dataclasses
 from argparse import Namespace
+from pathlib import Path
 from typing import Any
 
 from contactlaw.cli.parts import options, wording
-from contactlaw.export.scene_file import scene_beside, surface_of
+from contactlaw.export.scene_file import surface_of
 from contactlaw.record.file import read_record
 from contactlaw.reporting.files import report
 from contactlaw.reporting.run import Run
@@ -30,7 +31,7 @@ def add(commands: Any) -> None:
 
 def _run(arguments: Namespace) -> None:
     record = read_record(*arguments.files)
-    if path := arguments.scene or (scene_beside(arguments.files[0]) if record.surface is None else None):
+    if path := arguments.scene or (_scene_beside(arguments.files[0]) if record.surface is None else None):
         record = dataclasses.replace(record, surface=surface_of(path, record.rows))
     with wording.reading(arguments.files[0]):
         Run(record)  # refuses what no report can be made of
@@ -41,3 +42,11 @@ def _run(arguments: Namespace) -> None:
     if record.surface is None and arguments.files[0].endswith(".npy"):
         text = "the page has neither names of walls nor a map of the energy: no scene lies beside the record or in "
         wording.print_message(text + "a folder there, or several do; add --scene FILE, or save the record as .h5")
+
+
+def _scene_beside(record: str) -> Path | None:
+    """Scene in the folder of a record, or else in a folder there; None if there is none or several."""
+    for pattern in "*.scene", "*/*.scene":
+        if scenes := [*Path(record).parent.glob(pattern)]:
+            return scenes[0] if len(scenes) == 1 else None
+    return None

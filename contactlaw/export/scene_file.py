@@ -126,14 +126,6 @@ def fingerprint() -> str:
     return f"{hashlib.sha256(repr(layout).encode()).hexdigest()[:16]}-{sys.byteorder}"
 
 
-def scene_beside(record: str) -> Path | None:
-    """Scene in the folder of a record, or else in a folder there; None if there is none or several."""
-    for pattern in "*.scene", "*/*.scene":
-        if scenes := [*Path(record).parent.glob(pattern)]:
-            return scenes[0] if len(scenes) == 1 else None
-    return None
-
-
 def surface_of(path: str | os.PathLike[str], rows: Rows) -> Surface:
     """Walls of a scene as triangles, with their names, and where on them the rows of a record are."""
     head, _, content = content_of(Path(path)).partition(b"\nend\n")
