@@ -68,8 +68,8 @@ ENTRIES = (entry.partition(":") for entry in re.split(r"\n(?! )", FILES.strip())
 FILES = {folder: names.split() for folder, _, names in ENTRIES}
 KERNELS = [*(ROOT / "equation").glob("[a-z]*.py"), *(ROOT / f"table/{name}.py" for name in ("lookup", "grid"))]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
-# The size of each room, which may only fall. Of Python tokens count, without comments, docstrings and
-# line breaks, so that neither longer lines nor missing explanations save any. Other text of the
+# The size of each room, which may only fall. Python is counted in tokens, without comments, docstrings
+# and line breaks, so that neither longer lines nor missing explanations save any. Other text of the
 # packages (sources of other languages, pages, numbers) counts in lines.
 SIZES = {
     "contactlaw": 211_250,
