@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import elastic, force, integrator, legs, motion, near_edge, recall
+from contactlaw.equation import elastic, force, integrator, legs, motion, near_edge, outcome, recall
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, NONE, TURN
@@ -243,19 +243,20 @@ def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Ed
     out.force[:, -1] = 0.0
 
 
-def shape(law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0) -> Notes:
-    """Find when, how fast and with which force q passes given shares of its largest value.
+def shape(law: Array, found: Outcome, rtol: float, shares: Array) -> Notes:
+    """Find when, how fast and with which force q passes given shares of its largest value in solved impacts.
 
     There are 2 n points for n rising shares up to 1, first while loading, then back down to 0,
     separation.
     """
-    top = _run(TO_THE_TOP, law, lam, y, rtol, strength=strength)
-    w, left = top.peak_compression[:, None], top.residual_compression[:, None]
-    inner, ends = shares[:-1] ** 2, np.full_like(w, math.inf)
+    turned = outcome.extremes(found.strength.size)
+    extremes(law, found, turned)
+    w, left = (found.compression_ratio * found.elastic_compression)[:, None], turned.residual_compression[:, None]
+    inner = shares[:-1] ** 2
     falling = left + (w - left) * inner[::-1]
-    at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
+    at = np.hstack([w * inner, np.full_like(w, math.inf), falling, np.zeros_like(w)])
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    _run(AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    _run(AT_COMPRESSIONS, law, found.inelasticity, found.yield_ratio, rtol, notes, strength=found.strength)
     return notes
 
 

@@ -311,9 +311,10 @@ def place(
     plate, root, slower = head.plate, fifth_root(speed), 1.0
     above = head.axes.scale * root
     if not usual:
-        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
-        plate, slower = pair.plate, pair.time
-        above *= math.sqrt(math.sqrt(slower))
+        if mass != 1.0:  # powers take longer than all else
+            pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
+            plate, slower = pair.plate, pair.time
+            above *= math.sqrt(math.sqrt(slower))
         if relaxes(plate):
             log_time = math.log(radius * slower) - 0.2 * math.log(speed)
             plate, root, growth = relaxed(plate, root, log_time)

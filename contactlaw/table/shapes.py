@@ -45,7 +45,7 @@ def build(law: Law, grid: Grid, rtol: float) -> Array:
     coarse = coarse.on_ladder(law, ladder_of(law, _APART))
 
     def states(out: Outcome) -> Array:
-        found = zener.shape(law.at_any_strength, out.inelasticity, out.yield_ratio, rtol, SHARES, out.strength)
+        found = zener.shape(law.at_any_strength, out, rtol, SHARES)
         return np.hstack([one[:, :-1] for one in (found.time, found.speed, found.force)])
 
     return sweep.at_nodes(law, coarse, rtol, states)
