@@ -72,12 +72,12 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # and line breaks, so that neither longer lines nor missing explanations save any. Other text of the
 # packages (sources of other languages, pages, numbers) counts in lines.
 SIZES = {
-    "contactlaw": 211_250,
+    "contactlaw": 211_235,
     "contactlaw/answers": 11_694,
     "contactlaw/cli": 25_018,
     "contactlaw/emit": 8_758,
     "contactlaw/engines": 16_798,
-    "contactlaw/equation": 15_273,
+    "contactlaw/equation": 15_271,
     "contactlaw/export": 9_395,
     "contactlaw/fitting": 11_988,
     "contactlaw/laws": 10_299,
@@ -85,12 +85,12 @@ SIZES = {
     "contactlaw/record": 4_253,
     "contactlaw/reporting": 7_336,
     "contactlaw/stepping": 21_997,
-    "contactlaw/table": 13_761,
+    "contactlaw/table": 13_749,
     "contactlaw/walls": 19_140,
     "dem_demo": 15_979,
     "validation": 84_637,
     "tests": 193_262,
-    "all Python": 511_175,
+    "all Python": 511_160,
     "other text": 3_130,
 }
 FREE = {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}

@@ -458,8 +458,12 @@ def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
             k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
             k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
             k[_SLOWER + i], k[_SLOWER + _CHUNK + i], k[_SLOWER + 2 * _CHUNK + i] = on.slower
+    # constants let the compiler leave out what a loop has not
     if not usual or hit.mass.size > 0:
-        _find_places(head, hit, k, s, thin, False, rated)
+        if thin or rated:
+            _find_places(head, hit, k, s, thin, False, rated)
+        else:
+            _find_places(head, hit, k, s, False, False, False)
     elif thin:
         _find_places(head, hit, k, s, True, True, False)
     elif rated:
@@ -529,10 +533,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     most = math.log(strongest(table, head.axes))
     for n in range(out.inelasticity.size):
         at, on = place_at(table, head, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
-        if at.inside or clamp:
-            _write(table, head.axes, at, on, min(out.strength[n], most), True, out, n)
-        else:
-            _write(table, head.axes, at, on, out.strength[n], False, out, n)
+        _write(table, head.axes, at, on, min(out.strength[n], most), at.inside or clamp, out, n)
         bad += not at.inside
     return bad
 
