@@ -239,3 +239,27 @@ def _code_of_tuple(context: Any, builder: Any, signature: Any, arguments: Any) -
         if name not in members:
             members[name] = context.get_getattr(source, name)(context, builder, source, arguments[1], name)
     return context.make_tuple(builder, signature.return_type, [members[name] for name in names])
+
+
+def numbers_at(kind: type[_Tuple], array: Array, begin: int, step: int) -> _Tuple:
+    """Make a NamedTuple of numbers of an array, each `step` after the one before; kernels may call it, too."""
+    return kind(*array[begin : begin + step * len(kind._fields) : step])
+
+
+@type_callable(numbers_at)
+def _type_of_numbers(_: Any) -> Any:
+    def typed(kind: Any, array: Any, begin: Any, step: Any) -> Any:
+        return _types.NamedUniTuple(array.dtype, len(kind.instance_class._fields), kind.instance_class)
+
+    return typed
+
+
+@lower_builtin(numbers_at, *4 * [_types.Any])  # type: ignore[no-untyped-call]
+def _code_of_numbers(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    data = context.make_array(signature.args[1])(context, builder, arguments[1]).data
+    at, step = (context.cast(builder, arguments[k], signature.args[k], _types.intp) for k in (2, 3))
+    members = []
+    for _ in range(signature.return_type.count):
+        members.append(builder.load(builder.gep(data, [at])))
+        at = builder.add(at, step)
+    return context.make_tuple(builder, signature.return_type, members)

@@ -24,6 +24,7 @@ _arrays _folder _atomic _template _content _errors _escaped _readable parser
 quantities style
 _numba _kept
 _jit
+_spline
 emit  # kernels in other languages; knows none of them
 equation  # no units
 laws
@@ -137,7 +138,7 @@ def test_kernels_know_neither_units_nor_files(path):
     allowed = {"__future__", "math", "collections.abc", "typing", "numpy", "numpy.typing"}
     allowed |= {"dataclasses", "functools", "itertools", "numpy.polynomial", "scipy.interpolate"}
     allowed |= {"numpy.polynomial.polynomial"}
-    own = {"_arrays", "_errors", "_jit", "_kept", "equation", "table", "laws"}
+    own = {"_arrays", "_errors", "_jit", "_kept", "_spline", "equation", "table", "laws"}
     for name in imported(path):
         parent = name.rpartition(".")[0]
         known = name in allowed or parent in allowed or name == "contactlaw"

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from contactlaw._jit import tuple_of
+from contactlaw._jit import numbers_at, tuple_of
 from contactlaw.emit import types
 from contactlaw.emit.program import Program
 from contactlaw.emit.types import (
@@ -396,6 +396,13 @@ class Function:
             source, changed = node.args[1], {one.arg: one.value for one in node.keywords}
             fields: list[Any] = [changed.get(name, ast.Attribute(source, name)) for name in values[0].known._fields]
             return self._call(ast.Call(node.args[0], fields, []))
+        if called is numbers_at:
+            array, begin, step = node.args[1:]
+            numbers: list[Any] = [
+                ast.Subscript(array, ast.BinOp(begin, ast.Add(), ast.BinOp(ast.Constant(k), ast.Mult(), step)))
+                for k in range(len(values[0].known._fields))
+            ]
+            return self._call(ast.Call(node.args[0], numbers, []))
         if called is len:
             return self._length(node, values[0])
         if called in (min, max, np.minimum, np.maximum):

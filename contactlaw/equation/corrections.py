@@ -126,7 +126,7 @@ def eta_of(corrections: PlateCorrections, ratio: float, x: float, thin: float, h
     usual = H_0 * (longer * longer)  # f squared fits finite elements: late times count more
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
-    w = min(x, DEEPEST, BROADEST / ratio)
+    w = min(x, DEEPEST, BROADEST * (1.0 / ratio))
     return ratio * ((corrections.eta + corrections.eta_h * g) * w + corrections.eta4 * (square * square))
 
 

@@ -112,7 +112,7 @@ def relaxes(plate: PlateConstants) -> bool:
 def plate_stiffening(plate: PlateConstants, root: float, ratio: float) -> float:
     """Stiffening eta of a contact by its plate, from V^(1/5) and R/H."""
     slow = min(root, plate.saturated)
-    thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root / ratio
+    thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root * (1.0 / ratio)
     return eta_of(plate.corrections, ratio, plate.x_at_one * (slow * slow), thin, h)
 
 
@@ -126,7 +126,7 @@ def inelasticity_of(plate: PlateConstants, root: float, ratio: float, stiffer: f
     root *= stiffer
     thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root
     bulk = plate.inelasticity * root * (h * h)
-    lam = with_corrections(plate.corrections, thin, h / ratio, bulk, plastic)
+    lam = with_corrections(plate.corrections, thin, h * (1.0 / ratio), bulk, plastic)
     if relaxes(plate):
         lam *= math.exp(plate.growth.wave + plate.growth.wave_slope * min(lam, 1.0))
     return lam

@@ -105,31 +105,13 @@ def plain_root(v: float) -> float:
 
 
 @kernel
-def plain_whole(v: float) -> int:
-    """Whole part."""
-    return int(v)
-
-
-@kernel
-def series_of(table: Array, k: int) -> Array:
-    """Coefficients of a power series, which begin at k."""
-    return table[k:]
-
-
-@kernel
 def plain_exp(x: float) -> float:
     """Exponential."""
     return math.exp(x)
 
 
 # What is quick in compiled Python by other ways than those of a language's library.
-INSTEAD: dict[Any, Any] = {
-    lookup.log: plain_log,
-    lookup.fifth_root: plain_root,
-    lookup.series_at: series_of,
-    lookup.exp: plain_exp,
-    lookup.whole: plain_whole,
-}
+INSTEAD: dict[Any, Any] = {lookup.log: plain_log, lookup.fifth_root: plain_root, lookup.exp: plain_exp}
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs"
 NOTHING = Answer(*[math.nan] * len(Answer._fields))
@@ -153,7 +135,7 @@ def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
     laws, known = by_strength(pair, law, COARSE), constants_of(pair, law)
     if table is not None:
         packed = lookup.with_plate(table.packed, known)
-        axes = lookup.axes_of(packed)
+        axes = lookup.head_of(packed).axes
         begins = lookup.HEADER + lookup.RUNG * int(axes.rungs)
         packed = packed[: begins + int(axes.rungs * axes.size)].copy()  # COR alone
         packed[begins:] = packed[begins:].round(9 if axes.rungs == 1.0 else 5)

@@ -41,9 +41,6 @@ class Law:
         c in d_Y = c pi^2 sigma_Y^2 R* / E*^2; None for a law that never yields.
     loading_kinks : tuple of float
         Compressions [d_Y], rising, at which the loading curve changes its formula.
-    outcome_kinks : tuple of float
-        Largest compressions [d_Y], rising, at which an impact's outcome is not smooth; the first
-        is 1 for a law that yields. Empty for Hertz's law.
     data : ndarray of float64
         Loading and unloading curves, in the layout of `contactlaw.equation.force`.
     parameters : mapping of str to float, optional
@@ -72,7 +69,6 @@ class Law:
     source: str
     yield_coefficient: float | None
     loading_kinks: tuple[float, ...]
-    outcome_kinks: tuple[float, ...]
     data: Array
     parameters: Mapping[str, float] = field(default_factory=dict)
     yield_strains: tuple[float, float] = (0.0, math.inf)
@@ -148,18 +144,12 @@ class Law:
         check_formulas(name, loading, unloading, end)
         curve, rows = expanded(name, loading, unloading, end, Resolution())
         check_unloading(name, curve, unloading)
-        kinks = tuple(float(branch.start) for branch in loading[1:])
-        # friction takes energy below yield, too: its branch begins no kink
-        starts = {*kinks, *(float(branch.start) for branch in unloading if branch.start >= 1.0)}
-        if range[1] < math.inf:
-            starts.add(range[1])
         return Law(
             family=family,
             parameters=parameters,
             source=source,
             yield_coefficient=yield_coefficient,
-            loading_kinks=kinks,
-            outcome_kinks=tuple(sorted(starts)),
+            loading_kinks=tuple(float(branch.start) for branch in loading[1:]),
             data=packed(curve, rows),
             yield_strains=yield_strains,
             scale=scale,
@@ -223,8 +213,8 @@ class Law:
 
     def _samples(self) -> list[float]:
         """Kinks, and values along the curves, by which laws are compared."""
-        values = [*self.loading_kinks, *self.outcome_kinks]
-        for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
+        values = [*self.loading_kinks]
+        for d in (*self.loading_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
             values += _force.deepest(self._law, d)
         return values
 

@@ -115,12 +115,14 @@ def tangential(table: Array, slides: Array, impact: Impact, friction: float, siz
         return math.nan, math.nan
     psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
     head = lookup.head_of(table)
-    at, on, strength = lookup.place_of(table, head, speed, radius, thickness, share)
+    at, on = lookup.place_of(table, head, speed, radius, thickness, share)
     e = lookup.cor_of(table, head.axes, at, on)
     if not e >= 0.0:
         return math.nan, math.nan
-    near, rung = lookup.place_near(slides, lookup.head_of(slides), at.x, at.p / at.w, strength)
-    return e, limit * change(slides, near, rung, e, psi)
+    x, head = at.row * (head.axes.x_max / head.axes.rows), lookup.head_of(slides)
+    rung = lookup.rung_of(slides, head.axes, on.k)
+    near = lookup.on_grid(head, rung, x, at.p / at.w, math.nan, True, True)
+    return e, limit * change(slides, head.axes, near, rung, e, psi)
 
 
 @kernel

@@ -34,7 +34,7 @@ from contactlaw.table.grid import Settings
 from contactlaw.table.table import Table
 
 FORMAT = "contactlaw table"
-SCHEMA = 8
+SCHEMA = 9
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: a PC can hold it
 _DATASETS = {
@@ -46,8 +46,7 @@ _DATASETS = {
     "slides": "grid and splines, see contactlaw.table.slides, of changes of the sliding speed [-]",
 }
 # Of a law, beside its data.
-_OF_LAW = ["family", "source", "yield_coefficient", "parameters", "scale", "range", "waves"]
-_OF_LAW += ["loading_kinks", "outcome_kinks"]
+_OF_LAW = ["family", "source", "yield_coefficient", "parameters", "scale", "range", "waves", "loading_kinks"]
 
 
 class DamagedTableError(ValueError):

@@ -32,6 +32,7 @@ BELOW, AFTER = 8, 8  # cells up to yield, where only the sphere's stiffening cou
 _SLOWEST = 0.02  # least p at which impacts are solved; slower ones are alike
 _ELASTIC = 25.0  # overload at the end of the first block of a law that never yields, over its first compression
 _NODES = 40  # places along x at which w and the end of the law are found
+_ALIKE = (1.0,)
 _EARLY = 1e-7  # relatively: impacts are found that turn before a kink, not at it
 
 
@@ -126,22 +127,24 @@ class Grid:
 
     def on_ladder(self, law: Law, ladder: Array) -> "Grid":
         """Change the strengths, which are ln k; where their laws end is found by the solver."""
-        rungs = np.tile([1.0, 1.0, *lookup.ALIKE, *lookup.ALIKE], (ladder.size, 1))
+        rungs = np.tile(lookup.SINGLE[3:], (ladder.size, 1))
         x = self.axes.x_max * np.linspace(0.0, 1.0, 7)
         for row, log_k in zip(rungs, ladder.tolist() if law.strengths else (), strict=False):
             growth = force.growth_at(law.at_any_strength, log_k)
             w, end = zener.elastic_compression(law.at_any_strength, STRETCH * x / (1.0 - x), log_k), self.end(x)
             if self.axes.after:
-                end = (_overloads(law, x, w, log_k, _end(law, log_k)) / self.axes.unit) ** 0.25
+                ends = force.rungs(law.at_any_strength)[:, [force.STRENGTH, force.END]].T
+                deepest = float(np.interp(log_k, *ends))
+                end = (_overloads(law, x, w, log_k, deepest) / self.axes.unit) ** 0.25
             row[:2] = math.exp(log_k), math.sqrt(growth)
             row[2:5], row[5:] = (polyfit(x, one, 2) for one in (end / self.end(x), (w / self.elastic(x)) ** 0.25))
         return dataclasses.replace(self.with_axes(rungs=ladder.size), rungs=rungs)
 
-    def elastic(self, x: Array, factor: Any = lookup.ALIKE) -> Array:
+    def elastic(self, x: Array, factor: Any = _ALIKE) -> Array:
         """Return w, the largest elastic compression; the factor is `slower` of a rung."""
         return self._polynomial(lookup.ELASTIC, x, factor) ** 4
 
-    def end(self, x: Array, factor: Any = lookup.ALIKE) -> Array:
+    def end(self, x: Array, factor: Any = _ALIKE) -> Array:
         """Return p at the end of the law; the factor is `later` of a rung."""
         return np.maximum(self._polynomial(lookup.END, x, factor), 1.0)
 
@@ -233,12 +236,6 @@ def ladder_of(law: Law, widest: float) -> Array:
     for low, high in itertools.pairwise(law.strengths.knots):
         rungs.append(np.linspace(low, high, 1 + math.ceil((high - low) / widest))[1:])
     return np.concatenate(rungs)
-
-
-def _end(law: Law, log_k: float) -> float:
-    """Compression up to which the law of a strength holds."""
-    rungs = force.rungs(law.at_any_strength)
-    return float(np.interp(log_k, rungs[:, force.STRENGTH], rungs[:, force.END]))
 
 
 def _overloads(law: Law, x: Array, w: Array, log_k: float, deepest: float) -> Array:

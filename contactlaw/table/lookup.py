@@ -24,16 +24,18 @@ outside become coordinates, and nothing above it in this folder has units.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlaw._arrays import Array
-from contactlaw._jit import kernel, tuple_of
+from contactlaw._jit import kernel, numbers_at
+from contactlaw._spline import spline_value
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
     NO_RATE,
     RATE_POWER,
+    Impact,
     ModulusGrowth,
     PairConstants,
     PlateConstants,
@@ -57,10 +59,10 @@ V_MIN = 1e-30
 THINNEST = 0.01
 
 STRETCH = 2.0  # c of x = lambda/(lambda + c)
-DEGREE = 11  # of the polynomials w^(1/4) and P
+DEGREE = 7  # of polynomials
 NO_MASSES = np.empty(0)
-_NUMBERS = Outcome._fields.index("inelasticity")  # where the numbers begin by which an impact is given
 _CHUNK = 256  # impacts at a time: the scratch arrays stay in the first-level cache
+_SCRATCH = 11 * _CHUNK  # of which a rung takes most
 
 
 class Axes(NamedTuple):
@@ -89,8 +91,7 @@ GROWTH = WAVES + len(PlateCorrections._fields)
 ELASTIC = GROWTH + len(ModulusGrowth._fields)  # the polynomial w^(1/4)
 END = ELASTIC + DEGREE + 1
 HEADER = END + DEGREE + 1  # where the rungs begin
-# Numbers of a rung: k, g^2, and squares in x, the factors of P and w^(1/4) of slow impacts.
-RUNG = 8
+RUNG = 8  # numbers of a rung: k, g^2, and the factors of P and of w^(1/4)
 NEXT = 1.02  # the table ends at least by this factor of p beyond the law, if it goes on
 
 
@@ -105,65 +106,51 @@ def with_plate(table: Array, pair: PairConstants) -> Array:
     return table
 
 
-@kernel(inline=True)
-def axes_of(table: Array) -> Axes:
-    """Read the axes."""
-    t = table
-    return Axes(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], t[12], t[13])
+class Series(NamedTuple):
+    """Coefficients of a polynomial, from that of t^0 on."""
 
-
-@kernel(inline=True)
-def plate_of(table: Array) -> PlateConstants:
-    """Read the constants of the plate; `log_time` is for T_H of a sphere of 1 m at 1 m/s as 1."""
-    w, k, r = table, WAVES, GROWTH
-    corrections = PlateCorrections(
-        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10]
-    )
-    growth = ModulusGrowth(w[r], w[r + 1], w[r + 2], w[r + 3], w[r + 4], w[r + 5])
-    return PlateConstants(w[PLATE], w[PLATE + 1], w[PLATE + 2], w[PLATE + 3], corrections, growth, NO_RATE)
-
-
-@kernel(inline=True)
-def series_at(table: Array, k: int) -> tuple[float, ...]:
-    """Coefficients of a polynomial that begin at k, as numbers."""
-    c = table
-    return (
-        (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5])
-        + (c[k + 6], c[k + 7], c[k + 8], c[k + 9], c[k + 10], c[k + 11])
-    )  # fmt: skip
+    c0: float
+    c1: float
+    c2: float
+    c3: float
+    c4: float
+    c5: float
+    c6: float
+    c7: float
 
 
 class Head(NamedTuple):
     """What kernels read of a table once, as numbers: no later write to an array can change them."""
 
     axes: Axes
-    plate: PlateConstants
-    w: Any  # coefficients of the polynomial w^(1/4)
-    ends: Any  # and of P
+    plate: PlateConstants  # `log_time` of its growth is for T_H of a sphere of 1 m at 1 m/s as 1
+    w: Series  # w^(1/4)
+    end: Series  # P
 
 
 @kernel(inline=True)
 def head_of(table: Array) -> Head:
     """Read the beginning of a table."""
-    return Head(axes_of(table), plate_of(table), series_at(table, ELASTIC), series_at(table, END))
+    t, corrections = table, numbers_at(PlateCorrections, table, WAVES, 1)
+    growth = numbers_at(ModulusGrowth, t, GROWTH, 1)
+    plate = PlateConstants(t[PLATE], t[PLATE + 1], t[PLATE + 2], t[PLATE + 3], corrections, growth, NO_RATE)
+    return Head(numbers_at(Axes, t, 0, 1), plate, numbers_at(Series, t, ELASTIC, 1), numbers_at(Series, t, END, 1))
 
 
 @kernel(inline=True)
-def powers(c: tuple[float, ...], t: float) -> float:
-    """Polynomial of degree 11 by Estrin's scheme: 4 products deep where Horner's has 11."""
+def powers(c: Series, t: float) -> float:
+    """Polynomial of degree 7 by Estrin's scheme: 3 products deep where Horner's has 7."""
     t2 = t * t
-    t4 = t2 * t2
-    p0 = (c[0] + c[1] * t) + (c[2] + c[3] * t) * t2
-    p1 = (c[4] + c[5] * t) + (c[6] + c[7] * t) * t2
-    p2 = (c[8] + c[9] * t) + (c[10] + c[11] * t) * t2
-    return (p0 + p1 * t4) + p2 * (t4 * t4)
+    low = (c.c0 + c.c1 * t) + (c.c2 + c.c3 * t) * t2
+    return low + ((c.c4 + c.c5 * t) + (c.c6 + c.c7 * t) * t2) * (t2 * t2)
 
 
 _MANTISSA, _ONE = np.int64((1 << 52) - 1), np.int64(1023 << 52)
 _TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
+_GUESS = 1.2 * (1023 - 0.045) * 2.0**20
 _LN_2, _HALF_LN_2 = math.log(2.0), 0.5 * math.log(2.0)
-_LOG = tuple(2.0 / n for n in range(1, 2 * DEGREE + 2, 2))  # of 2 artanh(z)/z over z^2
-_EXP = tuple(1.0 / math.factorial(n) for n in range(DEGREE + 1))
+_LOG = Series(*(2.0 / n for n in range(1, 2 * DEGREE + 2, 2)))  # of 2 artanh(z)/z over z^2
+_EXP = Series(*(1.0 / math.factorial(n) for n in range(DEGREE + 1)))
 
 
 @kernel(inline=True)
@@ -178,71 +165,70 @@ def log(v: float) -> float:
 
 @kernel(inline=True)
 def exp(x: float) -> float:
-    """Exponential of |x| < 700: x = n ln 2 + r, the series of exp(r/2), squared, n into the bits of the exponent."""
+    """Exponential of |x| < 700.
+
+    With x = n ln 2 + r it is the 8th power of the series of exp(r/8), with n in the bits of the exponent.
+    """
     shifted = x * (1.0 / _LN_2) + 1.5 * 2.0**52  # rounds to a whole number, in the last bits
-    half = powers(_EXP, 0.5 * (x - (shifted - 1.5 * 2.0**52) * _LN_2))
-    series = half * half
+    eighth = powers(_EXP, 0.125 * (x - (shifted - 1.5 * 2.0**52) * _LN_2))
+    quarter = eighth * eighth
+    series = (quarter * quarter) * (quarter * quarter)
     bits = np.float64(shifted).view(np.int64) << np.int64(52)
     return np.int64(np.float64(series).view(np.int64) + bits).view(np.float64)
 
 
 @kernel(inline=True)
 def fifth_root(v: float) -> float:
-    """Return v^(1/5) of a positive v."""
-    return exp(0.2 * log(v))
-
-
-@kernel(inline=True)
-def whole(v: float) -> Any:
-    """Whole part of a number above 0; of 32 bits, which vectors convert."""
-    return np.int32(v)
-
-
-@kernel(inline=True)
-def weights(t: float) -> tuple[float, float, float, float]:
-    """Cubic B-splines at t in [0, 1], times 6 (de Boor 1978, chapter IX).
-
-    All four have the same operations, zeros and all, so that one vector instruction does four.
-    """
-    return (
-        ((-1.0 * t + 3.0) * t - 3.0) * t + 1.0,
-        ((3.0 * t - 6.0) * t + 0.0) * t + 4.0,
-        ((-3.0 * t + 3.0) * t + 3.0) * t + 1.0,
-        ((1.0 * t + 0.0) * t + 0.0) * t + 0.0,
-    )
-
-
-Three = tuple[float, float, float]  # coefficients of a square in x
-ALIKE = (1.0, 0.0, 0.0)
-_STRONGEST = 1.0 + 1e-9  # largest way between two rungs; above 1 by rounding
+    """Return v^(1/5) of a positive v: v r^4, with r = v^(-1/5) by Newton's method."""
+    high = np.int32(np.int64(np.float64(v).view(np.int64) >> np.int64(32)))
+    r = np.int64(np.int64(np.int32(_GUESS - 0.2 * high)) << np.int64(32)).view(np.float64)
+    for _ in range(4):
+        square = r * r
+        r *= 1.2 - 0.2 * v * (square * square * r)
+    square = r * r
+    return v * (square * square)
 
 
 class Rung(NamedTuple):
     """A strength on the ladder."""
 
-    lower: int  # of two rungs
+    lower: float  # of two rungs
     between: float  # way to the next, from 0 to 1
+    inside: float  # 1; 0 for a strength above the ladder, which has the place of the highest
+    k: float
     g: float
-    later: Three  # factor of P
-    slower: Three  # factor of w^(1/4)
+    p0: float  # factor of P, a square in x
+    p1: float
+    p2: float
+    w0: float  # factor of w^(1/4)
+    w1: float
+    w2: float
+
+
+SINGLE = Rung(0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # of a table without a ladder
+_ROUNDING = 1.0 + 1e-9  # largest way between two rungs
 
 
 @kernel(inline=True)
 def rung_of(table: Array, axes: Axes, strength: float) -> Rung:
     """Find a strength k on the ladder."""
+    if axes.rungs == 1.0:
+        return SINGLE
     at, last = HEADER, HEADER + (int(axes.rungs) - 2) * RUNG
     while at < last and strength > table[at + RUNG]:
         at += RUNG
-    way = (strength - table[at]) / (table[at + RUNG] - table[at]) if axes.rungs > 1.0 else 0.0
-    later = _between(table, at + 2, way), _between(table, at + 3, way), _between(table, at + 4, way)
-    slower = _between(table, at + 5, way), _between(table, at + 6, way), _between(table, at + 7, way)
-    return Rung((at - HEADER) // RUNG, way, math.sqrt(_between(table, at + 1, way)), later, slower)
+    way = (strength - table[at]) / (table[at + RUNG] - table[at])
+    s = min(way, 1.0)
+    k, g = _mix(table, at, s), math.sqrt(_mix(table, at + 1, s))
+    p0, p1, p2 = _mix(table, at + 2, s), _mix(table, at + 3, s), _mix(table, at + 4, s)
+    w0, w1, w2 = _mix(table, at + 5, s), _mix(table, at + 6, s), _mix(table, at + 7, s)
+    return Rung((at - HEADER) / RUNG, s, 1.0 if way <= _ROUNDING else 0.0, k, g, p0, p1, p2, w0, w1, w2)
 
 
 @kernel(inline=True)
-def _between(table: Array, at: int, way: float) -> float:
+def _mix(table: Array, at: int, share: float) -> float:
     """Interpolate a number of two rungs."""
-    number: float = table[at] + way * (table[at + RUNG] - table[at])
+    number: float = table[at] + share * (table[at + RUNG] - table[at])
     return number
 
 
@@ -252,44 +238,32 @@ def strength_at(axes: Axes, speed: float, radius: float) -> float:
     return 1.0 + axes.slope * max(axes.log_rate + RATE_POWER * log(speed) - log(radius), 0.0)
 
 
-@kernel(inline=True)
-def strongest(table: Array, axes: Axes) -> float:
-    """Largest strength k of a table; infinite without a ladder."""
-    return float(table[HEADER + (int(axes.rungs) - 1) * RUNG]) if axes.rungs > 1.0 else math.inf
-
-
 class Place(NamedTuple):
-    """Place of an impact in a table: the nearest one, if it is outside."""
+    """Place of an impact in a table."""
 
     row: float
-    column: float
-    x: float
+    column: float  # -1 outside the table
     p: float
     w: float  # w^(1/4)
     root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5), if it is known
-    inside: bool
 
 
 @kernel(inline=True)
-def of_rung(series: tuple[float, ...], factor: Three, x: float) -> float:
-    """Return P or w^(1/4) of a strength."""
-    return powers(series, x) * (factor[0] + x * (factor[1] + x * factor[2]))
-
-
-@kernel(inline=True)
-def on_grid(head: Head, on: Rung, x: float, above: float, root: float) -> Place:
-    """Place of x and of p, which is `above` times w^(1/4)."""
+def on_grid(head: Head, on: Rung, x: float, above: float, root: float, valid: bool, clamp: bool) -> Place:
+    """Place of x and of p, which is `above` times w^(1/4); `clamp` takes the nearest one."""
     axes = head.axes
     near_x = x if 0.0 <= x <= axes.x_max else axes.x_max
-    elastic, end = of_rung(head.w, on.slower, near_x), max(of_rung(head.ends, on.later, near_x), 1.0)
-    p, top = above * elastic, max(axes.top * on.later[0], NEXT * end) if axes.after > 0.0 else end
+    elastic = powers(head.w, near_x) * (on.w0 + near_x * (on.w1 + near_x * on.w2))
+    end = max(powers(head.end, near_x) * (on.p0 + near_x * (on.p1 + near_x * on.p2)), 1.0)
+    p, top = above * elastic, max(axes.top * on.p0, NEXT * end) if axes.after > 0.0 else end
     near_p = p if p <= top else top
     over, under, first = 2.0 * axes.beyond * (near_p - 1.0), near_p + end - 2.0, axes.below + 3.0
     over, under, first = (2.0 * axes.below * near_p, near_p + 1.0, 0.0) if near_p <= 1.0 else (over, under, first)
     after, last = (near_p > end) & (axes.after > 0.0), axes.below + axes.beyond + 6.0
     over, under, first = (axes.after * (near_p - end), top - end, last) if after else (over, under, first)
-    inside = (near_x == x) & (near_p == p)
-    return Place(near_x * (axes.rows / axes.x_max), first + over / under, near_x, near_p, elastic, root, inside)
+    inside = valid & (near_x == x) & (near_p == p) & (on.inside > 0.0)
+    column = first + over / under if inside | clamp else -1.0
+    return Place(near_x * (axes.rows / axes.x_max), column, near_p, elastic, root)
 
 
 @kernel(inline=True)
@@ -329,57 +303,41 @@ def place(
         stiffer = (quarter * quarter) * (quarter * quarter)
         lam = inelasticity_of(plate, root, ratio, stiffer)
         x, above, root = lam / (lam + STRETCH), above / (quarter * on.g), root * stiffer
-    at = on_grid(head, on, x, above, root / slower)
-    return tuple_of(Place, at, inside=at.inside & is_valid(speed, radius, thickness))
+    return on_grid(head, on, x, above, root / slower, is_valid(speed, radius, thickness), False)
 
 
 @kernel(inline=True)
 def place_of(
     table: Array, head: Head, speed: float, radius: float, thickness: float, mass: float
-) -> tuple[Place, Rung, float]:
-    """Place of an impact, that of its strength, and this k."""
-    strength = strength_at(head.axes, speed, radius) if head.axes.rungs > 1.0 else 1.0
-    on, usual = rung_of(table, head.axes, strength), not relaxes(head.plate) and mass == 1.0
-    at = place(head, speed, radius, thickness, mass, on, is_thin(head.plate.corrections), usual)
-    return tuple_of(Place, at, inside=at.inside & (on.between <= _STRONGEST)), on, strength
+) -> tuple[Place, Rung]:
+    """Place of an impact, and that of its strength."""
+    on, usual = SINGLE, not relaxes(head.plate) and mass == 1.0
+    if head.axes.rungs > 1.0:
+        on = rung_of(table, head.axes, strength_at(head.axes, speed, radius))
+    return place(head, speed, radius, thickness, mass, on, is_thin(head.plate.corrections), usual), on
 
 
 @kernel(inline=True)
-def place_near(table: Array, head: Head, x: float, above: float, strength: float) -> tuple[Place, Rung]:
-    """Nearest place to dimensionless numbers; p is `above` times w^(1/4)."""
-    most = strongest(table, head.axes)
-    on = rung_of(table, head.axes, strength if strength <= most else most)
-    at = on_grid(head, on, x, above, math.nan)
-    return tuple_of(Place, at, inside=at.inside & (strength <= most * _STRONGEST)), on
-
-
-@kernel(inline=True)
-def place_at(table: Array, head: Head, lam: float, y: float, log_strength: float) -> tuple[Place, Rung]:
-    """Nearest place to an inelasticity, a yield ratio and ln of a strength."""
-    above = 1.0 / math.sqrt(math.sqrt(head.axes.unit * y))
-    return place_near(table, head, lam / (lam + STRETCH), above, math.exp(log_strength))
-
-
-@kernel(inline=True)
-def value(table: Array, at: np.uint64, stride: np.uint64, row: float, column: float) -> float:
-    """Interpolate in 4 x 4 coefficients of one rung, whose block begins at `at`; no index is negative."""
-    i, j = whole(row), whole(column)
-    a, b, c = weights(row - i), weights(column - j), (0.0, 0.0, 0.0, 0.0)
-    p = at + np.uint64(i) * stride + np.uint64(j)
-    for k in range(4):
-        c0, c1 = c[0] + a[k] * table[p], c[1] + a[k] * table[p + np.uint64(1)]
-        c = (c0, c1, c[2] + a[k] * table[p + np.uint64(2)], c[3] + a[k] * table[p + np.uint64(3)])
-        p += stride
-    return ((b[0] * c[0] + b[1] * c[1]) + (b[2] * c[2] + b[3] * c[3])) * (1.0 / 36.0)
+def place_at(table: Array, head: Head, lam: float, y: float, log_strength: float, clamp: bool) -> tuple[Place, Rung]:
+    """Place of an inelasticity, a yield ratio and ln of a strength."""
+    on, above = rung_of(table, head.axes, math.exp(log_strength)), 1.0 / math.sqrt(math.sqrt(head.axes.unit * y))
+    return on_grid(head, on, lam / (lam + STRETCH), above, math.nan, True, clamp), on
 
 
 @kernel(inline=True)
 def field(table: Array, axes: Axes, which: int, at: Place, on: Rung) -> float:
     """Interpolate a field at a place and between two rungs."""
-    size, stride, rungs = np.uint64(int(axes.size)), np.uint64(int(axes.stride)), int(axes.rungs)
-    begin = np.uint64(HEADER + RUNG * rungs) + np.uint64(which * rungs + on.lower) * size
-    low = value(table, begin, stride, at.row, at.column)
-    return low + on.between * (value(table, begin + size, stride, at.row, at.column) - low) if rungs > 1 else low
+    rungs, size = int(axes.rungs), int(axes.size)
+    begin = HEADER + RUNG * rungs + (which * rungs + int(on.lower)) * size
+    low = value(table, begin, axes, at.row, at.column)
+    return low + on.between * (value(table, begin + size, axes, at.row, at.column) - low) if rungs > 1 else low
+
+
+@kernel(inline=True)
+def value(table: Array, begin: int, axes: Axes, row: float, column: float) -> float:
+    """Interpolate in 4 x 4 coefficients of one rung, whose block has its beginning there."""
+    i, j, stride = int(row), int(column), int(axes.stride)
+    return spline_value(table, begin + i * stride + j, stride, row - i, column - j)
 
 
 @kernel(inline=True)
@@ -391,7 +349,7 @@ def cor_from(lost: float) -> float:
 @kernel(inline=True)
 def cor_of(table: Array, axes: Axes, at: Place, on: Rung) -> float:
     """COR at a place; NaN outside the table."""
-    return cor_from(field(table, axes, 0, at, on)) if at.inside else math.nan
+    return cor_from(field(table, axes, 0, at, on)) if at.column >= 0.0 else math.nan
 
 
 @kernel(cache=True)
@@ -401,85 +359,44 @@ def restitution_on_plate(table: Array, speed: float, radius: float, thickness: f
     The mass is over that of a solid sphere.
     """
     head = head_of(table)
-    at, on, _ = place_of(table, head, speed, radius, thickness, mass)
+    at, on = place_of(table, head, speed, radius, thickness, mass)
     return cor_of(table, head.axes, at, on)
 
 
-# Where the numbers of a chunk of impacts begin in their scratch memory. It is one array: compilers
-# check that no write alters what is read, and make no vector instructions if there is much to check.
-_ROW, _COLUMN, _P, _W, _ROOTS = range(0, 5 * _CHUNK, _CHUNK)
-_STRENGTH, _LOWER, _BETWEEN, _G, _LATER = range(0, 5 * _CHUNK, _CHUNK)
-_SLOWER, _SCRATCH = 7 * _CHUNK, 10 * _CHUNK
-
-
 @kernel(inline=True)
-def _three(s: Array, begin: int, i: int) -> Three:
-    """Coefficients of an impact's square."""
-    return s[begin + i], s[begin + _CHUNK + i], s[begin + 2 * _CHUNK + i]
-
-
-class _Impacts(NamedTuple):
-    """Some of many impacts."""
-
-    speed: Array
-    radius: Array
-    thickness: Array
-    mass: Array  # over those of solid spheres; without any, all are
-
-
-@kernel(inline=True)
-def _part(hit: _Impacts, start: int) -> _Impacts:
-    """Impacts of a chunk."""
-    end = start + _CHUNK
-    return _Impacts(hit.speed[start:end], hit.radius[start:end], hit.thickness[start:end], hit.mass[start:end])
-
-
-@kernel(inline=True)
-def _find_places(head: Head, hit: _Impacts, k: Array, s: Array, thin: bool, usual: bool, rated: bool) -> None:
-    """Places of a chunk of impacts; the column is -1 outside the table."""
+def _write_places(
+    head: Head, hit: Impact, start: int, k: Array, s: Array, thin: bool, usual: bool, rated: bool
+) -> None:
+    """Write the places of a chunk of impacts into s; their strengths are in k."""
     solid = usual or hit.mass.size == 0
-    for i in range(hit.speed.size):
-        later, slower = (_three(k, _LATER, i), _three(k, _SLOWER, i)) if rated else (ALIKE, ALIKE)
-        on, share = Rung(0, 0.0, k[_G + i] if rated else 1.0, later, slower), 1.0 if solid else hit.mass[i]
-        at = place(head, hit.speed[i], hit.radius[i], hit.thickness[i], share, on, thin, usual)
-        s[_ROW + i], s[_COLUMN + i] = at.row if at.inside else 0.0, at.column if at.inside else -1.0
-        s[_P + i], s[_W + i], s[_ROOTS + i] = at.p, at.w, at.root
+    for i in range(min(hit.speed.size - start, _CHUNK)):
+        n, on = start + i, numbers_at(Rung, k, i, _CHUNK) if rated else SINGLE
+        mass = 1.0 if solid else hit.mass[n]
+        at = place(head, hit.speed[n], hit.radius[n], hit.thickness[n], mass, on, thin, usual)
+        for c in range(len(at)):
+            s[c * _CHUNK + i] = at[c]
 
 
 @kernel
-def _find(table: Array, head: Head, hit: _Impacts, k: Array, s: Array) -> None:
-    """Places of a chunk of impacts, and those of their strengths."""
+def _find(table: Array, head: Head, hit: Impact, start: int, k: Array, s: Array) -> int:
+    """Find the places of a chunk of impacts, and those of their strengths; return how many there are."""
     rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
+    count = min(hit.speed.size - start, _CHUNK)
     if rated:
-        for i in range(hit.speed.size):
-            k[_STRENGTH + i] = strength_at(head.axes, hit.speed[i], hit.radius[i])
-        for i in range(hit.speed.size):
-            on = rung_of(table, head.axes, k[_STRENGTH + i])
-            k[_LOWER + i], k[_BETWEEN + i], k[_G + i] = on.lower, on.between, on.g
-            k[_LATER + i], k[_LATER + _CHUNK + i], k[_LATER + 2 * _CHUNK + i] = on.later
-            k[_SLOWER + i], k[_SLOWER + _CHUNK + i], k[_SLOWER + 2 * _CHUNK + i] = on.slower
+        for i in range(count):
+            s[i] = strength_at(head.axes, hit.speed[start + i], hit.radius[start + i])
+        for i in range(count):
+            on = rung_of(table, head.axes, s[i])
+            for c in range(len(on)):
+                k[c * _CHUNK + i] = on[c]
     # constants let the compiler leave out what a loop has not
     if not usual or hit.mass.size > 0:
-        if thin or rated:
-            _find_places(head, hit, k, s, thin, False, rated)
-        else:
-            _find_places(head, hit, k, s, False, False, False)
+        _write_places(head, hit, start, k, s, thin, False, rated)
     elif thin:
-        _find_places(head, hit, k, s, True, True, False)
-    elif rated:
-        _find_places(head, hit, k, s, False, True, True)
+        _write_places(head, hit, start, k, s, True, True, False)
     else:
-        _find_places(head, hit, k, s, False, True, False)
-    for i in range(hit.speed.size):
-        s[_COLUMN + i] = s[_COLUMN + i] if k[_BETWEEN + i] <= _STRONGEST else -1.0
-
-
-@kernel(inline=True)
-def _found(axes: Axes, k: Array, s: Array, i: int) -> tuple[Place, Rung]:
-    """Place of impact i of a chunk, and that of its strength."""
-    row, column, x = s[_ROW + i], s[_COLUMN + i], s[_ROW + i] * (axes.x_max / axes.rows)
-    at = Place(row, max(column, 0.0), x, s[_P + i], s[_W + i], s[_ROOTS + i], column >= 0.0)
-    return at, Rung(int(k[_LOWER + i]), k[_BETWEEN + i], 1.0, ALIKE, ALIKE)
+        _write_places(head, hit, start, k, s, False, True, rated)
+    return count
 
 
 @kernel(cache=True)
@@ -490,13 +407,10 @@ def restitutions(table: Array, speed: Array, radius: Array, thickness: Array, ma
     """
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
     for start in range(0, out.size, _CHUNK):
-        hit = _part(_Impacts(speed, radius, thickness, mass), start)
-        _find(table, head, hit, k, s)
-        for i in range(hit.speed.size):
-            at, on = _found(head.axes, k, s, i)
+        for i in range(_find(table, head, Impact(speed, radius, thickness, mass), start, k, s)):
+            at, on = numbers_at(Place, s, i, _CHUNK), numbers_at(Rung, k, i, _CHUNK)
             out[start + i] = cor_of(table, head.axes, at, on)
-        for i in range(hit.speed.size):
-            bad += s[_COLUMN + i] < 0.0
+            bad += at.column < 0.0
     return bad
 
 
@@ -509,16 +423,12 @@ def outcomes(
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
     head, k, s, bad = head_of(table), np.zeros(_SCRATCH), np.zeros(_SCRATCH), 0
-    axes = head.axes
     for start in range(0, speed.size, _CHUNK):
-        hit = _part(_Impacts(speed, radius, thickness, mass), start)
-        _find(table, head, hit, k, s)
-        for i in range(hit.speed.size):
-            at, on = _found(axes, k, s, i)
-            log_strength = log(k[_STRENGTH + i]) if axes.rungs > 1.0 else 0.0
-            _write(table, axes, at, on, log_strength, at.inside, out, start + i)
+        for i in range(_find(table, head, Impact(speed, radius, thickness, mass), start, k, s)):
+            at, on = numbers_at(Place, s, i, _CHUNK), numbers_at(Rung, k, i, _CHUNK)
+            _write(table, head.axes, at, on, out, start + i)
             root[start + i] = at.root
-            bad += not at.inside
+            bad += at.column < 0.0
     return bad
 
 
@@ -530,32 +440,26 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     puts that point's coordinates in place of the impact's.
     """
     head, bad = head_of(table), 0
-    most = math.log(strongest(table, head.axes))
     for n in range(out.inelasticity.size):
-        at, on = place_at(table, head, out.inelasticity[n], out.yield_ratio[n], out.strength[n])
-        _write(table, head.axes, at, on, min(out.strength[n], most), at.inside or clamp, out, n)
-        bad += not at.inside
+        at, on = place_at(table, head, out.inelasticity[n], out.yield_ratio[n], out.strength[n], clamp)
+        _write(table, head.axes, at, on, out, n)
+        bad += at.column < 0.0
     return bad
 
 
 @kernel(inline=True)
-def _write(
-    table: Array, axes: Axes, at: Place, on: Rung, log_strength: float, known: bool, out: Outcome, n: int
-) -> None:
-    """Write the fields of impact n; those that are not known are NaN."""
-    lost, ratio = field(table, axes, 0, at, on), at.w / at.p
-    values = (
-        cor_from(lost),
-        1.0 / field(table, axes, 1, at, on),
-        field(table, axes, 2, at, on),
-        field(table, axes, 3, at, on),
-        (at.w * at.w) * (at.w * at.w),
-        STRETCH * at.x / (1.0 - at.x),
-        (ratio * ratio) * (ratio * ratio) / axes.unit,
-        log_strength,
-    )
-    for k in range(len(values)):
-        if known:
-            out[k][n] = values[k]
-        elif k < _NUMBERS:
-            out[k][n] = math.nan
+def _write(table: Array, axes: Axes, at: Place, on: Rung, out: Outcome, n: int) -> None:
+    """Write the fields of impact n; outside the table they are NaN."""
+    if at.column < 0.0:
+        out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
+        out.compression_ratio[n] = out.elastic_compression[n] = math.nan
+        return
+    ratio, x = at.w / at.p, at.row * (axes.x_max / axes.rows)
+    out.restitution[n] = cor_from(field(table, axes, 0, at, on))
+    out.contact_time[n] = 1.0 / field(table, axes, 1, at, on)
+    out.wave_rate[n] = field(table, axes, 2, at, on)
+    out.compression_ratio[n] = field(table, axes, 3, at, on)
+    out.elastic_compression[n] = (at.w * at.w) * (at.w * at.w)
+    out.inelasticity[n] = STRETCH * x / (1.0 - x)
+    out.yield_ratio[n] = (ratio * ratio) * (ratio * ratio) / axes.unit
+    out.strength[n] = log(on.k) if axes.rungs > 1.0 else 0.0

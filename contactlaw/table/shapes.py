@@ -55,14 +55,14 @@ def build(law: Law, grid: Grid, rtol: float) -> Array:
 def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
     """Sample contacts at even times from touch to separation, for outcomes inside the table."""
     samples, head = out.time.shape[1], lookup.head_of(shapes)
-    t, u, f, d = np.zeros(SIZE + 2), np.ones(SIZE + 2), np.zeros(SIZE + 2), np.zeros(SIZE + 2)
+    (t, f, d), u = np.zeros((3, SIZE + 2)), np.ones(SIZE + 2)
     for n in range(out.time.shape[0]):
         lam, y, i = found.inelasticity[n], found.yield_ratio[n], 0
         top, left = found.compression_ratio[n] * found.elastic_compression[n], 0.0
         own = force.at_strength(law, found.strength[n])
         if top > y * force.leaves_hertz(own):
             left = force.unloading(own, top / y).residual * y
-        at, on = lookup.place_at(shapes, head, lam, y, found.strength[n])
+        at, on = lookup.place_at(shapes, head, lam, y, found.strength[n], True)
         for k in range(SIZE):
             t[k + 1] = field(shapes, head.axes, k, at, on)
             u[k + 1] = field(shapes, head.axes, SIZE + k, at, on)

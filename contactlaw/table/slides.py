@@ -20,13 +20,14 @@ import numpy as np
 
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
+from contactlaw._spline import weights
 from contactlaw.equation import outcome, tangential, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
 from contactlaw.table import lookup, sweep
 from contactlaw.table.grid import ladder_of, spline_coefficients
-from contactlaw.table.lookup import Place, Rung, axes_of, field, weights
+from contactlaw.table.lookup import Axes, Place, Rung, field
 from contactlaw.table.table import Table
 
 _NODES = 49  # of each range of psi
@@ -79,7 +80,7 @@ def after(
 
 
 @kernel(inline=True)
-def change(slides: Array, at: Place, on: Rung, e: float, psi: float) -> float:
+def change(slides: Array, axes: Axes, at: Place, on: Rung, e: float, psi: float) -> float:
     """Change of the contact point's speed in an impact inside the table [mu V0]."""
     kappa = slides[slides.size - 1]
     size, full = abs(psi), POINT * (1.0 + e)
@@ -90,7 +91,7 @@ def change(slides: Array, at: Place, on: Rung, e: float, psi: float) -> float:
         return math.copysign(full, psi) if place >= 2.0 else math.nan
     second = place > 1.0
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
-    cell, axes, value = min(int(along), _NODES - 2), axes_of(slides), 0.0
+    cell, value = min(int(along), _NODES - 2), 0.0
     first, c = cell + (_NODES + 2 if second else 0), weights(along - cell)
     for k in range(4):
         value += c[k] * field(slides, axes, first + k, at, on) / 6.0
@@ -102,5 +103,5 @@ def changes(slides: Array, found: Outcome, psi: Array, out: Array) -> None:
     """`change` of many impacts whose normal outcomes are inside the table."""
     head = lookup.head_of(slides)
     for n in range(psi.size):
-        at, on = lookup.place_at(slides, head, found.inelasticity[n], found.yield_ratio[n], found.strength[n])
-        out[n] = change(slides, at, on, found.restitution[n], psi[n])
+        at, on = lookup.place_at(slides, head, found.inelasticity[n], found.yield_ratio[n], found.strength[n], True)
+        out[n] = change(slides, head.axes, at, on, found.restitution[n], psi[n])

@@ -43,7 +43,7 @@ def attempt(data):
     for table in TABLES:
         for speed, radius, thickness, mass in many[12:].reshape(-1, 4):
             lookup.restitution_on_plate(table, speed, radius, thickness, mass)
-            lookup.place_at(table, lookup.head_of(table), speed, radius, thickness)
+            lookup.place_at(table, lookup.head_of(table), speed, radius, thickness, True)
         lookup.fields(table, True, outcome.at(*many[1, :2]))
     for strength, depth, x, y in many[12:].reshape(-1, 4):
         for own in (force.alone(law), force.at_strength(STRENGTHS, strength)):

