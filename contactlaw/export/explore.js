@@ -78,18 +78,14 @@ function show() {
     ["i", "", { style: `flex:${share};background:${ENERGIES[name][1]}` }]));
   fill("shares", Object.entries(shares).map(([name, share]) =>
     ["li", `${ENERGIES[name][0]} ${(100 * share).toFixed(1)} %`, { style: `border-color:${ENERGIES[name][1]}` }]));
-  const [python, shell] = thickness < Infinity ? [thickness, thickness] : ["math.inf", "inf"];
-  const kilograms = round(mass * pair.solid * radius ** 3, 9);
-  const [heavy, option] = mass === 1 ? ["", ""] : [`, mass=${kilograms}`, `--mass ${kilograms} `];
+  const python = thickness < Infinity ? thickness : "math.inf";
+  const heavy = mass === 1 ? "" : `, mass=${round(mass * pair.solid * radius ** 3, 9)}`;
   byId("python").textContent = "import math\nimport contactlaw as cl\n\n" + pair.python + (angle > 0
     ? `angle = math.radians(${angle})\nhit = model.oblique(\n    speed=${speed} * math.cos(angle), `
       + `sliding_speed=${speed} * math.sin(angle),\n    radius=${radius}, thickness=${python}, `
       + `friction=${friction}, method="solve"${heavy},\n)`
     : `hit = model.solve(speed=${speed}, radius=${radius}, thickness=${python}${heavy})`)
     + "\nprint(hit.restitution, hit.flags)";
-  byId("command").textContent = `contactlaw cor ${pair.options} --radius ${radius} `
-    + `--thickness ${shell} ${option}--speed ${speed} --solve`
-    + (angle > 0 ? ` --angle ${angle} --friction ${friction}` : "");
   redraws.forEach((redraw) => redraw());
 }
 function collide(given) { // null for what is refused
@@ -160,6 +156,5 @@ byId("pair").onchange = () => {
   pair = pairs[byId("pair").selectedIndex];
   document.title = byId("title").textContent = pair.title;
   byId("law").textContent = pair.law;
-  byId("shell").hidden = !pair.options;
   show();
 };

@@ -9,7 +9,6 @@ import dataclasses
 import math
 import os
 import re
-import shlex
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -87,20 +86,16 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
 
 
 def _shown(model: ImpactModel) -> dict[str, float | str]:
-    """Collect what the page says of a pair; options are empty if the command line cannot take the pair."""
+    """Collect what the page says of a pair."""
     pair, law = model.pair, model.force_law
-    registered, default = law.family in laws.names(), law.family == laws.DEFAULT
     bodies = ", ".join(_python(body) for body in pair.given)
+    registered, default = law.family in laws.names(), law.family == laws.DEFAULT
     chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
-    typed = [_typed(body) for body in pair.given]
-    options = "--sphere {} --plate {}".format(*map(shlex.quote, typed))
-    options += "" if default else f" --law {law.family}"
     return {
         "title": f"{pair.sphere.name} on {pair.plate.name}",
         "law": f"law {law.family}: {law.source}",
         "solid": constants_of(pair, law).mass,
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
-        "options": options if registered and all(typed) else "",
     }
 
 
@@ -125,29 +120,8 @@ def _kernels(bodies: Bodies, page: Page) -> tuple[_Kernels, list[str]]:
     return _Kernels(names, _CONSTANT.sub("", text)), list(values)
 
 
-def _in_catalogue(body: Material) -> bool:
-    return body.name in materials() and material(body.name) == body
-
-
-def _typed(body: Material) -> str:
-    """Write a material as the command line takes it; "" if it has numbers that no option takes."""
-    if _in_catalogue(body):
-        return body.name
-    if body.hardening or body.rate or body.loss_factor:
-        return ""
-    fields = {
-        "E": body.youngs_modulus,
-        "nu": body.poissons_ratio,
-        "rho": body.density,
-        "yield": body.yield_strength,
-        "hardness": body.hardness,
-        "kind": body.kind,
-    }
-    return " ".join(f"{key}={value}" for key, value in fields.items() if value is not None)
-
-
 def _python(body: Material) -> str:
     """Write a material as an expression in Python."""
-    if _in_catalogue(body):
+    if body.name in materials() and material(body.name) == body:
         return repr(body.name)
     return f"cl.{dataclasses.replace(body, source='', uncertainty={})!r}"

@@ -58,14 +58,11 @@ def cached(law: Law, settings: Settings | None = None) -> Table:
     Whatever is wrong with the folder, a table is returned; a warning says that it was not kept.
     """
     settings = settings or on_demand(law)
+    name = file_name("table", law.key, asdict(settings))
 
     def read(path: Path) -> Table:
-        found = file.read(path)
-        if found.law.key != law.key or found.settings != settings:
-            raise ValueError("it is the table of another law or of other settings")
-        return dataclasses.replace(found, law=law)
+        return dataclasses.replace(file.read(path), law=law)  # laws of one key may have other names
 
-    name = file_name("table", law.key, asdict(settings))
     return _kept(name, law, read, lambda: tables.build(law, settings), file.write)
 
 
