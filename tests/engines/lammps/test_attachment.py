@@ -62,18 +62,21 @@ def test_detach_gives_the_simulation_back(model):
 
 
 def test_walls_act_on_the_beads_of_a_group(model):
-    """Others fly through, of any mass and speed; a bead that is taken out has left the walls."""
-    lmp = make([above(), above(x=0.01), above(x=0.02)])
-    lmp.commands_string("group gone id 1\ngroup two id 2\ngroup beads id 1 2\ngroup gone delete")
-    lmp.command("set atom 3 density 1 vz -20000")  # further than its radius in a step
-    walls = attach(lmp, model, [flat(1e-3)], group="beads")
-    lmp.commands_string("run 0\nset atom 3 vz -5\nrun 220")
-    assert (state(lmp)["d2_contactlaw"][:, PLATE] != 0.0).tolist() == [True, True, False]
+    """Others fly through, of any mass and speed, and so do types without a model.
+
+    A bead that is taken out has left the walls.
+    """
+    lmp = make([above(x=0.01 * n) for n in range(4)], types=2, kind=[1, 1, 1, 2])
+    lmp.commands_string("group gone id 1\ngroup two id 2\ngroup beads id 1 2 4\ngroup gone delete")
+    lmp.command("set atom 3*4 density 1 vz -20000")  # further than its radius in a step
+    walls = attach(lmp, {1: model, 2: None}, [flat(1e-3)], group="beads")
+    lmp.commands_string("run 0\nset atom 3*4 vz -5\nrun 220")
+    assert (state(lmp)["d2_contactlaw"][:, PLATE] != 0.0).tolist() == [True, True, False, False]
     with pytest.raises(Exception, match="Cannot delete group beads"):
         lmp.command("group beads delete")
     lmp.commands_string("group beads subtract beads two\nrun 1000")
     assert walls.collisions()["bead"].tolist() == [1]
-    assert (state(lmp)["v"][1:, 2] < 0.0).all() and state(lmp)["v"][2, 2] == -5.0
+    assert state(lmp)["v"][1, 2] < 0.0 and (state(lmp)["v"][2:, 2] == -5.0).all()
     lmp.commands_string("group beads clear\ngroup beads dynamic two every 1\nset atom 2 z 2e-4")
     with pytest.raises(RuntimeError, match="bead 2 on wall 0 .* deep in the wall"):
         lmp.command("run 1")

@@ -10,7 +10,7 @@ import pytest
 from lammps_box import R, above, flat, scene, state
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Tabulated, Translation
+from contactlaw.engines.lammps import Rotation, Tabulated, Translation, Vibration
 
 MYC, FEM = cl.ImpactModel(box.PAIR, law="myc"), cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))
 PSI, MU = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]), 0.2
@@ -75,9 +75,9 @@ def test_beads_struck_in_mid_contact_gain_no_energy():
 
 MOTIONS = {
     "none": None,
-    "vibration": box.Vibration((2e-4, 1e-4, 5e-5), 500.0),
+    "vibration": Vibration((2e-4, 1e-4, 5e-5), 500.0),
     "translation": Translation((1.0, 0.5, 2.0)),
-    "rotation": box.Rotation((0, -1, 0), 30.0, (-0.06, 0, 0)),
+    "rotation": Rotation((0, -1, 0), 30.0, (-0.06, 0, 0)),
     # its speed jumps in mid-contact, and energy that is lost then is not restored
     "table": Tabulated([0.0, 4e-6, 7e-6], [[0, 0, 0], [0, 0, 4e-6], [0, 0, 13e-6]]),
 }

@@ -63,12 +63,6 @@ def test_fines_fly_through_the_deck_of_a_sieve():
         assert both[name][:2].tolist() == below[name].tolist(), name
 
 
-def test_a_type_that_flies_through_all_walls_may_be_of_any_speed_and_mass():
-    lmp = make([above(), above(0.07, 0.02)], [(0, 0, -3), (0, 0, -1e4)], density=[DENSITY, 5.0], types=2, kind=[1, 2])
-    attach(lmp, {1: models(STEEL)[1], 2: None}, [flat(1e-3)])
-    lmp.command("run 60")
-
-
 def test_a_type_without_a_model_is_named():
     given = models(STEEL)
     del given[2]

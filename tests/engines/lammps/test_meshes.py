@@ -30,12 +30,10 @@ def scattered():
 def places(corners, triangles):
     """1000 places to hit: anywhere, on seams and on corners."""
     rng = np.random.default_rng(7)
-    a, b, c = corners[rng.choice(triangles, 3000)].transpose(1, 0, 2)
-    share, more = rng.uniform(0, 1, (3000, 1)), rng.uniform(0, 1, (3000, 1))
-    share[:500], more[:2000] = 0.0, 0.0
-    hit = a + share * (b - a) + more * (1 - share) * (c - a)
-    inside = (abs(hit[:, :2]) < 0.9 * HALF).all(axis=1)
-    return hit[inside][np.linspace(0, inside.sum() - 1, 1000).astype(int)]
+    share = rng.dirichlet((1, 1, 1), 3000)
+    share[:2000, 2] = share[:500, 1] = 0.0
+    hit = np.einsum("ij,ijk->ik", share / share.sum(axis=1, keepdims=True), corners[rng.choice(triangles, 3000)])
+    return rng.permutation(hit[(abs(hit[:, :2]) < 0.9 * HALF).all(axis=1)])[:1000]
 
 
 @pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])

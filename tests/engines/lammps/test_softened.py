@@ -133,6 +133,9 @@ def test_a_contact_that_is_too_soft_is_told():
     with pytest.warns(UserWarning, match="an impact at 20 m/s had an overlap of 4"):
         lmp.commands_string("set group all z 0.001 vz -20\nrun 300")
     assert walls.softening == SOFT
+    lmp, _ = box.scene(MODEL, velocity=(0, 0, -20), softening=1e9)
+    with pytest.raises(RuntimeError, match="its centre went through the wall at 20 m/s"):
+        lmp.command("run 900")
 
 
 def test_two_parcels_touch_as_long_as_two_beads():
