@@ -1,6 +1,5 @@
 """``contactlaw explore`` (pages): a page with sliders for a browser."""
 
-import itertools
 from argparse import Namespace
 from typing import Any
 
@@ -12,17 +11,13 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "a page for a browser: sliders, curves of the COR, energies, the force over time"
     command = options.command(commands, "explore", about, _run)
-    options.add_pair(command, action="append")
+    options.add_pair(command)
     options.add_name_of_law(command)
     command.add_argument("--out", default="page.html", metavar="FILE", help="file to write (default: %(default)s)")
-    command.epilog = "If you give --sphere or --plate several times, the page has a menu of all pairs."
 
 
 def _run(arguments: Namespace) -> None:
-    models = []
-    for sphere, plate in itertools.product(arguments.sphere, arguments.plate):
-        arguments.sphere, arguments.plate = sphere, plate
-        models.append(chosen.model(arguments))
+    model = chosen.model(arguments)
     with wording.writing("out", arguments.out):
-        export.page(arguments.out, models)
+        export.page(arguments.out, model)
     print(arguments.out)

@@ -9,7 +9,7 @@ import os
 import re
 import string
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import resources
 from typing import Any, Literal
 
@@ -146,17 +146,6 @@ def kernels(bodies: Bodies) -> str:
     add(program, functions.rub_softened, pair, bead, DOUBLE, softened, one, DOUBLE, point, point, DOUBLE)
     add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
-
-
-def models_of(model: ImpactModel | Sequence[ImpactModel]) -> Sequence[ImpactModel]:
-    """One or several models as several; what is none is refused."""
-    models: Sequence[Any] = model if isinstance(model, (list, tuple)) else [model]
-    for one in models:
-        if not isinstance(one, ImpactModel):
-            raise TypeError(f"model: expected a contactlaw.ImpactModel, got {one!r}")
-    if not models:
-        raise ArgumentError("model", None, "expected at least one contactlaw.ImpactModel, got none")
-    return models
 
 
 def filled(folder: str, files: Iterable[str], values: Mapping[str, str]) -> Iterator[tuple[str, bytes]]:

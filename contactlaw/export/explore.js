@@ -3,7 +3,7 @@ const SLIDERS = { // unit and its size; ends: from 0 on evenly, others by equal 
   speed: ["m/s", 1, 0.05, 50], radius: ["mm", 1e-3, 5e-5, 0.01], thickness: ["mm", 1e-3, 5e-5, 0.1],
   mass: ["×", 1, 0.65, 5], angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
 const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, mass: 1, angle: 0, friction: 0.2 };
-let pair = pairs[0], hit, curves;
+let hit, curves;
 const round = (x, digits = 3) => Number(x.toPrecision(digits));
 const place = ([low, high], x) => (low > 0 ? Math.log(x / low) / Math.log(high / low) : x / high);
 const $min = (one, other) => other < one ? other : one; // what the kernels call beside Math
@@ -48,8 +48,8 @@ function show() {
   const { speed, radius, thickness, mass, angle, friction } = asked;
   const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
-    const x = low * (high / low) ** (n / 72), given = at(x), one = pair.for_curve(given);
-    return [x, one.restitution, one.restitution >= 0 ? pair.exceeded(one, given) : 0];
+    const x = low * (high / low) ** (n / 72), given = at(x), one = $for_curve(given);
+    return [x, one.restitution, one.restitution >= 0 ? $exceeded(one, given) : 0];
   });
   curves = { speed: curve(SLIDERS.speed, (v) => ({ ...asked, speed: v * tilt })),
     thickness: curve(SLIDERS.thickness, (h) => ({ ...asked, speed: speed * tilt, thickness: h })) };
@@ -79,8 +79,8 @@ function show() {
   fill("shares", Object.entries(shares).map(([name, share]) =>
     ["li", `${ENERGIES[name][0]} ${(100 * share).toFixed(1)} %`, { style: `border-color:${ENERGIES[name][1]}` }]));
   const python = thickness < Infinity ? thickness : "math.inf";
-  const heavy = mass === 1 ? "" : `, mass=${round(mass * pair.solid * radius ** 3, 9)}`;
-  byId("python").textContent = "import math\nimport contactlaw as cl\n\n" + pair.python + (angle > 0
+  const heavy = mass === 1 ? "" : `, mass=${round(mass * SOLID * radius ** 3, 9)}`;
+  byId("python").textContent = `import math\nimport contactlaw as cl\n\nmodel = ${PYTHON}\n` + (angle > 0
     ? `angle = math.radians(${angle})\nhit = model.oblique(\n    speed=${speed} * math.cos(angle), `
       + `sliding_speed=${speed} * math.sin(angle),\n    radius=${radius}, thickness=${python}, `
       + `friction=${friction}, method="solve"${heavy},\n)`
@@ -89,7 +89,7 @@ function show() {
   redraws.forEach((redraw) => redraw());
 }
 function collide(given) { // null for what is refused
-  const { impact, ...oblique } = pair.collide(given, given.angle, given.friction);
+  const { impact, ...oblique } = $collide(given, given.angle, given.friction);
   return impact.restitution >= 0 ? { ...given, ...impact, ...oblique } : null;
 }
 
@@ -139,7 +139,7 @@ const drawCurve = (id, title) => (pen, width, tall) => {
 };
 function drawForce(pen, width, tall) {
   if (!hit) return;
-  const path = pair.shown(hit, hit), end = path.time.at(-1) * 1e6;
+  const path = $shown(hit, hit), end = path.time.at(-1) * 1e6;
   const [X, Y] = axes(pen, width, tall, [0, end], [0, Math.max(...path.force) * 1.08],
     ["time since touch [µs]", "contact force [N]"]);
   pen.beginPath();
@@ -151,10 +151,3 @@ show();
 redraws.push(surface("over-speed", 0.56, drawCurve("speed", "speed of the bead [m/s]")),
   surface("over-thickness", 0.56, drawCurve("thickness", "thickness of the plate [mm]")),
   surface("force", 0.56, drawForce));
-
-byId("pair").onchange = () => {
-  pair = pairs[byId("pair").selectedIndex];
-  document.title = byId("title").textContent = pair.title;
-  byId("law").textContent = pair.law;
-  show();
-};

@@ -1,4 +1,4 @@
-"""A page with sliders for a browser; it answers for some pairs of materials.
+"""A page with sliders for a browser; it answers for a pair of materials.
 
 The page computes by the package's own kernels, which `contactlaw.emit` writes in JavaScript.
 ``explore.html`` and ``explore.js`` are the page. The page of the demo's rain draws with the
@@ -8,9 +8,6 @@ functions of ``drawing.js``, too.
 import dataclasses
 import math
 import os
-import re
-from collections.abc import Sequence
-from typing import NamedTuple
 
 from contactlaw import _atomic, laws, style
 from contactlaw._template import template
@@ -18,26 +15,16 @@ from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
 from contactlaw.equation.numbers import Impact
 from contactlaw.export import functions, page_functions
-from contactlaw.export.c_header import models_of
-from contactlaw.export.functions import FIXED, Bodies, bodies_of
+from contactlaw.export.functions import FIXED, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
-from contactlaw.physical.materials import Material, material, materials
+from contactlaw.physical.materials import material, materials
 from contactlaw.physical.scaling import constants_of
 from contactlaw.physical.validity import Validity, explain
 
-_CONSTANT = re.compile(r"^const (\$\w+) = (.*?);$\n*", re.MULTILINE | re.DOTALL)
 
-
-class _Kernels(NamedTuple):
-    """Kernels in JavaScript, and the names of the constants of a pair that they read."""
-
-    names: tuple[str, ...]
-    functions: str
-
-
-def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel]) -> None:
-    """Write a page for a browser that answers for pairs of materials, without a network.
+def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
+    """Write a page for a browser that answers for a pair of materials, without a network.
 
     It has sliders for speed, radius, thickness, mass, angle and friction. It shows curves of the
     COR, where the energy goes, the force over time, and which limits of the model are exceeded. It
@@ -46,15 +33,14 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     Parameters
     ----------
     path : path-like
-        File to write, 0.12 MB and 0.03 to 0.06 MB for each further pair; an existing file is
-        replaced.
-    model : ImpactModel or sequence of ImpactModel
-        Pair and law. For several, the page has a menu to choose one.
+        File to write, 0.12 MB; an existing file is replaced.
+    model : ImpactModel
+        Pair and law.
 
     Raises
     ------
-    TypeError, ValueError
-        If a model is not an ImpactModel, or if the sequence is empty.
+    TypeError
+        If the model is not an ImpactModel.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -71,57 +57,43 @@ def page(path: str | os.PathLike[str], model: ImpactModel | Sequence[ImpactModel
     >>> file.stat().st_size < 1e6
     True
     """
-    models = models_of(model)
-    made = [_kernels(*_bodies(one)) for one in models]
-    kernels = list(dict.fromkeys(one for one, _ in made))  # each once, for all its pairs
+    if not isinstance(model, ImpactModel):
+        raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
+    pair, law = model.pair, model.force_law
     text = template("contactlaw.export", "explore.html").render(
         version=VERSION,
         energies=style.ENERGIES,
         words={flag.value: explain(flag)[0] for flag in Validity if flag < Validity.CURVED_WALL},
-        pairs=[_shown(one) for one in models],
-        kernels=kernels,
-        constants=[(kernels.index(one), constants) for one, constants in made],
+        title=f"{pair.sphere.name} on {pair.plate.name}",
+        law=f"law {law.family}: {law.source}",
+        solid=constants_of(pair, law).mass,
+        python=_python(model),
+        kernels=_kernels(model),
     )
     _atomic.write(path, text.encode())
 
 
-def _shown(model: ImpactModel) -> dict[str, float | str]:
-    """Collect what the page says of a pair."""
-    pair, law = model.pair, model.force_law
-    bodies = ", ".join(_python(body) for body in pair.given)
-    registered, default = law.family in laws.names(), law.family == laws.DEFAULT
-    chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
-    return {
-        "title": f"{pair.sphere.name} on {pair.plate.name}",
-        "law": f"law {law.family}: {law.source}",
-        "solid": constants_of(pair, law).mass,
-        "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
-    }
+def _python(model: ImpactModel) -> str:
+    """Write a model as an expression in Python."""
+    bodies = (
+        repr(body.name)
+        if body.name in materials() and material(body.name) == body
+        else f"cl.{dataclasses.replace(body, source='', uncertainty={})!r}"
+        for body in model.pair.given
+    )
+    family = model.force_law.family
+    law = "" if family == laws.DEFAULT else f", law={family!r}" if family in laws.names() else ", law=law"
+    return f"cl.ImpactModel(cl.Pair({', '.join(bodies)}){law})"
 
 
-def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
-    """Numbers of a pair."""
-    pair = model.pair
-    weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
-    flag = Validity.SLIDING_FLOW.value
-    return bodies_of(model, None), Page(pair.effective_modulus, weaker, flag)
-
-
-def _kernels(bodies: Bodies, page: Page) -> tuple[_Kernels, list[str]]:
-    """Kernels of `page_functions` for a pair, and the values of its constants, in JavaScript."""
-    program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies)
+def _kernels(model: ImpactModel) -> str:
+    """Write the kernels of `page_functions` for a model, in JavaScript."""
+    weaker = min(body.strength or math.inf for body in (model.pair.sphere, model.pair.plate))
+    page = Page(model.pair.effective_modulus, weaker, Validity.SLIDING_FLOW.value)
+    program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies_of(model, None))
     asked = program.struct(Impact, dict.fromkeys(Impact._fields, DOUBLE))
     _, hit = add(program, page_functions.for_curve, pair, asked)
     add(program, functions.exceeded, pair, hit, asked)
     add(program, page_functions.shown, pair, hit, asked)
     add(program, page_functions.collide, pair, Known(value=page), asked, DOUBLE, DOUBLE)
-    text = program.text()
-    names, values = zip(*_CONSTANT.findall(text), strict=True)
-    return _Kernels(names, _CONSTANT.sub("", text)), list(values)
-
-
-def _python(body: Material) -> str:
-    """Write a material as an expression in Python."""
-    if body.name in materials() and material(body.name) == body:
-        return repr(body.name)
-    return f"cl.{dataclasses.replace(body, source='', uncertainty={})!r}"
+    return program.text()

@@ -1,6 +1,5 @@
 """The page with sliders: in a browser it answers as Python does, fits, and needs no mouse."""
 
-import itertools
 import json
 import math
 import re
@@ -64,7 +63,7 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     rows = np.stack([speed, radius, thickness, heavier, angle, friction], axis=1).tolist()
     settings = json.dumps([dict(zip(NUMBERS, row, strict=True)) for row in rows])
     page.open(tmp_path / "page.html", 1280)
-    hits = page.value(f"{settings}.map(collide).map((hit) => ({{...hit, curve: pair.for_curve(hit).restitution}}))")
+    hits = page.value(f"{settings}.map(collide).map((hit) => ({{...hit, curve: $for_curve(hit).restitution}}))")
     found = {name: np.array([hit[name] for hit in hits]) for name in hits[0]}
     mass = heavier * model.pair.sphere.density * 4 / 3 * math.pi * radius**3
     normal, along = speed * np.cos(np.radians(angle)), speed * np.sin(np.radians(angle))
@@ -124,24 +123,20 @@ def test_the_example_is_what_the_command_writes(steel):
     assert not re.findall(r"https?:|url\(|src=", kept)
 
 
-def test_a_menu_chooses_a_pair_and_the_page_gives_the_question_as_python(tmp_path, page):
-    """Of materials of the catalogue and of numbers; of normal and oblique impacts."""
-    out, own = tmp_path / "page.html", "E=193GPa nu=0.29 rho=8000 yield=205MPa kind=metal"
-    assert cli.main([*EXPLORE, str(out), "--sphere", own, "--plate", "glass"]) == 0
+@pytest.mark.parametrize("sphere", ["glass", "E=193GPa nu=0.29 rho=8000 yield=205MPa kind=metal"])
+def test_the_page_gives_its_question_in_python(sphere, tmp_path, page):
+    """Of a material of the catalogue and of numbers; of normal and oblique impacts."""
+    out = tmp_path / "page.html"
+    assert cli.main(["explore", "--sphere", sphere, "--plate", "steel-s235", "--out", str(out)]) == 0
     page.complaints.clear()
     page.open(out, 1280)
-    names = page.value("[...document.getElementById('pair').options].map((one) => one.text)")
-    assert len(names) == 4 and names[0] == f"{STEEL.sphere.name} on {STEEL.plate.name}"
-    for chosen, (sphere, plate) in enumerate(itertools.product((STEEL.sphere.name, None), (STEEL.plate.name, "glass"))):
-        page.value(f"document.getElementById('pair').selectedIndex = {chosen}")
-        page.value("document.getElementById('pair').onchange()")
-        page.value(f"Object.assign(asked, {{speed: 3, thickness: 1e-3, angle: {chosen % 2 * 35}}}), show()")
-        assert page.value("document.querySelector('h1').textContent") == names[chosen]
+    for angle in (0, 35):
+        page.value(f"Object.assign(asked, {{speed: 3, thickness: 1e-3, angle: {angle}}}), show()")
         exec(page.value("document.getElementById('python').textContent"), defined := {})
         pair = defined["model"].pair
-        assert pair.plate == cl.material(plate) and (sphere is None or pair.sphere == cl.material(sphere))
+        assert pair.plate == cl.material("steel-s235") and page.value("document.title").startswith(pair.sphere.name)
         assert float(page.value(COR)) == pytest.approx(defined["hit"].restitution, abs=5.1e-5)
-    assert page.complaints == [] and out.stat().st_size < 0.3e6  # pairs differ in numbers only
+    assert page.complaints == []
 
 
 def test_materials_and_laws_of_ones_own_cannot_break_the_page(tmp_path, page):

@@ -83,9 +83,9 @@ def add_layers(command: Any) -> None:
 OF_RECORD = " (default: that of the record)"
 
 
-def add_pair(command: Any, otherwise: str = "", action: str = "store") -> None:
+def add_pair(command: Any, otherwise: str = "") -> None:
     """Add the options of materials, required unless their help says what holds `otherwise`."""
-    settings: Any = {"required": not otherwise, "action": action, "metavar": "NAME"}
+    settings: Any = {"required": not otherwise, "metavar": "NAME"}
     bead = f"material of the bead: a name that `contactlaw materials` lists, or numbers, {OWN}{otherwise}"
     command.add_argument("--sphere", help=bead, **settings)
     command.add_argument("--plate", help=f"material of the plate, in the same way{otherwise}", **settings)
