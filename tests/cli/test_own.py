@@ -36,6 +36,7 @@ source = "tests of {May}"
 [stiff]
 like = "DELRIN"
 E = 3e9
+yield = 7e7
 """
 PAGE = (ROOT / "docs/materials.md").read_text("utf-8")
 IMPACT = "cor --plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json"
@@ -69,10 +70,13 @@ def test_a_file_is_read_as_the_catalogue_is(folder, answer):
     assert mine["delrin"] == cl.Material(
         "my-pom", **NUMBERS, yield_strength=62e6, source="my-pom", uncertainty={"yield_strength": 0.1}
     )
-    assert mine["hard-304"].density == cl.material("304").density
-    assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
+    hard, sheet = mine["hard-304"], cl.material("304")
+    assert hard.density == sheet.density and hard.uncertainty == {"youngs_modulus": 0.03}
+    assert hard.source.split("; ")[1:4] == sheet.source.split("; ")[1:4]
+    assert hard.source.endswith("hardness 3.11851e+09 Pa: measured")
     assert "loss factor and its frequency [Hz] 0.011, 1000: tests of {May}" in mine["soft"].source
-    assert (mine["stiff"].youngs_modulus, mine["stiff"].density) == (3e9, 1410.0)
+    stiff = mine["stiff"]
+    assert (stiff.youngs_modulus, stiff.density, stiff.uncertainty) == (3e9, 1410.0, {})
     band = cl.ImpactModel(cl.Pair(mine["soft"], "glass")).uncertainty(0.3, 3e-3, 20e-3).restitution
     assert max(band.causes, key=band.causes.get) == "loss factor of the bead" and band.high - band.low > 0.02
     row = answer(f"{IMPACT} --materials mine.toml --sphere Delrin").values

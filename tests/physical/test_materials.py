@@ -178,23 +178,6 @@ def test_every_error_has_a_reason_and_a_minimum_has_none(name):
             assert own[number][0] == pytest.approx((high - low) / math.sqrt(3) / (low + high), rel=0.08)
 
 
-def test_a_metal_in_another_temper_has_the_numbers_and_errors_of_the_one_it_is_like():
-    sheet, ball, smooth = (material(f"stainless-steel-304{temper}") for temper in ("", "-ball", "-2b"))
-    for number in ("youngs_modulus", "poissons_ratio", "density", "kind"):
-        assert getattr(sheet, number) == getattr(ball, number)
-    assert sheet.source.split("; ")[1:4] == ball.source.split("; ")[1:4]
-    assert "stainless-steel-304-ball" in sheet.source and "minimum" in sheet.source
-    assert ball.uncertainty == {"youngs_modulus": 0.03, "hardness": 0.1}
-    assert smooth.uncertainty == {"youngs_modulus": 0.03}
-    assert smooth.specified_minimum and not ball.specified_minimum
-
-
-def test_a_strength_that_is_replaced_is_no_specified_minimum_any_more():
-    sheet = material("steel-s235")
-    assert sheet.specified_minimum and dataclasses.replace(sheet, density=7.9e3).specified_minimum
-    assert not dataclasses.replace(sheet, yield_strength=None, hardness=1.4e9).specified_minimum
-
-
 @pytest.mark.parametrize("name", [name for name in materials() if "hardness" in TABLES[name]])
 def test_hardness_is_the_number_that_its_source_prints(name):
     table = TABLES[name]
@@ -220,6 +203,7 @@ def test_strength_and_hardness_are_given_where_they_are_known():
     hard = {name for name, entry in entries.items() if entry.hardness is not None}
     assert {name for name in hard if entries[name].kind != "metal"} == HARD
     assert HARD < BRITTLE and BALLS < hard
+    assert not dataclasses.replace(entries["steel-s235"], yield_strength=None, hardness=1.4e9).specified_minimum
 
 
 def test_hardening_and_rate_are_johnson_and_cooks():
