@@ -114,10 +114,11 @@ def test_a_verdict_can_be_another_and_a_note_quotes_its_numbers(printed, agreeme
 
 @pytest.mark.long
 def test_the_report_has_its_parts_in_order_with_their_figures_and_formulas(drawn):
-    """Readers who simulate come first, and meet no symbols of the paper."""
+    """Readers who simulate come first, and meet no symbols of the paper.
+
+    That it loads nothing from elsewhere is seen where it is opened.
+    """
     text = (drawn[1] / "index.html").read_text()
-    sources = re.findall(r"<(?:img|script|link)[^>]*(?:src|href)=['\"](?!data:)([^'\"]*)", text)
-    assert sorted(sources) == sorted(path.name for path in drawn[1].glob("*.png")) == [f"{one}.png" for one in NUMBERS]
     parts = dict(re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL))
     assert tuple(parts) == figures.PARTS
     for name, part in parts.items():
