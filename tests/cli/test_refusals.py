@@ -336,21 +336,16 @@ def test_a_message_fits_a_terminal_and_is_one_line_elsewhere(line, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("error", "message"),
+    ("error", "words"),
     [
-        (
-            cl.ArgumentError("speed", np.float64(-1.0), "must be above 0", 2),
-            r"^speed: got -1\.0 \(element 2\); must be",
-        ),
-        (OutsideTableError(3, "too fast"), 'impact 3 .* too fast.* outside="solve"'),
-        (UnsolvedError(3, "lambda = 200", "too many steps"), r"lambda = 200 \(element 3\): too"),
-        (UnknownMaterialError("glas", ("glass",)), r"mean 'glass'\? contactlaw.materials\(\)"),
-        (NoYieldStrengthError("myc", "glass"), 'law="fem".* Material\\('),
+        (cl.ArgumentError("speed", np.float64(-1.0), "must be above 0", 2), "speed: got -1.0 (element 2); must be"),
+        (OutsideTableError(3, "too fast"), 'outside="solve"'),
+        (UnsolvedError(3, "lambda = 200", "too many steps"), "lambda = 200 (element 3): too"),
+        (UnknownMaterialError("glas", ("glass",)), "mean 'glass'? contactlaw.materials()"),
+        (NoYieldStrengthError("myc", "glass"), "Material("),
     ],
 )
-def test_errors_of_the_library_speak_of_python_and_travel(error, message):
+def test_errors_of_the_library_speak_of_python_and_travel(error, words):
     again = pickle.loads(pickle.dumps(error))
-    assert (type(again), vars(again)) == (type(error), vars(error))
-    for each in (error, again):
-        with pytest.raises(type(error), match=message):
-            raise each
+    assert (type(again), vars(again), str(again)) == (type(error), vars(error), str(error))
+    assert words in str(error)
