@@ -93,8 +93,8 @@ def steel(**changes):
 
 def test_paper_pair_is_as_printed():
     bead, plate = material("gamma-alumina"), material("glass")
-    assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6, None]
-    assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None, None]
+    assert dataclasses.astuple(bead)[1:5] == (12.23e9, 0.21, 879.0, 472.5e6)
+    assert dataclasses.astuple(plate)[1:5] == (73e9, 0.21, 2500.0, None)
     assert "111036, Table 1" in bead.source and "111036, Table 1" in plate.source
 
 
@@ -227,15 +227,10 @@ def test_metals_are_in_the_order_of_their_hardness(names):
 @pytest.mark.parametrize(
     ("alias", "name"),
     [
-        ("304", "stainless-steel-304"),
         ("aisi_316", "stainless-steel-316"),
-        ("gamma-Al2O3", "gamma-alumina"),
         ("  Gamma Alumina ", "gamma-alumina"),
         ("aluminum 2024 t3", "aluminium-2024-t3"),
         ("Nylon 6,6", "nylon-66"),
-        ("GLASS", "glass"),
-        ("304 ball", "stainless-steel-304-ball"),
-        ("cast iron", "ductile-iron-80-55-06"),
         *((alias, name) for name, table in TABLES.items() for alias in table.get("aliases", ())),
     ],
 )
@@ -368,11 +363,10 @@ def test_no_solid_draws_a_warning(solid):
 
 
 def test_numbers_of_any_real_type_become_floats():
-    numbers = 207 * 10**9, Fraction(3, 10), np.int64(7850), np.float32(350e6), np.int32(1_600_000_000)
-    entry = steel(**dict(zip(NUMBERS, numbers, strict=True)))
-    values = [getattr(entry, number) for number in NUMBERS]
-    assert values == [207e9, 0.3, 7850.0, 350e6, 1.6e9]
-    assert {type(value) for value in values} == {float}
+    numbers = 207 * 10**9, Fraction(3, 10), np.int64(7850), np.float32(350e6)
+    entry = Material("steel", *numbers, hardness=np.int32(1_600_000_000))
+    values = *dataclasses.astuple(entry)[1:5], entry.hardness
+    assert values == (207e9, 0.3, 7850.0, 350e6, 1.6e9) and {*map(type, values)} == {float}
 
 
 def test_import_reads_no_catalogue():
