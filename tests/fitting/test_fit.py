@@ -4,7 +4,6 @@ import contextlib
 import dataclasses
 import pickle
 import re
-import shlex
 import shutil
 import tracemalloc
 
@@ -19,7 +18,6 @@ from scipy.optimize import brentq, least_squares
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
-from contactlaw.cli import main
 from contactlaw.cli.fit import printed
 from contactlaw.record.columns import IMPACT
 from validation.inverse import coverage, elements, model
@@ -321,16 +319,12 @@ def test_finite_elements_that_no_fit_has_seen():
     assert elements.score(sizes).covered[1] >= 0.85
 
 
-def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
+def test_the_page_prints_what_the_command_prints(folder, answer):
     """docs/fit.md shows the command and its output."""
-    docs = ROOT / "docs"
-    command, shown = re.search(
-        r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```", (docs / "fit.md").read_text("utf-8"), re.DOTALL
-    ).groups()
-    monkeypatch.chdir(tmp_path)
-    shutil.copy(docs / "examples/rebounds.csv", tmp_path)
-    assert main(shlex.split(command.replace("\\\n", " "))[1:]) == 0
-    output = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    shutil.copy(ROOT / "docs/examples/rebounds.csv", folder)
+    shows = re.compile(r"contactlaw (fit rebounds.csv .*?)```\n\n```text\n(.*?)```", re.DOTALL)
+    command, shown = shows.search((ROOT / "docs/fit.md").read_text("utf-8")).groups()
+    output = [line.rstrip() for line in answer(command.replace("\\\n", " ")).out.splitlines()]
     *lines, more = shown.splitlines()
     assert (output[: len(lines)], more) == (lines, "...")
 
