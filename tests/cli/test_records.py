@@ -92,17 +92,13 @@ def test_a_record_of_an_engine(pair):
 
 
 def test_files_of_several_ranks_are_one_run(answer):
-    """Rows of two ranks, one of which has a parcel, beside one file with all of them."""
     rows = recorded([0, 0, 2, 0])
-    rows["time"], rows["parcel"] = np.arange(4), [1.0, 1.0, 1.0, 2.0]
-    rows["mass"] *= rows["parcel"] ** 3
+    rows["time"] = np.arange(4)
     np.save("all.npy", rows)
     for rank in range(2):
         np.save(f"hits.{rank}.npy", rows[rank::2])
-    whole, ranks = (answer(f"constant {files} {PAIR} --csv") for files in ("all.npy", "hits.0.npy hits.1.npy"))
-    assert whole.out == ranks.out
-    assert "Of 4 contacts, 25 % left over the edge of a wall; their COR" in ranks.err
-    assert impacts_of("all.npy")["weights"].tolist() == [1.0, 1.0, 8.0]
+    whole, ranks = (answer(f"constant {files} {PAIR} --csv").out for files in ("all.npy", "hits.0.npy hits.1.npy"))
+    assert whole == ranks
 
 
 def test_what_is_no_impact_is_left_out_and_said(answer, capsys):

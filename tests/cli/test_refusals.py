@@ -45,13 +45,7 @@ MISUSED = {  # status 2
     f"{HIT} extra": "unrecognized arguments: extra",
     f"{FAST} --thickness 1mm": "one of the arguments --radius --diameter is required",
     f"{FAST} --thickness 1mm --radius ''": "--radius: got '', expected a length such as 0.5 or 0.5mm",
-    f"{FAST} --thickness 1mm --radius 0.9kg": "'kg' is no unit of length; take m, cm, mm, um or nm",
-    f"{FAST} --thickness 1mm --radius 0,9mm": "is it a decimal comma? Write 0.9mm",
-    f"{FAST} --thickness 1mm --radius 0.9mm,": "--radius: got '', expected a length",
-    f"{FAST} --thickness 1mm --radius 1e-3,1mm": "'1e-3' has no unit and others have",
     f"{FAST} --thickness 1mm --radius 1mm --diameter 2mm": "--diameter: not allowed with argument --radius",
-    f"{SIZES} --speed fast": "got 'fast', expected a speed such as 0.5",
-    f"{SIZES} --speed 1:5": "got '1:5'; a range is start:stop:count",
     f"{SIZES} --speed 1 --drop 1m": "--drop: not allowed with argument --speed",
     f"{HIT} --mass heavy": "got 'heavy', expected a mass such as 0.5 or 0.5mg",
     f"{HIT} --outside x": "got 'x'; choose from raise, solve, clamp",
@@ -93,7 +87,15 @@ REFUSED = {  # status 1
     f"{HIT} --sphere ''": "--sphere: unknown material '': `contactlaw materials` lists all",
     f"{HIT} --sphere gamma-alumnia": "did you mean 'gamma-alumina' or 'alumina'?",
     f"{HIT} --plate 'E=2GPa nuu=0.3 rho=1000'": "--plate: unknown 'nuu'; did you mean nu?",
-    f"{HIT} --plate 'E=2GPa nu=0.3'": "lacks rho, as in",
+    f"{HIT} --sphere pomm": "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is",
+    f"{HIT} --sphere E=2.8GPa": "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu",
+    f"{HIT} --sphere 'E=2.8GPa nu=0.35 rho=1410m'": "--sphere: got '1410m': 'm' is no unit of density",
+    f"{HIT} --sphere 'E=2.8 nu=0.35 rho=1410'": '--sphere: E=2.8 has no unit, as in "E=2.8GPa nu=0.35',
+    f"{HIT} --sphere 'E=200GPa nu=0.3 rho=7800 hardness=62'": "--sphere: hardness=62 has no unit",
+    f"{HIT} --sphere 'name=a E=2GPa nu=0.35 rho=1410 name=b'": "has a key twice: leave one out",
+    f"{HIT} --sphere 'yeild 350MPa E=207GPa nu=0.3 rho=7850'": "--sphere: unknown material 'yeild 350MPa'",
+    f"{HIT} --sphere 'pmma loss_factor=handbook'": "must be (tan delta, frequency), the frequency in Hz: write "
+    "loss_factor = [",
     f"{FAST} --thickness 1mm --radius -1mm": "--radius: got '-1mm'; must lie between",
     f"{FAST} --thickness 1mm --diameter -1mm": "--radius: got '-1mm/2'; must lie between",
     f"{FAST} --thickness 1mm --radius 0": "--radius: got '0'; must lie between",
@@ -278,8 +280,6 @@ CONTENTS = [
     ("rows", b"\x93NUMPY\x01\x00\x40\x00" + b"((((((".ljust(64), "a damaged file of np.save"),
     ("fit", "velocty,COR\n1,0.5", "speeds in its first line, 'velocty, COR': call one speed_m/s, or drop_cm"),
     ("fit", "v,COR,diameter,radius\n1,0.5,1,1", "two columns of radius, 'diameter' and 'radius'"),
-    ("fit", "speed,COR\n\n1,o.5", "line 3, column 'COR': 'o.5' is no number"),
-    ("fit", "speed;COR\n1;0,5\n2;1,5", "line 3: restitution: got 1.5; must lie"),
     ("fit", "speed_m/s,rebound\n1,0.5", "nothing measured in its first line"),
     ("fit", "drop_cm,bounce_cm\n30,12\n12,30", "line 3: bounce: got 0.3; a bead that arrives at 1.5"),
     ("fit", "drop,bounce\n30,12", "drop: got 30.0; must lie between 1e-05 and 10 metres; in cm"),
@@ -301,7 +301,6 @@ CONTENTS = [
     ("fit", '# diametre = "6mm"\nspeed,COR\n1,0.9', "unknown 'diametre'; did you mean diameter?"),
     ("fit", "# plate = 3\nspeed,COR\n1,0.9", "plate in its head: plate: name: got 3; must be a string"),
     ("fit", '# [plate]\n# knd = "metal"\nspeed,COR\n1,0.9', "did you mean kind"),
-    ("compare", "speed,COR,COR_error\n1,0.9,-0.01", "line 2: restitution_error: got -0.01"),
     ("materials", POM + "densty = 1410", "[my-pom]: unknown 'densty'; did you mean density?"),
     ("materials", POM, "[my-pom]: give density, in SI units"),
     ("materials", POM + "density = ", "Invalid value"),
@@ -316,17 +315,6 @@ CONTENTS = [
     ("materials", '[a]\nlike = "pom"\naliases = ["pom-1", "POM_1"]', "[a]: leave out 'POM_1', a name of [a]"),
     ("materials", '[a]\nlike = "pom"\n[A]\nlike = "pom"', "[A]: leave out 'A', a name of [a]"),
     ("materials", '[a]\nlike = "pom"\naliases = "b"', "[a]: aliases must be a list of names, got 'b'"),
-    (
-        "materials",
-        '[a]\nlike = "pom"\nuncertainty.yield_strength = inf',
-        "leave it out, and write specified_minimum = true",
-    ),
-    (
-        "materials",
-        '[a]\nlike = "pom"\nuncertainty.yield_strength = -1.0',
-        "must be a relative standard error from 0 to 1",
-    ),
-    ("materials", '[a]\nlike = "pom"\nloss_factor = "handbook"', "write loss_factor = [0.03, 1e4]"),
 ]
 
 
@@ -356,21 +344,16 @@ def test_a_message_fits_a_terminal_and_is_one_line_elsewhere(line, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("error", "message"),
+    ("error", "words"),
     [
-        (
-            cl.ArgumentError("speed", np.float64(-1.0), "must be above 0", 2),
-            r"^speed: got -1\.0 \(element 2\); must be",
-        ),
-        (OutsideTableError(3, "too fast"), 'impact 3 .* too fast.* outside="solve"'),
-        (UnsolvedError(3, "lambda = 200", "too many steps"), r"lambda = 200 \(element 3\): too"),
-        (UnknownMaterialError("glas", ("glass",)), r"mean 'glass'\? contactlaw.materials\(\)"),
-        (NoYieldStrengthError("myc", "glass"), 'law="fem".* Material\\('),
+        (cl.ArgumentError("speed", np.float64(-1.0), "must be above 0", 2), "speed: got -1.0 (element 2); must be"),
+        (OutsideTableError(3, "too fast"), 'outside="solve"'),
+        (UnsolvedError(3, "lambda = 200", "too many steps"), "lambda = 200 (element 3): too"),
+        (UnknownMaterialError("glas", ("glass",)), "mean 'glass'? contactlaw.materials()"),
+        (NoYieldStrengthError("myc", "glass"), "Material("),
     ],
 )
-def test_errors_of_the_library_speak_of_python_and_travel(error, message):
+def test_errors_of_the_library_speak_of_python_and_travel(error, words):
     again = pickle.loads(pickle.dumps(error))
-    assert (type(again), vars(again)) == (type(error), vars(error))
-    for each in (error, again):
-        with pytest.raises(type(error), match=message):
-            raise each
+    assert (type(again), vars(again), str(again)) == (type(error), vars(error), str(error))
+    assert words in str(error)

@@ -15,6 +15,14 @@ PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
 
 
+@pytest.fixture
+def page(page):
+    """A page about which the browser has nothing to complain."""
+    page.complaints.clear()
+    yield page
+    assert page.complaints == []
+
+
 @pytest.fixture(params=["rain", "oblique"])
 def folder(request):
     return request.getfixturevalue(request.param)
@@ -32,16 +40,13 @@ def test_the_page_needs_nothing_else_and_is_small(folder):
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_page_of_a_sieve_fits_the_screen(sieve, page, width):
-    page.complaints.clear()
     page.open(sieve / "index.html", width)
     assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
     assert page.value("document.documentElement.scrollWidth") <= width
-    assert page.complaints == []
 
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_page_fits_the_screen_and_moves(folder, page, width):
-    page.complaints.clear()
     page.open(folder / "index.html", width)
     assert page.value("innerWidth") == width
     assert page.value(WIDE) == []
@@ -55,17 +60,14 @@ def test_the_page_fits_the_screen_and_moves(folder, page, width):
         page.value(f"document.getElementById('plates').children[{button}].click()")
         assert page.value("document.getElementById('hit').textContent").startswith("The hardest")
     assert page.value(WIDE) == []
-    assert page.complaints == []
 
 
 def test_nothing_moves_for_those_who_prefer_that(folder, page):
-    page.complaints.clear()
     page.open(folder / "index.html", 390, prefers_reduced_motion="reduce")
     assert page.value("document.getElementById('play').textContent") == "Play"
     assert page.value(PICTURE) == page.value(PICTURE)
     page.value("document.getElementById('play').click()")
     assert page.wait_for_change(PICTURE)
-    assert page.complaints == []
 
 
 def test_the_animation_goes_where_the_beads_went(folder):
@@ -105,7 +107,5 @@ def test_a_rain_that_never_lands(tmp_path, page, monkeypatch, capfd):
     said, errors = capfd.readouterr()
     assert "Written to" in said and errors == ""
     assert "All impacts on walls are inside" in (tmp_path / "summary.txt").read_text()
-    page.complaints.clear()
     page.open(tmp_path / "index.html", 390)
     assert page.value(WIDE) == []
-    assert page.complaints == []

@@ -13,7 +13,7 @@ from contactlaw.reporting.run import Run, shares
 from dem_demo import cli
 from dem_demo.kit import restitution
 from dem_demo.kit.scene import GRAVITY
-from dem_demo.kit.session import facts, summary
+from dem_demo.kit.session import facts
 from dem_demo.rain import scene as scenes
 from dem_demo.rain.figures import constant_cor, energy
 
@@ -55,16 +55,12 @@ def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch,
     expected = run.model.solve(speed, radius, thickness, edge="free", edge_distance=distance)
     # An impact that an edge changes by less than that may be answered as on an endless plate.
     np.testing.assert_allclose(rows["restitution"], expected.restitution, rtol=0, atol=1e-3)
-    endless = run.model.restitution(speed, radius, thickness)
-    assert (rows["restitution"] < endless - 0.02).sum() > 3
-    flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
-    assert 0 < flagged.sum() == np.count_nonzero(rows["flags"])
-    assert "near an edge" not in summary([run])
+    assert ((rows["flags"] & cl.Validity.NEAR_EDGE) != 0).sum() > 3
 
 
 def test_summary_is_that_of_any_run_with_such_a_record(rain, run):
-    text = (rain / "summary.txt").read_text()
-    assert text.endswith(tables.text(Run(cl.read_record(rain / "rain.h5"))) + "\n")
+    text, saved = (rain / "summary.txt").read_text(), cl.read_record(rain / "rain.h5")
+    assert text.endswith(tables.text(Run(saved)) + "\n") and {bodies.law for bodies in saved.bodies} == {"myc"}
     for n in range(3):
         mine = run.record.rows[run.record.rows["plate"] == n]
         assert re.search(rf"^wall {n}, .* +{mine.size} +{np.median(mine['approach_speed']):.3g} ", text, re.M)

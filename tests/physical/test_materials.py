@@ -93,8 +93,8 @@ def steel(**changes):
 
 def test_paper_pair_is_as_printed():
     bead, plate = material("gamma-alumina"), material("glass")
-    assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6, None]
-    assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None, None]
+    assert dataclasses.astuple(bead)[1:5] == (12.23e9, 0.21, 879.0, 472.5e6)
+    assert dataclasses.astuple(plate)[1:5] == (73e9, 0.21, 2500.0, None)
     assert "111036, Table 1" in bead.source and "111036, Table 1" in plate.source
 
 
@@ -178,23 +178,6 @@ def test_every_error_has_a_reason_and_a_minimum_has_none(name):
             assert own[number][0] == pytest.approx((high - low) / math.sqrt(3) / (low + high), rel=0.08)
 
 
-def test_a_metal_in_another_temper_has_the_numbers_and_errors_of_the_one_it_is_like():
-    sheet, ball, smooth = (material(f"stainless-steel-304{temper}") for temper in ("", "-ball", "-2b"))
-    for number in ("youngs_modulus", "poissons_ratio", "density", "kind"):
-        assert getattr(sheet, number) == getattr(ball, number)
-    assert sheet.source.split("; ")[1:4] == ball.source.split("; ")[1:4]
-    assert "stainless-steel-304-ball" in sheet.source and "minimum" in sheet.source
-    assert ball.uncertainty == {"youngs_modulus": 0.03, "hardness": 0.1}
-    assert smooth.uncertainty == {"youngs_modulus": 0.03}
-    assert smooth.specified_minimum and not ball.specified_minimum
-
-
-def test_a_strength_that_is_replaced_is_no_specified_minimum_any_more():
-    sheet = material("steel-s235")
-    assert sheet.specified_minimum and dataclasses.replace(sheet, density=7.9e3).specified_minimum
-    assert not dataclasses.replace(sheet, yield_strength=None, hardness=1.4e9).specified_minimum
-
-
 @pytest.mark.parametrize("name", [name for name in materials() if "hardness" in TABLES[name]])
 def test_hardness_is_the_number_that_its_source_prints(name):
     table = TABLES[name]
@@ -220,6 +203,7 @@ def test_strength_and_hardness_are_given_where_they_are_known():
     hard = {name for name, entry in entries.items() if entry.hardness is not None}
     assert {name for name in hard if entries[name].kind != "metal"} == HARD
     assert HARD < BRITTLE and BALLS < hard
+    assert not dataclasses.replace(entries["steel-s235"], yield_strength=None, hardness=1.4e9).specified_minimum
 
 
 def test_hardening_and_rate_are_johnson_and_cooks():
@@ -243,15 +227,10 @@ def test_metals_are_in_the_order_of_their_hardness(names):
 @pytest.mark.parametrize(
     ("alias", "name"),
     [
-        ("304", "stainless-steel-304"),
         ("aisi_316", "stainless-steel-316"),
-        ("gamma-Al2O3", "gamma-alumina"),
         ("  Gamma Alumina ", "gamma-alumina"),
         ("aluminum 2024 t3", "aluminium-2024-t3"),
         ("Nylon 6,6", "nylon-66"),
-        ("GLASS", "glass"),
-        ("304 ball", "stainless-steel-304-ball"),
-        ("cast iron", "ductile-iron-80-55-06"),
         *((alias, name) for name, table in TABLES.items() for alias in table.get("aliases", ())),
     ],
 )
@@ -384,11 +363,10 @@ def test_no_solid_draws_a_warning(solid):
 
 
 def test_numbers_of_any_real_type_become_floats():
-    numbers = 207 * 10**9, Fraction(3, 10), np.int64(7850), np.float32(350e6), np.int32(1_600_000_000)
-    entry = steel(**dict(zip(NUMBERS, numbers, strict=True)))
-    values = [getattr(entry, number) for number in NUMBERS]
-    assert values == [207e9, 0.3, 7850.0, 350e6, 1.6e9]
-    assert {type(value) for value in values} == {float}
+    numbers = 207 * 10**9, Fraction(3, 10), np.int64(7850), np.float32(350e6)
+    entry = Material("steel", *numbers, hardness=np.int32(1_600_000_000))
+    values = *dataclasses.astuple(entry)[1:5], entry.hardness
+    assert values == (207e9, 0.3, 7850.0, 350e6, 1.6e9) and {*map(type, values)} == {float}
 
 
 def test_import_reads_no_catalogue():

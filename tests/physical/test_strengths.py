@@ -9,6 +9,7 @@ import pytest
 import contactlaw as cl
 from contactlaw.laws.fem import RATIOS
 from contactlaw.physical import rate
+from contactlaw.physical.law import law_of
 from contactlaw.physical.strengths import USUAL, knots
 
 
@@ -46,6 +47,20 @@ PAIRS = {
         metal(40.53e9, 0.2916, 1192, 55.6e6, hardening=(183.5e6, 0.666), rate=(0.05375, 0.00355)),
     ),
 }
+
+
+@pytest.mark.parametrize(("slope", "rate0"), [(0.06, 1.0), (0.06, 1e3), (1e-9, 1e9), (0.3, 1e-3)])
+def test_each_body_has_its_own_strength_at_the_rate_of_the_impact(slope, rate0):
+    """Below rate0 of the weaker body, or above it alone, the other one had a strength too high."""
+    alloy = metal(72e9, 0.33, 2770, 265e6, rate=(0.015, 10.0))
+    pair = cl.Pair(alloy, metal(207e9, 0.3, 7850, 175e6, hardening=(380e6, 0.32), rate=(slope, rate0)))
+    at = rate.SHARE * 2000.0 * (pair.yield_speed / 2.0) ** 0.3  # representative rate [1/s]
+    factor = 1.0 + slope * math.log(max(at / rate0, 1.0))
+    stronger = rate.strengthened(pair, rate.factors(pair, np.array([2.0]), np.array([1e-3])).item())
+    assert stronger.plate.yield_strength == pytest.approx(175e6 * factor)
+    assert stronger.plate.hardening == pytest.approx((380e6 * factor, 0.32))
+    assert stronger.sphere.yield_strength == pytest.approx(265e6 * (1.0 + 0.015 * math.log(at / 10.0)))
+    assert stronger.sphere.rate is None and rate.flow_with_rate(stronger, law_of(stronger, "fem")) is None
 
 
 @pytest.mark.parametrize("bodies", PAIRS.values(), ids=PAIRS)

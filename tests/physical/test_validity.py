@@ -38,14 +38,6 @@ def test_a_thinner_plate_for_the_law_fem(pair):
         assert cl.ImpactModel(cl.Pair(*pair)).solve(0.5, R, R / slenderness).flags == thin
 
 
-def test_soft_plate():
-    bearing, mild = "bearing-steel-52100", "carbon-steel-1020"
-    soft = cl.ImpactModel(cl.Pair(bearing, mild), law="myc")
-    assert soft.lookup(0.5, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
-    hard = cl.ImpactModel(cl.Pair(mild, bearing), law="myc", outside="clamp")
-    assert not hard.lookup(0.005, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
-
-
 @pytest.mark.parametrize(
     ("bead", "law", "over_yield", "flagged"),
     [

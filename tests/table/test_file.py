@@ -154,12 +154,6 @@ def test_any_altered_byte_and_any_truncation_is_found(path):
             store.read(path)
 
 
-def test_what_is_not_there_is_named(built, tmp_path):
-    for act in (lambda path: store.write(built, path), store.read):
-        with pytest.raises(FileNotFoundError, match="missing"):
-            act(tmp_path / "missing" / "t.h5")
-
-
 def test_packaged(monkeypatch, path):
     store.packaged.cache_clear()
     (path.parent / "data").mkdir()

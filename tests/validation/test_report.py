@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from places import ROOT
 from unrendered import blank
 
 from validation import figures, report
@@ -113,10 +114,11 @@ def test_a_verdict_can_be_another_and_a_note_quotes_its_numbers(printed, agreeme
 
 @pytest.mark.long
 def test_the_report_has_its_parts_in_order_with_their_figures_and_formulas(drawn):
-    """Readers who simulate come first, and meet no symbols of the paper."""
+    """Readers who simulate come first, and meet no symbols of the paper.
+
+    That it loads nothing from elsewhere is seen where it is opened.
+    """
     text = (drawn[1] / "index.html").read_text()
-    sources = re.findall(r"<(?:img|script|link)[^>]*(?:src|href)=['\"](?!data:)([^'\"]*)", text)
-    assert sorted(sources) == sorted(path.name for path in drawn[1].glob("*.png")) == [f"{one}.png" for one in NUMBERS]
     parts = dict(re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL))
     assert tuple(parts) == figures.PARTS
     for name, part in parts.items():
@@ -182,36 +184,20 @@ def test_each_part_of_the_report_can_be_made_alone(tmp_path, monkeypatch, capsys
         main(["everything"])
 
 
-def counted(score):
-    return score.answered, score.right, round(score.rms, 3), round(score.largest, 3)
-
-
 def test_how_right_the_laws_are():
-    """README and docs quote these recorded numbers; `test_acceptance` has the bounds."""
-    fem, myc = trust.overall()["everyday impacts, kept out of the fit"]
-    assert counted(fem) == (160, 157, 0.006, -0.047)
-    assert counted(myc) == (108, 10, 0.323, 1.047)
-    fem, myc = trust.overall()["the paper's pair, gamma-alumina on glass"]
-    assert counted(fem) == (64, 63, 0.004, -0.010)
-    assert counted(myc) == (64, 4, 0.019, 0.046)
-
-
-def test_parts_of_the_everyday_impacts_are_all_of_them():
-    """Each impact is in one row by thickness, speed, body and material; errors are on thin plates alone."""
-    whole = trust.score("fem", trust.EVERYDAY)
-    where = [scores[0] for scores in trust.where().values()]
-    assert all(one.right == one.impacts for one in where[1:3])
-    for rows in (where[:3], where[3:6], where[6:], [s[0] for s in trust.materials().values()]):
-        assert sum(one.impacts for one in rows) == whole.impacts
-        assert sum(one.right for one in rows) == whole.right
+    """Three everyday impacts are beyond a bound, two of them without a flag; `test_acceptance` has the bounds."""
+    everyday, paper, _ = trust.overall().values()
+    scores = [(one.answered, one.right, round(one.rms, 3), round(one.largest, 3)) for one in (*everyday, *paper)]
+    assert scores == [(160, 157, 0.006, -0.047), (108, 10, 0.323, 1.047), (64, 63, 0.004, -0.01), (64, 4, 0.019, 0.046)]
+    whole, listed = everyday[0], trust.misses()
+    assert len(listed) == 3 and whole.silent == 2
+    within = round(whole.shares.restitution * whole.answered)
+    said = f"Of 160 impacts that the law `fem` was not fitted to, {within} have a COR within 2 % of finite elements"
+    assert said in (ROOT / "README.md").read_text("utf-8").replace("\n ", "")
+    assert "tungsten-carbide on 0.64 mm of titanium-ti-6al-4v at 3.7 m/s" in [one.what for one in listed]
+    # each impact is in one row by thickness, speed, body and material
+    where, kinds = ([scores[0] for scores in part.values()] for part in (trust.where(), trust.materials()))
+    assert all(one.right == one.impacts for one in where[1:3])  # thicker than the bead's radius
+    for rows in (where[:3], where[3:6], where[6:], kinds):
+        assert sum(one.impacts for one in rows) == 160 and sum(one.right for one in rows) == whole.right
         assert max((one.largest for one in rows), key=abs) == whole.largest
-
-
-def test_what_is_wrong_is_listed():
-    """Three are beyond a bound, two of them without a flag."""
-    listed, whole = trust.misses(), trust.score("fem", trust.EVERYDAY)
-    assert len(listed) == whole.impacts - whole.right == 3 and whole.silent == 2
-    carbide = next(one for one in listed if "titanium" in one.what)
-    assert carbide.what == "tungsten-carbide on 0.64 mm of titanium-ti-6al-4v at 3.7 m/s"
-    assert (round(carbide.fem, 3), round(carbide.law, 3)) == (0.047, 0.039)
-    assert list(carbide.beyond) == ["COR", "contact time"]
