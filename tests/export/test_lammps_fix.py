@@ -43,6 +43,14 @@ fix_modify weight energy yes
 fix move all nve/sphere
 timestep 1e-7
 """
+# A bead of each type, above the walls of `walls_1_0.scene`.
+TWO = """
+create_atoms 1 single -0.01 0 0.91e-3
+create_atoms 2 single 0.01 0 0.91e-3
+set type 1 diameter 1.8e-3 density 879
+set type 2 diameter 1.8e-3 density 7850
+velocity all set 0 0 -2
+"""
 FIX = "plugin load {library}\nfix walls all wall/contactlaw walls.scene record hits.%.npy\n"
 ENDING = """
 fix_modify walls energy yes
@@ -171,6 +179,14 @@ def built(tmp_path_factory):
         folder.rename(made / "wall")
 
     return once(tmp_path_factory, "fix", build) / "wall"
+
+
+def test_a_scene_of_1_0_runs_in_all_later_versions(built, tmp_path):
+    """Its record is compared with an independent integration in tests/record; neither may be made anew."""
+    shutil.copy(ROOT / "tests/export/walls_1_0.scene", tmp_path / "walls.scene")
+    rows = results(built, tmp_path, SCRIPT.format(beads=TWO) + FIX + ENDING.format(steps=300))[-1]
+    wanted = cl.read_record(ROOT / "tests/record/run_1_0.h5").rows
+    assert rows["restitution"] == pytest.approx(wanted["restitution"], abs=1e-5)
 
 
 @pytest.mark.parametrize("name", scenes.SCENES)
