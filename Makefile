@@ -109,7 +109,7 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
 	cd $(PICTURES) && cp thickness.png speed.png both.png oblique.png fit.png $(CURDIR)/docs/gallery
-	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
+	$(BIN)/contactlaw explore --sphere bearing-steel-52100-ball --plate aluminium-6061-t6 --out docs/explore.html
 
 # What a person would forget: each line stops with what to do.
 release:  ## check the tree, the version and the changelog, test, build and use both archives, and tag: VERSION=1.1.0
