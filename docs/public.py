@@ -55,8 +55,8 @@ of an error, and files |
 Nothing is promised for names that begin with an underscore, modules that are not listed, the cache, restart files of
 LAMMPS (continue them with the version that wrote them), `dem-demo`, `validation` and `tests`.
 
-**Systems.** contactlaw is supported and tested on Linux (x86-64) with CPython 3.11, 3.12 and 3.13. It may run on macOS and
-Windows, where nobody has tested it.
+**Systems.** contactlaw is supported and tested on Linux (x86-64) with CPython 3.11, 3.12 and 3.13. It may run on
+macOS and Windows, where nobody has tested it.
 
 ## Names in Python
 
