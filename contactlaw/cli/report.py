@@ -34,7 +34,7 @@ def _run(arguments: Namespace) -> None:
     if path := arguments.scene or (_scene_beside(arguments.files[0]) if record.surface is None else None):
         record = dataclasses.replace(record, surface=surface_of(path, record.rows))
     with wording.reading(arguments.files[0]):
-        Run(record)  # refuses a record from which no report can be made
+        Run(record)  # refuses what no report can be made of
     with wording.writing("out", arguments.out, folder=True):
         print(report(record, arguments.out))
     if record.lacks:

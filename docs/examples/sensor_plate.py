@@ -15,7 +15,7 @@ RATE = 1e5  # samples per second
 
 def main():
     """Let steel beads fall on an aluminium plate and compare the mean load with their momentum."""
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100-ball", "aluminium-6061-t6"))
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
     random = np.random.default_rng(1)
     times = np.sort(random.uniform(0.0, DURATION, BEADS))
     speed = random.normal(3.0, 0.3, BEADS)
