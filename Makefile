@@ -66,16 +66,20 @@ lint: $(VENV)/dev.done  ## check style and types
 docs: $(VENV)/docs.done  ## build the site of the documentation: build/docs/index.html
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
-package: $(VENV)/dev.done  ## build the wheel and use it in an environment of its own
+WITH := $(PYTHON)
+FILES := *.whl
+
+package: $(VENV)/dev.done  ## build wheel and source archive, and use the wheel outside of the clone: WITH=python3.12 FILES=*.tar.gz
 	rm -rf dist
 	$(BIN)/python -m build --outdir dist
 	$(BIN)/twine check --strict dist/*
-	$(PYTHON) -m venv dist/env
-	dist/env/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
-	cd dist && env/bin/contactlaw cor --sphere gamma-alumina --plate glass \
-	  --radius 0.9e-3 --thickness 1e-3 --speed 12
-	cd dist && env/bin/contactlaw table check
-	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
+	@for python in $(WITH); do \
+	  if ! $$python -c '' 2>/dev/null; then echo "$$python is not on PATH: not tested"; continue; fi; \
+	  for file in $(addprefix $(CURDIR)/dist/,$(FILES)); do \
+	    echo "$$python, $$file:"; \
+	    sh tests/installed.sh $$python $$file || exit 1; \
+	  done; \
+	done
 
 validation: $(VENV)/validation.done  ## write the report, validation/report/index.html, in a minute; of a part: PART=paper
 	$(BIN)/python -m validation $(PART)
@@ -105,12 +109,12 @@ pictures: $(VENV)/test.done  ## draw the pictures of docs again, in about 10 min
 	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
 	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
 	cd $(PICTURES) && cp thickness.png speed.png both.png oblique.png fit.png $(CURDIR)/docs/gallery
-	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
+	$(BIN)/contactlaw explore --sphere bearing-steel-52100-ball --plate aluminium-6061-t6 --out docs/explore.html
 
 # What a person would forget: each line stops with what to do.
-release:  ## check the tree, the version and the changelog, build all and tag: VERSION=0.4.0
+release:  ## check the tree, the version and the changelog, test, build and use both archives, and tag: VERSION=1.1.0
 	@stop() { echo "release: $$1" >&2; exit 1; }; \
-	[ -n "$(VERSION)" ] || stop "say which: make release VERSION=0.4.0"; \
+	[ -n "$(VERSION)" ] || stop "say which: make release VERSION=1.1.0"; \
 	[ -z "$$(git status --porcelain)" ] || stop "commit, or remove, what git status lists"; \
 	grep -qxF 'VERSION = "$(VERSION)"' contactlaw/_version.py || \
 	  stop "contactlaw/_version.py has another version"; \
@@ -119,9 +123,10 @@ release:  ## check the tree, the version and the changelog, build all and tag: V
 	  stop "CHANGELOG.md has no '## [$(VERSION)] - DATE': rename [Unreleased]"; \
 	! git rev-parse --quiet --verify "refs/tags/v$(VERSION)" >/dev/null || \
 	  stop "the tag v$(VERSION) exists"
-	$(MAKE) test test-long lint docs package
+	$(MAKE) test test-long matrix lint docs
+	$(MAKE) package WITH="$(PYTHONS:%=python%)" FILES="*.whl *.tar.gz"
 	git tag --annotate "v$(VERSION)" --message "contactlaw $(VERSION)"
-	@echo "now: git push origin v$(VERSION)"
+	@echo "now: git push origin v$(VERSION) && $(BIN)/twine upload dist/*.whl dist/*.tar.gz"
 
 clean:  ## remove the environments, the wheels and the site
 	rm -rf .venv dist build

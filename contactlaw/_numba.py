@@ -59,11 +59,12 @@ class _InnerCode(JITCodeLibrary):
 
 @register_pass(mutates_CFG=False, analysis_only=True)  # type: ignore[no-untyped-call]
 class _Uncounted(AnalysisPass):
-    """Lets a kernel that gets no new array, and returns none, count the users of none.
+    """Disable reference counting in kernels that neither create nor return arrays.
 
-    Its callers keep alive all that it reads. Numba counts whenever an array, or a tuple that has
-    one, is passed to a kernel; with the dozen arrays of a bead and its walls that took as long as
-    their contact. Intrinsics that are called by name, such as `array_at`, give arrays of others.
+    Callers keep alive all arrays that such a kernel reads. Numba counts a reference whenever an
+    array, or a tuple that has one, is passed to a kernel. With the dozen arrays of a bead and its
+    walls, counting took as long as their contact. Intrinsics that are called by name, such as
+    `array_at`, return arrays that others keep alive.
     """
 
     _name = "contactlaw_uncounted"

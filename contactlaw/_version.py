@@ -1,3 +1,3 @@
 """The version, for the package and for the files that it writes."""
 
-VERSION = "0.3.0"
+VERSION = "1.0.0"

@@ -21,6 +21,8 @@ from contactlaw._arrays import Array
 from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import checked, shaped
 
+__all__ = ["betan"]
+
 _CRITICAL = 2.0  # -ln e at zeta = 1
 
 

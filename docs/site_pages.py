@@ -15,6 +15,7 @@ from types import FunctionType
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from public import MODULES, public  # beside this file, in whose folder mkdocs looks
 
 from contactlaw import cli
 
@@ -23,18 +24,6 @@ HOME = "README.md"  # the page of the repository that is the first one of the si
 LINK = re.compile(r"(\]\()([^)#\s]+)([^)]*\))")
 FIRST = ["ImpactModel", "Pair", "Material"]  # names with which a reference begins
 DESCRIBED = (FunctionType, property, classmethod, staticmethod)
-MODULES = [
-    "contactlaw",
-    "contactlaw.softsphere",
-    "contactlaw.stepping",
-    "contactlaw.walls",
-    "contactlaw.laws",
-    "contactlaw.engines.lammps",
-    "contactlaw.engines.pymunk",
-    "contactlaw.engines.record",
-    "contactlaw.export",
-    "contactlaw.table",
-]
 
 
 def on_config(config):
@@ -109,19 +98,6 @@ def in_repository(page, target):
 def in_site(path):
     """Path in the site of a file of the repository."""
     return "index.md" if path == HOME else path.removeprefix("docs/")
-
-
-def public(name):
-    """Names that users take from a module: those it lists, else those it defines.
-
-    A module among them has a page of its own.
-    """
-    found = importlib.import_module(name)
-    if hasattr(found, "__all__"):
-        own = [one for one in found.__all__ if f"{name}.{one}" not in MODULES]
-        return [one for one in own if not one.startswith("__")]
-    text = Path(found.__file__).read_text()
-    return re.findall(r"^(?:def |class )?([A-Za-z]\w*)(?:\(| = |:$)", text, re.MULTILINE)
 
 
 def methods(name, one):

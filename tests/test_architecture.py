@@ -100,8 +100,8 @@ VALIDATION = ROOT.parent / "validation"
 DEMO = ROOT.parent / "dem_demo"
 EXAMPLES = ROOT.parent / "docs/examples"
 HOUSE = "contactlaw", "dem_demo", "validation", "tests", "docs"
-# Modules from which the pages of docs import; other names for users are in contactlaw.__all__.
-FOR_USERS = {"engines", "laws", "softsphere", "stepping", "walls"}
+# Modules from which users import; other names for them are in contactlaw.__all__.
+FOR_USERS = {*re.findall(r'^    "contactlaw\.(\w+)', (ROOT.parent / "docs/public.py").read_text(), re.MULTILINE)}
 # Private to users, but imported by finite elements and demo: numba's settings, the version, files
 # that are written whole, and units of what is printed.
 SHARED = {"contactlaw._jit", "contactlaw._jit.kernel", "contactlaw._atomic"}

@@ -191,9 +191,10 @@ def script(path):
     return module
 
 
-def test_the_page_of_messages_is_made_from_the_code():
-    """`python docs/messages.py` writes it again."""
-    assert PAGES["messages"] == script("docs/messages.py").written()
+@pytest.mark.parametrize("page", ["messages", "public"])
+def test_the_page_is_made_from_the_code(page):
+    """`python docs/messages.py` and `python docs/public.py` write them again."""
+    assert PAGES[page] == script(f"docs/{page}.py").written()
 
 
 def test_the_page_of_units_lists_those_that_text_may_have():

@@ -85,7 +85,7 @@ def find(
 
 
 class _Curve:
-    """COR over the reciprocal of the unknown, where the table reaches, but integrated."""
+    """Integrated COR over the reciprocal of the unknown, as far as the table reaches."""
 
     def __init__(self, tabulated: TableLookup, sizes: dict[str, float], plate: PlateOf | None) -> None:
         self.by, self.sizes, self.plate = Solver(tabulated.bodies), sizes, plate

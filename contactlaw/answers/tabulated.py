@@ -183,7 +183,7 @@ def extent(law: Law) -> Settings:
 
 
 def _law_with_table(law: Law) -> Law:
-    """Law whose table serves this law: for Hertz's, the edge chi = 1 of the packaged one of MYC."""
+    """Law whose table serves this law: Hertz's is the edge chi = 1 of the packaged table of MYC."""
     return law if law.yields or not law.is_hertz else laws.law("myc")
 
 

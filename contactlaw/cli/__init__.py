@@ -44,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     words = sys.argv[1:] if argv is None else argv
     arguments = parser(words).parse_args(words)
-    from contactlaw.cli.parts import wording  # what takes long is loaded once help has been given
+    from contactlaw.cli.parts import wording  # slow imports wait until help has been given
 
     if sys.stdout is None:  # the shell has closed it by >&-
         wording.print_message("the standard output is closed")

@@ -12,10 +12,6 @@ _MOVED = {
 }
 _REPLACED = {
     "speed-table": "`speed-table` is now part of `constant`; type: contactlaw constant --table --speed 0.1,10 ...",
-    "bounces": "`bounces` is gone: the app phyphox hears bounces, and `compare` reads its files; "
-    "type: contactlaw compare FILE",
-    "experiment": "`experiment` is gone: `find` and `cor` show which sheets and heights tell most; "
-    "type: contactlaw find --help",
     "--fluent or --acusolve": "`oblique --fluent` and `--acusolve` are gone: nobody has tried their files; "
     "`cor` prints the same columns; type: contactlaw cor --angle ... --csv",
 }

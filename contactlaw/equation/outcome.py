@@ -63,7 +63,7 @@ FIELDS = {
     "inelasticity": Field("lambda of the modified Zener model", "1", 0.0),
     "overload": Field("largest elastic compression over the yield compression", "1", 0.0),
 }
-"""Fields of `contactlaw.Rebound`, but for its flags. Two are given, and no table errs in them."""
+"""Fields of `contactlaw.Rebound` except its flags; the last two are inputs, without table error."""
 
 
 STORED = (

@@ -24,21 +24,6 @@ from contactlaw.stepping.trouble import MESSAGES, Trouble
 from contactlaw.walls.surface import ROOM
 
 _FILES = "fix_wall_contactlaw.h", "fix_wall_contactlaw.cpp", "plugin.cpp", "build.sh", "README.txt.in"
-# Words of the fix of contactlaw 0.3: the number of those that follow, and the lines of TOML in their place.
-_OLD = {
-    "plate": (9, "\n[NAME]\nshape = 'plate'\ncorner = [$0, $1, $2]\nedge_a = [$3, $4, $5]\nedge_b = [$6, $7, $8]\n"),
-    "plane": (6, "\n[NAME]\nshape = 'disc'\ncentre = [$0, $1, $2]\nnormal = [$3, $4, $5]\nradius = ...\n"),
-    "mesh": (1, "\n[NAME]\nshape = 'mesh'\nfile = '$0'\n"),
-    "region": (1, "\n[$0]\nshape = ...  # plate, cylinder, cone, sphere, disc or ring, by the region\n"),
-    "move": (3, "motion = {kind = 'translation', velocity = [$0, $1, $2]}\n"),
-    "rotate": (7, "motion = {kind = 'rotation', centre = [$0, $1, $2], axis = [$3, $4, $5], speed = $6}\n"),
-    "vibrate": (4, "motion = {kind = 'vibration', amplitude = [$0, $1, $2], frequency = $3}\n"),
-    "material": (1, "plate = '$0'\n"),
-    "edges": (1, "edges = '$0'\n"),
-    "beads": (2, "# the bead of type $0 in beads: '$1'\n"),
-    "record": (1, ""),
-    **{word: (1, f"{word} = $0\n") for word in ("thickness", "scale", "friction", "softening", "parcel")},
-}
 
 
 def lammps(folder: str | os.PathLike[str]) -> None:
@@ -88,10 +73,8 @@ def _kernels() -> str:
     messages = C().table(
         "int code; const char *text;", "messages", ((int(code), text) for code, text in MESSAGES.items())
     )
-    old = ((word, *lines) for word, lines in _OLD.items())
-    words = C().table("const char *word; int count; const char *lines;", "old", old)
     head = "typedef const double contactlaw_data;"
-    return "\n\n".join([head, c_header.preamble(), "\n".join(lines), _npy(), _program(), messages, words]) + "\n"
+    return "\n\n".join([head, c_header.preamble(), "\n".join(lines), _npy(), _program(), messages]) + "\n"
 
 
 def _npy() -> str:

@@ -107,8 +107,9 @@ def scene(
     >>> import contactlaw as cl
     >>> from contactlaw.walls import Cylinder
     >>> drum = Cylinder((0, 0, 0), (0, 0.02, 0), 0.03, 0.8e-3)
+    >>> model = cl.ImpactModel(cl.Pair("glass", "steel-s235"))
     >>> file = getfixture("tmp_path") / "drum.scene"
-    >>> cl.export.scene(file, {"shell": drum}, cl.ImpactModel(cl.Pair("glass", "steel-s235")), largest=2e-3)
+    >>> cl.export.scene(file, {"shell": drum}, model, largest=2e-3)
     >>> surface_of(file, np.zeros(0, IMPACT)).names
     ['shell']
     """

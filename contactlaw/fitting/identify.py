@@ -104,7 +104,7 @@ def check_strengths(predictor: Predictor, best: Basin, error: Array, model: Arra
 
 
 def _rise_alone(predictor: Predictor, best: Basin, error: Array, n: int, place: float) -> float:
-    """Rise of the sum of squares beyond what excludes a value, with one parameter at another place."""
+    """Rise of the sum of squares if one parameter is moved, beyond the rise that excludes a value."""
     x = np.where(np.arange(best.x.size) == n, place, best.x)
     off = (np.vstack([predictor.predicted(x), best.fitted]) - predictor.values.value) / error
     there, here = np.nan_to_num((off**2).sum(axis=1), nan=1e9)
@@ -170,6 +170,6 @@ def profile(predictor: Predictor, best: Basin, covariance: Array, error: Array) 
 
 
 def _rise(predictor: Predictor, best: Basin, error: Array, n: int, along: Array, errors: float) -> float:
-    """Rise of the sum of squares beyond 1, so many standard errors off, the others at their best."""
+    """Rise of the sum of squares beyond 1, one parameter being off and the others fitted again."""
     start = np.clip(best.x + errors * along, *predictor.limits)
     return descend(predictor, start, error, n, _STEPS).squares - best.squares - 1.0

@@ -48,7 +48,7 @@ UNKNOWNS = {
 UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 1e-7, 10.0)
 UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
 UNKNOWNS["friction"] = Unknown("coefficient of friction", "", "", "friction", 1e-3, 5.0)
-# The strength of one body may have been asked for where it is the other one that yields.
+# Perhaps the unknown is the strength of one body, and the other body yields.
 OTHER_STRENGTH = {"yield_strength": "plate_yield_strength", "plate_yield_strength": "yield_strength"}
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)

@@ -179,7 +179,7 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
 
 
 def unlikely(sizes: ArrayLike) -> float | None:
-    """Find the largest bead or plate [m] that is so large that it was given in millimetres."""
+    """Find the largest bead or plate [m] that is suspiciously large: probably a number in millimetres."""
     array = np.ravel(np.asarray(sizes, dtype=np.float64))
     largest = float(np.max(array[np.isfinite(array)], initial=0.0))
     return largest if largest > _LARGE else None

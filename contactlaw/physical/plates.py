@@ -335,7 +335,7 @@ def _attribute(thickness: Any, name: str) -> Any:
 
 
 def check_wall(thickness: Any, model: Any, edges: Any) -> None:
-    """Refuse, of walls in engines, another material of the contact, and edges of what is no bare sheet."""
+    """Refuse a wall whose contact material is not the model's, and edges of any but bare sheets."""
     if sheet_of(thickness) is thickness and next(described(thickness), None) is None:
         return
     if edges is not None:

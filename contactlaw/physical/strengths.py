@@ -96,7 +96,7 @@ def formulas_at(pair: Pair, log_factor: float) -> dict[str, Any]:
 
 
 def _given(pair: Pair, log_factor: float) -> fem.Given:
-    """Numbers of the law, of which the strengths alone change: hardening is relative to them."""
+    """Numbers of the law at a factor: only the strengths change, and hardening is relative to them."""
     slow, flow = _slow(pair), rate.leading(pair)
     at = rate.rate_at(flow, math.exp(log_factor)) if flow else 0.0
     factors = [body.flow.factor(at) if body.flow else 1.0 for body in (pair.sphere, pair.plate)]

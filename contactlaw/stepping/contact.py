@@ -89,8 +89,9 @@ ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _COUPLED = int(Validity.COUPLED)
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
-# Most swings [rad] in a contact: beyond it six exponentials would add energy, up to 8e-4 of the COR, and
-# a wall that swings faster hardly moves. The time is that of beads of at least this speed [m/s].
+# Above 16 rad in a contact six exponentials would add energy, so the frequency is capped there. This changes
+# the COR by up to 8e-4, since a wall that swings faster hardly moves. Contact times of slower beads count as
+# those at the second number [m/s].
 _SWINGS, _SLOWEST = 16.0, 1e-3
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 _ROUNDING = 1e-6  # [speed of the approach] a bead that leaves faster by more than it was struck

@@ -35,8 +35,8 @@ from contactlaw.physical.vectors import dot, norm, plus, put, scaled, vector
 from contactlaw.stepping.energy import settling_force
 from contactlaw.walls.facet import Point
 
-# Least share of the work that the spring gives back: unloading curves that are steeper would need
-# shorter steps. What it gives back too much is taken in the last step.
+# Least share of the work that the spring gives back: a steeper unloading curve would need shorter
+# steps. Any excess energy is removed in the last step.
 _LEAST_SHARE = 0.02
 DEEPEST_OVERLAP = 0.02  # [radius] of softened contacts; ten times that of steel at 1 m/s
 # Largest change of the speed in the last step, over the larger of approach and rebound speed. A

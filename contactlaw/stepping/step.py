@@ -51,7 +51,7 @@ LAYOUT = 2000  # of these columns; histories of version 0.3 have numbers below 1
 RUN = np.dtype(
     [(name, "f8") for name in ("length", "time", "mass")]  # the engine's units, in SI
     # before: the step before [s]; start: time at which moving walls are where they were given [s]; ahead:
-    # what the engine's clock is ahead of the walls'; energy: the sum of what beads give to walls, in the engine's units
+    # how far the engine's clock is ahead of the walls'; energy: the sum that beads give to walls, in the engine's units
     + [(name, "f8") for name in ("base", "tick", "before", "start", "ahead", "energy")]
     + [(name, "i8") for name in ("ticks", "group", "accounts")]  # group: bits of the beads; accounts: whether to sum
     + [("low", "f8", 3), ("period", "f8", 3)]  # of the box, in the engine's units; 0: not periodic

@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 FARTHEST = 1e6  # largest coordinate [m]; a double resolves 1e-10 m there, less than an overlap
 
-# A motion as the kernel reads it: the sum of all kinds of motion, of which each fills its own part.
+# A motion as the kernel reads it: the sum of all kinds of motion. Each kind fills its own part.
 MOTION: list[tuple[Any, ...]] = [
     ("moves", "i8"),
     ("velocity", "f8", 3),  # of a translation

@@ -9,7 +9,7 @@ import contactlaw as cl
 from contactlaw.engines.lammps import Cylinder, Disc, Rotation, attach, pair_coeff
 from contactlaw.softsphere import time_step
 
-SPHERES, SHEET = ("soda-lime-glass", "bearing-steel-52100"), "stainless-steel-304"
+SPHERES, SHEET = ("soda-lime-glass", "bearing-steel-52100-ball"), "stainless-steel-304"
 RADIUS, DRUM, LENGTH, THICKNESS = 2e-3, 0.03, 0.02, 0.8e-3  # [m]
 SPEED, FASTEST, TURNS, STEPS = 1.0, 3.0, 2.0, 200_000  # [m/s], [m/s], [1/s]
 

@@ -18,7 +18,7 @@ def main(beads=20, duration=0.4):
     """Let steel beads fall into a funnel; print the COR on each wall, and how beads spin."""
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "stainless-steel-304"))
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100-ball", "stainless-steel-304"))
     impacts = attach(space, model)
 
     walls = []

@@ -9,7 +9,7 @@ from contactlaw.softsphere import time_step
 
 RADIUS, SPEED = 1e-3, 3.0  # [m], [m/s]
 THICKNESS = 0.8e-3, 2e-3, 6e-3  # [m]
-BEAD, PLATE = "bearing-steel-52100", "aluminium-6061-t6"
+BEAD, PLATE = "bearing-steel-52100-ball", "aluminium-6061-t6"
 
 
 def main():

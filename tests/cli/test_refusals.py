@@ -216,8 +216,6 @@ OLD = {
     "constant --record=hits.npy": "type: contactlaw constant hits.npy",
     "constant --record hits.npy --csv": "type: contactlaw constant hits.npy --csv",
     "constant --record": "type: contactlaw constant FILE",
-    "bounces drop.wav": "the app phyphox hears bounces",
-    f"experiment {PAIR}": "`experiment` is gone",
 }
 
 

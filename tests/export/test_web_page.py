@@ -15,7 +15,7 @@ import contactlaw as cl
 from contactlaw import cli
 from contactlaw.equation.numbers import Impact
 
-STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+STEEL = cl.Pair("bearing-steel-52100-ball", "aluminium-6061-t6")
 EXPLORE = ["explore", "--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name, "--out"]
 MODELS = {
     "fem": cl.ImpactModel(STEEL),

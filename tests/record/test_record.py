@@ -7,11 +7,13 @@ import command_line
 import h5py
 import numpy as np
 import pytest
+from places import ROOT
 from pymunk_room import make_bead, make_plate, make_space, steps
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import attach
 from contactlaw.engines.record import IMPACT
+from contactlaw.export.scene_file import surface_of
 from contactlaw.record import hdf5
 from contactlaw.record.file import flagged, read_from
 
@@ -195,3 +197,19 @@ def test_errors_of_minima_that_0_3_stored_are_not_stated(tmp_path):
         plate["uncertainty"] = '{"youngs_modulus": 0.03, "yield_strength": -0.42, "hardness": Infinity}'
     found = cl.read_record(path).bodies[0].pair.plate
     assert found.uncertainty == {"youngs_modulus": 0.03} and not found.specified_minimum
+
+
+def test_a_record_of_1_0_and_its_scene_are_read_by_all_later_versions():
+    """The fix of LAMMPS made them; they may not be made anew.
+
+    Two elastic beads of 0.9 mm, of 879 and 7850 kg/m3, hit 1 and 3 mm of glass at 2 m/s. COR and
+    contact time are those of `oracle.series`, which integrates Zener's equation by scipy.
+    """
+    found = cl.read_record(ROOT / "tests/record/run_1_0.h5")
+    assert found.rows["restitution"] == pytest.approx([0.922782, 0.937648], abs=1e-6)
+    assert found.rows["contact_time"] == pytest.approx([5.832176e-6, 7.221939e-6], rel=1e-6)
+    given = [(pair.sphere.density, pair.plate.youngs_modulus, law) for pair, law in found.bodies]
+    assert given == [(879, 73e9, "hertz"), (7850, 73e9, "hertz")]
+    for surface in found.surface, surface_of(ROOT / "tests/export/walls_1_0.scene", found.rows):
+        assert [*surface.names] == ["thin", "thick"]
+        assert surface.corners[surface.wall == 1].min(axis=(0, 1)).tolist() == [0, -0.02, 0]

@@ -15,7 +15,7 @@ Fields = Mapping[str, tuple[str, float]]  # field of each head, and the number o
 
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 _NUMBER = re.compile(r"\s*([-+.]?\d|nan|inf)")
-_MISSING = "", "n/a", "n.a.", "na", "none", "-"  # cells of what was not measured
+_MISSING = "", "n/a", "n.a.", "na", "none", "-"  # cells without a measurement
 
 
 def heads(field: str, quantity: Quantity, names: str) -> dict[str, tuple[str, float]]:

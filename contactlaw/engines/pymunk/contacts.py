@@ -201,7 +201,7 @@ class Contacts:
     def _record(self, contact: Contact) -> None:
         arbiter, body, slip, other, change, work = contact.arbiter, contact.body, contact.slip, contact.other, 0.0, 0.0
         if arbiter.friction > 0.0:
-            if None in [shape.space for shape in arbiter.shapes]:  # the impulse of what has left the space is lost
+            if None in [shape.space for shape in arbiter.shapes]:  # a bead that left the space keeps no impulse
                 change = work = math.nan
             else:
                 change, impulse = change_of_sliding(arbiter, contact.normal), arbiter.total_impulse

@@ -36,7 +36,7 @@ class Record:
         self._models = models
         self._whole = all(map(knows_rebounds, models.by_pair.values()))  # whether all models complete the record
         self._radii, self._materials = array("d"), array("l")  # of beads
-        self._plates: list[tuple[int, Any]] = []  # material, and what was given for the thickness
+        self._plates: list[tuple[int, Any]] = []  # material, and the argument thickness
         self._seen = array("d")  # 128 bytes per impact; a list of tuples takes five times that
         self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 

@@ -52,22 +52,6 @@ std::string message(int code, double value = 0.0, double limit = 0.0)
     return "";
 }
 
-/* The scene that says what words of contactlaw 0.3 said; empty if the first one is none of them. */
-std::string scene_of(int count, char **words)
-{
-    std::string lines;
-    for (int n = 0; n < count;) {
-        const auto of = [&](const auto &old) { return std::strcmp(old.word, words[n]) == 0; };
-        const auto old = std::find_if(std::begin(contactlaw_old), std::end(contactlaw_old), of);
-        if (old == std::end(contactlaw_old))
-            break;
-        for (const char *c = old->lines; *c; ++c) /* $0 is the first word that follows */
-            lines += *c != '$' ? std::string(1, *c) : n + *++c - '0' + 1 < count ? words[n + *c - '0' + 1] : "...";
-        n += 1 + old->count;
-    }
-    return lines;
-}
-
 }
 
 struct FixWallContactlaw::Scene {
@@ -170,12 +154,6 @@ FixWallContactlaw::FixWallContactlaw(LAMMPS *lmp, int narg, char **arg)
         error->all(FLERR, "Fix wall/contactlaw needs dimension 3");
     if (domain->triclinic)
         error->all(FLERR, "Fix wall/contactlaw: {}", message(CONTACTLAW_TRICLINIC));
-    const std::string lines = scene_of(narg - 3, arg + 3);
-    if (!lines.empty())
-        error->all(FLERR, "Fix wall/contactlaw: walls are a scene now. Write wall.toml, in metres, with what is for all walls "
-                   "first:\nbeads = [...]  # by atom type\nlargest = ...  # radius of a bead\nplate = ...\n{}then: contactlaw "
-                   "export lammps wall.toml --out wall, and here: fix {} {} wall/contactlaw wall/wall.scene", lines, id,
-                   arg[1]);
     if (narg != 4 && !(narg == 6 && std::strcmp(arg[4], "record") == 0))
         error->all(FLERR, "Fix wall/contactlaw: expected a scene and 'record FILE', as in fix w all wall/contactlaw "
                    "drum.scene record hits.%.npy; 'contactlaw export lammps' writes scenes");
@@ -436,15 +414,14 @@ void FixWallContactlaw::write_restart(FILE *file)
         std::fwrite(&bytes, sizeof bytes, 1, file), std::fwrite(kept, 1, sizeof kept, file);
 }
 
-/* The walls go on from where they were. The checksum is read first: contactlaw 0.3 kept fewer numbers. */
+/* The walls go on from where they were. */
 void FixWallContactlaw::restart(char *from)
 {
     double kept[7];
-    std::memcpy(kept, from, sizeof *kept);
-    if (*kept != scene_->number("checksum"))
-        error->all(FLERR, "Fix wall/contactlaw: the restart file is of another scene, or of contactlaw 0.3; give fix {} the "
-                   "scene of the run before, or the fix another ID", id);
     std::memcpy(kept, from, sizeof kept);
+    if (*kept != scene_->number("checksum"))
+        error->all(FLERR, "Fix wall/contactlaw: the restart file is of another scene; give fix {} the scene of the run before, "
+                   "or the fix another ID", id);
     contactlaw_run &run = scene_->run;
     run.base = kept[1], run.tick = kept[2], run.ticks = (long long) kept[3], run.before = kept[4], run.start = kept[5];
     scene_->since = run.base + run.tick * kept[3], run.energy = comm->me == 0 ? kept[6] : 0.0;
