@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from contactlaw.physical.validity import Validity, edge_distance, explain
     from contactlaw.record.file import Bodies, Record, read_record
     from contactlaw.reporting.files import report
+    from contactlaw.sensor import PlateSignal, plate_signal
+    from contactlaw.spectrum import Spectrum
 
 __all__ = [
     "ArgumentError",
@@ -55,10 +57,12 @@ __all__ = [
     "Measurements",
     "Orthotropic",
     "Pair",
+    "PlateSignal",
     "Rebound",
     "Record",
     "Sensitivity",
     "Shell",
+    "Spectrum",
     "Uncertainty",
     "UnidentifiedError",
     "Validity",
@@ -72,6 +76,7 @@ __all__ = [
     "material",
     "materials",
     "measured_law",
+    "plate_signal",
     "read_materials",
     "read_record",
     "report",

@@ -34,6 +34,8 @@ record  # of impacts, and its file
 answers  # by a table or by the solver
 fitting
 model  # where the towers meet
+histories  # of the impacts of a record
+spectrum sensor
 comparison dashpot walls
 stepping  # the contacts of a time step; no engine
 softsphere

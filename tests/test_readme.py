@@ -40,6 +40,7 @@ STATED = {
     "time_step": 3,
     "tutorial": 6,
     "walls": 4,
+    "what_a_wall_feels": 7,
 }
 SAID = " ".join(PAGES["how_sure"].split())
 HOUSE = tuple(f"{name}/" for name in ("contactlaw", "dem_demo", "docs", "tests", "validation"))

@@ -20,7 +20,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -37,6 +37,9 @@ from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Validity
 from contactlaw.record import hdf5
 from contactlaw.record.columns import COLUMNS, NAMES, typed
+
+if TYPE_CHECKING:
+    from contactlaw import Spectrum
 
 FORMAT, SCHEMA = "contactlaw record", 1
 HDF5 = ".h5", ".hdf5"
@@ -175,6 +178,42 @@ class Record:
     def points(self) -> Array:
         """Contact points, shape (n, 3) [m]."""
         return np.stack([self.rows[name] for name in "xyz"], axis=1)
+
+    def spectrum(self, duration: float | None = None) -> Spectrum:
+        """Power that the impacts feed into each wall, and the spectrum of their forces.
+
+        Parameters
+        ----------
+        duration : float, optional
+            Time over which the power is a mean [s]; by default from the first contact on a wall to the last.
+
+        Returns
+        -------
+        Spectrum
+            Power and force in third octaves, and the share of the waves' energy whose force
+            histories are not known.
+
+        Raises
+        ------
+        ValueError
+            If the record lacks materials or a column, or no impact on a wall has a force history;
+            without a duration if all contacts are at one time.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> from contactlaw.engines.record import IMPACT, fill
+        >>> pair = cl.Pair("glass", "glass")
+        >>> rows = np.zeros(1, IMPACT)
+        >>> rows["approach_speed"], rows["radius"], rows["thickness"], rows["mass"] = 2.0, 1e-3, 1e-3, 1.05e-5
+        >>> fill(rows, cl.ImpactModel(pair).lookup([2.0], 1e-3, 1e-3), np.array([2.1e-5]))
+        >>> spectrum = cl.Record(rows, [cl.Bodies(pair, "fem")]).spectrum(duration=0.01)
+        >>> f"{1e3 * spectrum.power[0].sum():.2f} mW, most at {spectrum.frequency[spectrum.power[0].argmax()]:.0f} Hz"
+        '1.00 mW, most at 100000 Hz'
+        """
+        from contactlaw import Spectrum
+
+        return Spectrum.of(self.part(self.rows["plate"] >= 0), duration)
 
     def part(self, some: Any) -> Record:
         """Return the rows of a mask or of indices."""

@@ -55,6 +55,8 @@ def report(record: Record, out: str | os.PathLike[str] = "report", meshes: Seque
     try:
         with style.applied(), _atomic.folder(out) as folder:
             modules = figures.modules()
+            if run.waves[0] is None:
+                del modules["spectrum"]
             pictures = {name: style.png(module.draw(run)) for name, module in modules.items()}
             for name, picture in pictures.items():
                 (folder / f"{name}.png").write_bytes(picture)

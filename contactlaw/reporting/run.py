@@ -1,19 +1,20 @@
 """What a report says of a run: its impacts, and the energy that they took, wall by wall."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array, Rows
+from contactlaw._arrays import Array, Integers, Rows
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
 from contactlaw.record.file import Record
 from contactlaw.reporting.surface import EnergyMap, energy_map
+from contactlaw.spectrum import Spectrum
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
 from contactlaw.walls.motion import FARTHEST
 
@@ -123,6 +124,25 @@ class Run:
     @cached_property
     def walls(self) -> list[WallRow]:
         """Walls by number and thickness; the least of very many are counted as one."""
+        names, which = self._named
+        return [_wall(name, self.rows[which == n]) for n, name in enumerate(names)]
+
+    @cached_property
+    def waves(self) -> tuple[Spectrum | None, str]:
+        """Power that `walls` take, by frequency; without it the reason why it is not known."""
+        if not np.ptp(self.rows["time"]):
+            return None, "all contacts are at one time"
+        rows = self.rows.copy()
+        rows["plate"] = self._named[1]
+        try:
+            found = replace(self.on_walls, rows=rows).spectrum()
+        except (ValueError, RuntimeError) as error:
+            return None, str(error)
+        return (found, "") if found.power.any() else (None, "no wave runs away in half-spaces")
+
+    @cached_property
+    def _named(self) -> tuple[list[str], Integers]:
+        """Names of walls, and the number of its wall for each row."""
         rows = self.rows
         found = np.empty(rows.size, [("plate", "i8"), ("thickness", "f8"), ("bodies", "i8")])
         found["plate"], found["thickness"] = rows["plate"], rows["thickness"]
@@ -135,7 +155,7 @@ class Run:
             rank[order] = np.minimum(np.arange(len(names)), _MOST - 1)
             names = [names[n] for n in order[: _MOST - 1]] + [OTHERS]
             which = rank[which]
-        return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
+        return names, which
 
     def _name(self, plate: int, thickness: float, bodies: int) -> str:
         """Name a wall, with the materials in which the walls of this run differ."""

@@ -7,6 +7,7 @@ import numpy as np
 from contactlaw._readable import relative, rounded, scale_of
 from contactlaw.reporting.limits import exceeded
 from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
+from contactlaw.spectrum import EDGES
 
 Table = list[tuple[str, ...]]
 
@@ -22,6 +23,13 @@ CONSTANT = (
     "other impacts: where beads bounce again and again, simulate with the constant, and take the constant "
     "of that run."
 )
+WAVES = (
+    "This is the mean power that bending waves carry into each wall, from the first contact to the last, with the "
+    "third octave that has the most of it, and the frequencies that nine tenths of it lie between. The last column "
+    "is the share of the waves' energy that is not in the power, because the force is not known: that of contacts "
+    "that are no free impacts, or that are next to an edge or on a curved wall."
+)
+NO_WAVES = "The power that bending waves carry into the walls is not known by frequency: "
 OUTSIDE = "These impacts are outside a limit of the model; their numbers deserve less trust."
 INSIDE = "All impacts on walls are inside every limit of the model."
 _WIDTH = 80  # of the text
@@ -42,7 +50,10 @@ def text(run: Run) -> str:
     outside = exceeded(run.impacts["flags"])
     lines = [*_wrapped(counts(run)), *_wrapped(run.left_out), ""]
     lines += [*_columns(impacts(run)), "", *_wrapped(CONSTANT), ""]
-    lines += [*_columns(energies(run)), "", *_wrapped(ENERGY), "", OUTSIDE if outside else INSIDE]
+    lines += [*_columns(energies(run)), "", *_wrapped(ENERGY), ""]
+    table = waves(run)
+    lines += [*_columns(table), "", *_wrapped(WAVES), ""] if table else [*_wrapped(NO_WAVES + run.waves[1]), ""]
+    lines.append(OUTSIDE if outside else INSIDE)
     return "\n".join(lines + [line for one in outside.items() for line in _wrapped("  {}: {}".format(*one))])
 
 
@@ -90,4 +101,21 @@ def energies(run: Run) -> Table:
         parts = by_cause(rows)
         sizes = (rounded(part / scale, 3) for part in (*parts, parts.sum()))
         table.append((name, *sizes, f"{parts.sum() / whole:z.1%}"))
+    return table
+
+
+def waves(run: Run) -> Table:
+    """Power that bending waves carry into each wall, and its frequencies; no rows if it is not known."""
+    spectrum, _ = run.waves
+    if spectrum is None:
+        return []
+    table: Table = [("wall", "power [mW]", "most at [kHz]", "nine tenths [kHz]", "left out")]
+    for n, wall in enumerate(run.walls):
+        below = spectrum.power[n].cumsum()
+        cells = "0", "-", "-"
+        if below[-1] > 0.0:
+            low, high = np.interp([0.05, 0.95], below[:-1] / below[-1], 1e-3 * EDGES[1:-1])
+            most = 1e-3 * spectrum.frequency[spectrum.power[n].argmax()]
+            cells = rounded(1e3 * below[-1], 3), f"{most:.3g}", f"{low:.3g}-{high:.3g}"
+        table.append((wall.name, *cells, f"{spectrum.left_out[n]:.1%}"))
     return table

@@ -1,10 +1,13 @@
 """Reports of records, each number against the rows or another reader."""
 
+import csv
 import math
 import re
 
 import numpy as np
 import pytest
+from command_line import run
+from impacted import impacted
 
 import contactlaw as cl
 from contactlaw import style
@@ -119,6 +122,25 @@ def test_what_is_no_impact_is_left_out_and_said(record, tmp_path, monkeypatch, a
         words = f"Of {rows.size} contacts, {share} were struck by another bead while they touched the wall and {share}"
         assert words in " ".join((tmp_path / "out" / name).read_text().replace("\xa0", " ").split())
     assert not (tmp_path / "out/energy.vtk").exists()
+
+
+def test_the_power_by_frequency_is_in_the_report_and_in_a_table(tmp_path, monkeypatch, answer, capsys):
+    monkeypatch.chdir(tmp_path)
+    columns = {"approach_speed": np.full(4, 2.0), "radius": 1e-3, "thickness": 1e-3, "kind": [0, 0, 3, 0]}
+    record = impacted("myc", **columns, plate=[0, 0, 0, 1], time=[0.0, 1.0, 2.0, 4.0])
+    record.save("run.h5")
+    answer("report run.h5 --spectrum bands.csv")
+    bands = csv.DictReader((tmp_path / "bands.csv").read_text().splitlines())
+    power = sum(float(row["power_W"]) for row in bands)
+    assert power == pytest.approx(0.75 * record.rows["wave_energy"].sum() / 4.0, rel=1e-3)
+    table = (tmp_path / "report/summary.txt").read_text().partition("power")[2]
+    assert re.findall(r"([\d.]+)%$", table, re.M) == ["33.3", "0.0"]
+    assert (tmp_path / "report/spectrum.png").exists()
+    np.save("rows.npy", record.rows)
+    assert "rows.npy: record: lacks materials" in run("report rows.npy --out new --spectrum new.csv", capsys).err
+    assert not [*tmp_path.glob("new*")]
+    answer("report rows.npy --out new")
+    assert "not known by frequency: record: lacks" in " ".join((tmp_path / "new/summary.txt").read_text().split())
 
 
 def test_a_report_that_cannot_be_made_says_why_and_leaves_the_record(record, tmp_path, monkeypatch):

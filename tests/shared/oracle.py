@@ -50,7 +50,7 @@ def contact(lam, y):
 
 
 def series(mass, stiffness, mobility, speed, outward=lambda x: 0.0):
-    """COR and contact time [s] of a mass on Hertz's spring in series with a plate, in SI units.
+    """COR, contact time and force over time of a mass on Hertz's spring in series with a plate, in SI units.
 
     At an indentation x the mass is accelerated outward by this as well.
     """
@@ -64,9 +64,15 @@ def series(mass, stiffness, mobility, speed, outward=lambda x: 0.0):
         return state[0] - state[2] + (time < 1e-9)
 
     apart.terminal, apart.direction = True, -1
-    run = solve_ivp(rates, (0.0, 1e-3), [0.0, speed, 0.0, 0.0], events=apart, rtol=1e-11, atol=1e-16)
+    how = {"events": apart, "dense_output": True, "rtol": 1e-11, "atol": 1e-16}
+    run = solve_ivp(rates, (0.0, 1e-3), [0.0, speed, 0.0, 0.0], **how)
     assert run.status == 1
-    return math.sqrt(1 - 2 * run.y[3, -1] / (mass * speed**2)), run.t[-1]
+
+    def force(time):
+        x, _, plate, _ = run.sol(time)
+        return stiffness * np.maximum(x - plate, 0.0) ** 1.5
+
+    return math.sqrt(1 - 2 * run.y[3, -1] / (mass * speed**2)), run.t[-1], force
 
 
 def _integrated(law, lam, y, **options):
