@@ -129,19 +129,19 @@ def test_a_thicker_plate_takes_less(case):
     assert (np.diff(hit.restitution**2) >= -np.abs(np.diff(hit.other_fraction)) - ENERGIES).all()
 
 
-def test_every_interface_answers_alike():
-    """Speeds and sizes are drawn over twelve decades and more."""
-    model, clamping = (cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside=how) for how in ("raise", "clamp"))
-    random, count = np.random.default_rng(0), 2000
-    v = 10.0 ** np.where(random.random(count) < 0.5, random.uniform(-10, 5, count), random.uniform(-3, 2.5, count))
-    r = 10.0 ** np.where(random.random(count) < 0.5, random.uniform(-9, 3, count), random.uniform(-5, -1, count))
+def test_what_the_kernel_does_not_know_is_clamped_to_an_answer_in_range():
+    """Speeds and sizes are drawn over seven decades and more."""
+    clamping, random, count = (
+        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="clamp"),
+        np.random.default_rng(0),
+        2000,
+    )
+    v, r = 10.0 ** random.uniform([[-10.0], [-9.0]], [[5.0], [3.0]], (2, count))
     h = np.maximum(r / 10.0 ** random.uniform(-3, np.log10(cl.table.lookup.THINNEST), count), 1e-9)
-    cor = np.array([model.kernel(*impact) for impact in zip(v, r, h, strict=True)])
-    inside = ~np.isnan(cor)
-    for method in (model.restitution, lambda *impacts: model.lookup(*impacts).restitution):
-        np.testing.assert_allclose(method(v[inside], r[inside], h[inside]), cor[inside], rtol=0.0, atol=1e-12)
     hit = clamping.lookup(v, r, h)
-    np.testing.assert_array_equal((hit.flags & int(Validity.CLAMPED)) != 0, ~inside)
+    clamped = np.isnan([clamping.kernel(*impact) for impact in zip(v, r, h, strict=True)])
+    np.testing.assert_array_equal((hit.flags & int(Validity.CLAMPED)) != 0, clamped)
+    assert 0.1 < clamped.mean() < 0.9
     for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
         assert -1e-6 <= getattr(hit, name).min() <= getattr(hit, name).max() <= 1.0 + 1e-4
     for name in ("contact_time", "peak_force", "peak_compression", "inelasticity"):
