@@ -21,16 +21,13 @@ CASES += [(0.5e-3, 20.0), (0.35e-3, 6.0), (0.35e-3, 20.0), (0.25e-3, 3.0), (0.2e
 
 @kernel(cache=True)
 def rest(law, spring, weight, step, steps):
-    """Largest speed and last state of a bead laid on the plate, in the last tenth of the time."""
-    x, u, state, fastest = 0.0, 0.0, PARTED, 0.0
-    for n in range(steps):
-        u += 0.5 * step * (weight - state.force) / spring.mass
-        x += u * step
+    """Speed, overlap and force of a bead that was laid on the plate, after these steps."""
+    x, u, state = 0.0, 0.0, PARTED
+    for _ in range(steps):
+        u += step * (weight - state.force) / spring.mass
+        x += step * u
         state = advance(law, spring, state, x, step)
-        u += 0.5 * step * (weight - state.force) / spring.mass
-        if 10 * n > 9 * steps:
-            fastest = max(fastest, abs(u))
-    return fastest, x, state
+    return u, x, state.force
 
 
 @pytest.fixture(scope="module")
@@ -70,13 +67,12 @@ def test_unloading_and_reloading_follow_one_curve_down_to_the_dent(model, law):
     assert contacts.advance(np.array([-1e-9]), 1e-8) == contacts.largest_compression == 0.0  # apart, and without memory
 
 
-@pytest.mark.parametrize("thickness", [0.3e-3, *(pytest.param(h, marks=pytest.mark.long) for h in (1e-3, 3e-3))])
+@pytest.mark.parametrize("thickness", [0.3e-3, 1e-3, 3e-3])
 def test_a_bead_at_rest_is_finite_and_quiet(model, law, thickness):
     spring = spring_of(model, thickness)
     weight = 9.81 * spring.mass
-    fastest, x, state = rest(law, spring, weight, 2e-7, 10_000_000)  # 2 s
-    assert state.force == pytest.approx(weight, rel=1e-3)
-    assert fastest < 1e-6
+    u, x, force = rest(law, spring, weight, 1e-6, 2_000_000)
+    assert force == pytest.approx(weight, rel=1e-3) and abs(u) < 1e-6
     # The bead is no deeper than where the relaxation holds it.
     deepest = spring.mobility * weight * spring.relaxation
     assert x <= 1.01 * (deepest + (weight / spring.stiffness) ** (2 / 3))
