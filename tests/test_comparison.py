@@ -57,19 +57,16 @@ def test_an_error_that_all_rebounds_share_is_no_scatter():
 
 
 def test_an_error_that_moves_thin_and_thick_plates_apart_does_so_in_chi_squared():
-    """A stiffer sheet raises the COR, a stiffer block lowers it; the law errs alike at similar impacts."""
-    impacts = {"speed": [0.5, 3.0], "radius": 3e-3, "thickness": [1.8e-3, 30e-3]}
+    """A stiffer sheet raises the COR, a stiffer block lowers it: CORs that both rise are no such error."""
+    impacts = {"speed": [0.5, 3.0], "radius": 3e-3, "thickness": [1.8e-3, 30e-3], "restitution_error": 1e-4}
     ball = cl.Material("ball", 203e9, 0.29, 7800.0, kind="ceramic")
     sheet = cl.Material("sheet", 69e9, 0.33, 2700.0, 100e6, kind="metal", uncertainty={"youngs_modulus": 0.1})
-    stiff = dataclasses.replace(sheet, youngs_modulus=76e9)
-    exact, stiffer = (cl.ImpactModel(cl.Pair(ball, body)).solve(**impacts).restitution for body in (sheet, stiff))
-    found = cl.compare(cl.Pair(ball, sheet), impacts | {"restitution": exact + 0.01, "restitution_error": 0.004})
-    slope = np.sign(stiffer - exact) * found.band.causes["Young's modulus of the plate"]
-    assert slope[0] > 0.0 > slope[1]
-    by_law = found.band.causes["model"]
-    alike = np.exp(-np.hypot(*np.diff(np.log([impacts["speed"], impacts["thickness"]])))) ** [[0, 1], [1, 0]]
-    covariance = 0.004**2 * np.eye(2) + np.outer(slope, slope) + alike * np.outer(by_law, by_law)
-    assert found.chi_squared == pytest.approx(1e-4 * np.linalg.inv(covariance).sum(), rel=1e-3)
+    pairs = [cl.Pair(ball, body) for body in (sheet, dataclasses.replace(sheet, youngs_modulus=76e9))]
+    exact, stiffer = (cl.ImpactModel(pair).solve(impacts["speed"], 3e-3, impacts["thickness"]) for pair in pairs)
+    off = stiffer.restitution - exact.restitution
+    assert off[0] > 0.0 > off[1]
+    moved, both = (cl.compare(pairs[0], impacts | {"restitution": exact.restitution + x}) for x in (off, abs(off)))
+    assert moved.if_exact < 2.0 and both.if_exact > 50.0
 
 
 def test_rebounds_that_are_alike_with_hardly_an_error_have_a_chi_squared():
