@@ -131,27 +131,23 @@ def by_attach(scene, mine=None, **lammps):
 
 
 @loop
-def _fly(
-    scene, runs, x, v, omega, radius, mass, force, torque, tag, kind, mask, last, history, width, places, dt, steps
-):
-    n = len(radius)
-    beads = Beads(n, tag, kind, mask, x, v, omega, radius, mass, force, torque, last, history, 8 * width, places, 0)
+def _fly(scene, runs, beads, dt, steps):
+    push = 0.5 * dt / beads.mass[:, None]
+    turn = push / (0.4 * beads.radius[:, None] ** 2)
     for number in range(steps + 1):
         if number > 0:
-            for i in range(n):
-                v[i] += 0.5 * dt / mass[i] * force[i]
-                omega[i] += 0.5 * dt / (0.4 * mass[i] * radius[i] ** 2) * torque[i]
-                x[i] += dt * v[i]
-        force[:] = torque[:] = 0.0
+            beads.v[:] += push * beads.force
+            beads.omega[:] += turn * beads.torque
+            beads.x[:] += dt * beads.v
+        beads.force[:] = beads.torque[:] = 0.0
         clock = Clock(number * dt, dt, dt, number > 0)
         begin(scene, runs, clock, beads, number % 100 == 0)
-        if step(scene, runs, clock, beads, 0) < n:
+        if step(scene, runs, clock, beads, 0) < beads.n:
             return
-        for i in range(n):
-            force[i, 2] += mass[i] * GRAVITY
-            if number > 0:
-                v[i] += 0.5 * dt / mass[i] * force[i]
-                omega[i] += 0.5 * dt / (0.4 * mass[i] * radius[i] ** 2) * torque[i]
+        beads.force[:, 2] += beads.mass * GRAVITY
+        if number > 0:
+            beads.v[:] += push * beads.force
+            beads.omega[:] += turn * beads.torque
 
 
 def by_loop(scene, mine=None):
@@ -172,25 +168,9 @@ def by_loop(scene, mine=None):
     mass = 4.0 / 3.0 * math.pi * mine.pair.sphere.density * scene.radius**3
     x, v, (omega, force, torque) = scene.place.copy(), scene.velocity.copy(), np.zeros((3, n, 3))
     ints = np.arange(FIRST_ID, FIRST_ID + n), np.ones(n, np.int32), np.ones(n, np.int32)
-    at = history.ctypes.data
-    _fly(
-        contacts.scene,
-        runs,
-        x,
-        v,
-        omega,
-        scene.radius,
-        mass,
-        force,
-        torque,
-        *ints,
-        last,
-        at,
-        width,
-        contacts.places,
-        DT,
-        scene.steps,
-    )
+    memory = last, history.ctypes.data, 8 * width, contacts.places, 0
+    beads = Beads(n, *ints, x, v, omega, scene.radius, mass, force, torque, *memory)
+    _fly(contacts.scene, runs, beads, DT, scene.steps)
     assert runs["error"][0] == 0.0, runs
     rows = np.sort(contacts.scene.impacts[: contacts.scene.status["impacts"][0]], order=["bead", "time"])
     rows["bead"] -= FIRST_ID - 1
