@@ -67,6 +67,7 @@ ANSWERS = [
     "test_mass.py::test_the_equation_in_si_units",
     "test_model.py::test_sphere_on_sphere",
     "test_softsphere.py::test_unloading_and_reloading_follow_one_curve_down_to_the_dent",
+    "answers/test_oblique.py::test_without_friction_or_sliding_nothing_changes_along_the_plate[table]",
 ]
 
 
