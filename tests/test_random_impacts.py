@@ -64,7 +64,11 @@ def solve(pair, speed, thickness):
     return cl.ImpactModel(pair).solve(speed, RADIUS, thickness, rtol=1e-10)
 
 
+# A sphere that flows is 4 times as stiff as its plate; E*/sigma_Y of others is 2600 and 3500.
 @many
+@example((cl.Pair(cl.Material("a", 280e9, 0.3, 7800, 200e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
+@example((cl.Pair(cl.Material("a", 70e9, 0.3, 2700, 15e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
+@example((cl.Pair(cl.Material("a", 70e9, 0.3, 2700, 11e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
 @given(cases())
 def test_numbers_are_finite_energies_add_up_and_untried_strengths_are_flagged(case):
     pair, speed, thickness = case
