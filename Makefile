@@ -34,11 +34,18 @@ test-engines: $(VENV)/engines.done  ## run the tests of LAMMPS's fix, LIGGGHTS, 
 
 EXTRAS := lammps demo fit
 
+extras: export NUMBA_CACHE_DIR = $(CURDIR)/.pytest_cache/machine-code
 extras:  ## use each extra of users in an environment of its own: attach, record, save, read, report
 	@for extra in $(EXTRAS); do \
-	  $(MAKE) --no-print-directory VENV=.venv/$$extra .venv/$$extra/$$extra.done && \
-	  NUMBA_CACHE_DIR=$(CURDIR)/.pytest_cache/machine-code .venv/$$extra/bin/python tests/extras.py $$extra || exit 1; \
+	  $(MAKE) --no-print-directory VENV=.venv/$$extra .venv/$$extra/$$extra.done || exit 1; \
 	done
+	.venv/fit/bin/contactlaw fit docs/examples/rebounds.csv --sphere gamma-alumina --plate glass \
+	  --radius 0.9mm --thickness 1mm --unknown yield_strength
+	.venv/demo/bin/dem-demo rain --beads 5 --plates 1mm --duration 0.05 --out .venv/demo/rain
+	.venv/demo/bin/contactlaw report .venv/demo/rain/rain.h5 --out .venv/demo/report
+	.venv/lammps/bin/python docs/examples/plates_lammps.py
+	.venv/lammps/bin/python docs/examples/own_loop.py  # reads a mesh
+	.venv/lammps/bin/contactlaw report .venv/demo/rain/rain.h5 --out .venv/lammps/report
 
 PYTHONS := 3.11 3.12 3.13
 QUICK := tests/physical tests/laws/test_laws.py tests/test_model.py tests/cli/test_cor.py

@@ -40,6 +40,7 @@ def steps(contacts):
 
 # What is asked with the mass of the bead, and how far the answers of two tables may be apart.
 EDGE = {"edge": "clamped", "edge_distance": 1e-3}
+FALLING = (3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0.0, 0.0, 1.0), RADIUS, 3e-3, 0.2
 ASKED = {
     "solve": (lambda m, **mass: m.solve(*AT, **mass), 1e-9),
     "lookup": (lambda m, **mass: m.lookup(*AT, **mass), 1e-6),
@@ -53,12 +54,7 @@ OF_ONE_LAW = {
     "elasticities": (lambda m, **mass: m.sensitivity(*AT, **mass), 1e-5),
     "range": (lambda m, **mass: m.uncertainty(*AT, **mass).restitution.low, 1e-4),
     "time step": (lambda m, **mass: time_step(m, 5.0, RADIUS, 1e-3, **mass), 1e-5),
-    "collide": (
-        lambda m, **mass: np.array(
-            m.collide((3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0, 0, 1.0), RADIUS, 3e-3, 0.2, **mass)
-        ),
-        1e-5,
-    ),
+    "collide": (lambda m, **mass: np.array(m.collide(*FALLING, **mass)), 1e-5),
     "steps": (lambda m, **mass: steps(Contacts(m, RADIUS, 1e-3, **mass)), 1e-6),
     "curve": (lambda m, **mass: m.curve(RADIUS, 1e-3, *mass.values())(3.0), 1e-12),
     "kernel": (lambda m, **mass: m.kernel(3.0, RADIUS, 1e-3, *mass.values()), 1e-12),
@@ -76,12 +72,11 @@ def test_it_is_as_a_sphere_of_another_density(law):
 
 def test_compiled_functions_answer_a_mass_out_of_range_with_nan():
     own, heavy = of_mass("myc")
-    at, near, still = (3.0, RADIUS, 1e-3), own.edge_kernel("free"), (0.0, 0.0, 0.0)
-    falling = (3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0.0, 0.0, 1.0), RADIUS, 3e-3, 0.2
-    np.testing.assert_allclose(own.collide_kernel(*falling, still, MASS), heavy.collide(*falling), rtol=1e-5, atol=1e-9)
-    assert math.isnan(own.collide_kernel(*falling, still, 0.3 * MASS)[0][0])
+    at, near, rest = (3.0, RADIUS, 1e-3), own.edge_kernel("free"), (0.0, 0.0, 0.0)
+    np.testing.assert_allclose(own.collide_kernel(*FALLING, rest, MASS), heavy.collide(*FALLING), rtol=1e-5, atol=1e-9)
     for mass in (0.0, -MASS, 0.3 * MASS, 1e4 * MASS, math.nan):
         assert math.isnan(own.kernel(*at, mass)) and math.isnan(near(*at, 1e-3, mass))
+        assert np.isnan(own.collide_kernel(*FALLING, rest, mass)).all()
 
 
 @pytest.mark.parametrize("share", [0.7, 1.0, 6.0])

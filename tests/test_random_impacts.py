@@ -10,12 +10,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import contactlaw as cl
 from contactlaw import Validity
-from contactlaw.laws.fem import RATIOS
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* no solid is so strong")  # strengths are drawn up to E*/5
 RADIUS = 1e-3
@@ -51,7 +50,7 @@ def pairs(draw):
 
 @st.composite
 def cases(draw):
-    """Draw a pair, three speeds from well below yield up to a deep contact, and a thickness."""
+    """Draw a pair, speeds from well below yield up to a deep contact, and a thickness."""
     pair = draw(pairs())
     law = cl.ImpactModel(pair).force_law
     deep = min(law.scale, 0.1) if law.yields and law.scale is not None else 0.1
@@ -65,7 +64,11 @@ def solve(pair, speed, thickness):
     return cl.ImpactModel(pair).solve(speed, RADIUS, thickness, rtol=1e-10)
 
 
+# A sphere that flows is 4 times as stiff as its plate; E*/sigma_Y of others is 2600 and 3500.
 @many
+@example((cl.Pair(cl.Material("a", 280e9, 0.3, 7800, 200e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
+@example((cl.Pair(cl.Material("a", 70e9, 0.3, 2700, 15e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
+@example((cl.Pair(cl.Material("a", 70e9, 0.3, 2700, 11e6), cl.Material("b", 70e9, 0.3, 2700)), [1.0], RADIUS))
 @given(cases())
 def test_numbers_are_finite_energies_add_up_and_untried_strengths_are_flagged(case):
     pair, speed, thickness = case
@@ -76,13 +79,13 @@ def test_numbers_are_finite_energies_add_up_and_untried_strengths_are_flagged(ca
         assert np.min(parts) >= -ENERGIES and 0.0 <= np.min(hit.restitution) <= np.max(hit.restitution) <= 1.0
         np.testing.assert_allclose(np.sum(parts, axis=0), 1.0, rtol=0.0, atol=ENERGIES)
         # In finite elements the stronger body yields, too, up to 1/0.36 times the lower strength.
-        strengths = [s for s in (pair.sphere.yield_strength, pair.plate.yield_strength) if s]
-        flowing = [s for s in strengths if s < min(strengths) / 0.36]
-        tried = all(RATIOS[0] <= pair.effective_modulus / s <= RATIOS[1] for s in flowing)
-        stiffness = pair.sphere.plane_modulus / pair.plate.plane_modulus
-        tried &= len(flowing) < 2 or 1.0 / 12.0 <= stiffness <= 12.0
+        bodies = [(body.yield_strength or math.inf, body.plane_modulus) for body in (pair.sphere, pair.plate)]
+        flowing = [body for body in bodies if 0.36 * body[0] < min(bodies)[0]]
+        softest, ratio = min(modulus for _, modulus in bodies), 3.5 if flowing == bodies[:1] else 12.0
+        tried = all(11.0 <= pair.effective_modulus / s <= 3000.0 and m <= ratio * softest for s, m in flowing)
         untried = (hit.flags & Validity.UNTRIED_STRENGTH) != 0
         np.testing.assert_array_equal(untried, (hit.plastic_fraction > 0.0) & (not tried))
+        np.testing.assert_array_equal(hit.plastic_fraction > 0.0, hit.overload > 1.0)
 
 
 def replaced(pair, body, **changed):
@@ -112,31 +115,35 @@ def test_no_input_makes_the_cor_jump(case):
         assert (change[1] - 2.0 * np.maximum(change[0], change[2])).max() <= KINK
 
 
+# Elastic spheres at a tenth of sqrt(E*/rho1), faster than the waves of these soft plates.
 @few
+@example((cl.Pair(cl.Material("a", 547e9, 0.341, 1374), cl.Material("b", 50.7e6, 0.143, 18135)), [19.4], RADIUS))
+@example((cl.Pair(cl.Material("a", 29.6e9, 0.273, 879), cl.Material("b", 10.8e6, 0.375, 19641)), [11.9], RADIUS))
+@example((cl.Pair(cl.Material("a", 132e9, 0.214, 573), cl.Material("b", 4.43e9, 0.0879, 8517)), [275.0], RADIUS))
 @given(cases())
 def test_a_thicker_plate_takes_less(case):
     """Without yield; the COR rises but for friction: deeper contacts slip more."""
     pair, speed, _ = case
     elastic = replaced(replaced(pair, "sphere", yield_strength=None), "plate", yield_strength=None)
-    hit = solve(elastic, speed[:1], RADIUS * np.geomspace(0.3, 100.0, 60))
+    hit = solve(elastic, speed[:1], RADIUS * np.geomspace(0.2, 100.0, 200))
     assert (np.diff(hit.inelasticity) <= 1e-9 * hit.inelasticity[1:]).all()
     assert (np.diff(hit.wave_fraction) <= ENERGIES).all()
     assert (np.diff(hit.restitution**2) >= -np.abs(np.diff(hit.other_fraction)) - ENERGIES).all()
 
 
-def test_every_interface_answers_alike():
-    """Speeds and sizes are drawn over twelve decades and more."""
-    model, clamping = (cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside=how) for how in ("raise", "clamp"))
-    random, count = np.random.default_rng(0), 2000
-    v = 10.0 ** np.where(random.random(count) < 0.5, random.uniform(-10, 5, count), random.uniform(-3, 2.5, count))
-    r = 10.0 ** np.where(random.random(count) < 0.5, random.uniform(-9, 3, count), random.uniform(-5, -1, count))
+def test_what_the_kernel_does_not_know_is_clamped_to_an_answer_in_range():
+    """Speeds and sizes are drawn over seven decades and more."""
+    clamping, random, count = (
+        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="clamp"),
+        np.random.default_rng(0),
+        2000,
+    )
+    v, r = 10.0 ** random.uniform([[-10.0], [-9.0]], [[5.0], [3.0]], (2, count))
     h = np.maximum(r / 10.0 ** random.uniform(-3, np.log10(cl.table.lookup.THINNEST), count), 1e-9)
-    cor = np.array([model.kernel(*impact) for impact in zip(v, r, h, strict=True)])
-    inside = ~np.isnan(cor)
-    for method in (model.restitution, lambda *impacts: model.lookup(*impacts).restitution):
-        np.testing.assert_allclose(method(v[inside], r[inside], h[inside]), cor[inside], rtol=0.0, atol=1e-12)
     hit = clamping.lookup(v, r, h)
-    np.testing.assert_array_equal((hit.flags & int(Validity.CLAMPED)) != 0, ~inside)
+    clamped = np.isnan([clamping.kernel(*impact) for impact in zip(v, r, h, strict=True)])
+    np.testing.assert_array_equal((hit.flags & int(Validity.CLAMPED)) != 0, clamped)
+    assert 0.1 < clamped.mean() < 0.9
     for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
         assert -1e-6 <= getattr(hit, name).min() <= getattr(hit, name).max() <= 1.0 + 1e-4
     for name in ("contact_time", "peak_force", "peak_compression", "inelasticity"):

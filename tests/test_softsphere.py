@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from verlet import drop, fallen
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, advance, resized, time_step, unit_spring
 
 R = 0.9e-3
@@ -21,16 +20,13 @@ CASES += [(0.5e-3, 20.0), (0.35e-3, 6.0), (0.35e-3, 20.0), (0.25e-3, 3.0), (0.2e
 
 @kernel(cache=True)
 def rest(law, spring, weight, step, steps):
-    """Largest speed and last state of a bead laid on the plate, in the last tenth of the time."""
-    x, u, state, fastest = 0.0, 0.0, PARTED, 0.0
-    for n in range(steps):
-        u += 0.5 * step * (weight - state.force) / spring.mass
-        x += u * step
+    """Speed, overlap and force of a bead that was laid on the plate, after these steps."""
+    x, u, state = 0.0, 0.0, PARTED
+    for _ in range(steps):
+        u += step * (weight - state.force) / spring.mass
+        x += step * u
         state = advance(law, spring, state, x, step)
-        u += 0.5 * step * (weight - state.force) / spring.mass
-        if 10 * n > 9 * steps:
-            fastest = max(fastest, abs(u))
-    return fastest, x, state
+    return u, x, state.force
 
 
 @pytest.fixture(scope="module")
@@ -42,66 +38,49 @@ def spring_of(model, thickness, radius=R):
     return resized(unit_spring(model, thickness), radius)
 
 
-def test_unloading_and_reloading_follow_one_curve_down_to_the_dent(model, law):
+def test_unloading_and_reloading_follow_one_curve_down_to_the_dent(model):
     """The contact is loaded, half unloaded and loaded beyond, along a prescribed path."""
     # The step is so small that terms in dt^2, which are for moving bodies, vanish.
-    spring, contacts = spring_of(model, math.inf), Contacts(model, R, math.inf)
-    top = 3 * spring.scale
-    own = force.alone(law)
-    curve = force.unloading(own, 3.0)
-    left = curve.residual * spring.scale
-    up, down = np.linspace(0, top, 50), np.linspace(top, left + 0.1 * (top - left), 50)
+    spring, contacts, law = spring_of(model, math.inf), Contacts(model, R, math.inf), model.force_law
+    curve, unit = law.unloading_curve(3.0), spring.stiffness * spring.scale**1.5
+    down = np.linspace(3.0, curve.residual + 0.1, 50)  # in d_Y
     load, unload, reload, beyond = (
-        np.array([contacts.advance(np.array([x]), 1e-15)[0] for x in path])
-        for path in (up, down, down[::-1], [1.2 * top])
+        np.array([contacts.advance(np.array([d * spring.scale]), 1e-15)[0] for d in path]) / unit
+        for path in ([1.5, 3.0], down, down[::-1], [3.6])
     )
     assert reload == pytest.approx(unload[::-1], rel=1e-12)
-    unit = spring.stiffness * spring.scale**1.5
-    exact = [unit * force.unloading_force(own, curve, math.sqrt((d - left) / spring.scale)) for d in down]
-    assert unload == pytest.approx(exact, rel=1e-9)
-    assert beyond == pytest.approx(unit * force.loading(own, math.sqrt(3.6)), rel=1e-9)
-    assert contacts.largest_compression == pytest.approx(1.2 * top, rel=1e-12)
-    # the loop between the two loadings is the energy that the law says plastic flow takes
-    work = np.trapezoid([*load, *unload], [*up, *down])
-    rest_of_it = 0.4 * unload[-1] * (down[-1] - left)  # of q^3 from there to the residual
-    lost = force.deepest(own, 3.0).loss * unit * spring.scale
-    assert work - rest_of_it == pytest.approx(lost, rel=2e-3)  # trapezoids of 50 points
-    assert contacts.advance(np.array([0.9 * left]), 1e-8) == 0.0 and contacts.largest_compression > top  # in the dent
+    assert unload == pytest.approx([law.unloading(math.sqrt(d - curve.residual), curve) for d in down], rel=1e-9)
+    assert [*load, *beyond] == pytest.approx([law.loading(math.sqrt(d)) for d in (1.5, 3.0, 3.6)], rel=1e-9)
+    assert contacts.largest_compression == pytest.approx(3.6 * spring.scale, rel=1e-12)
+    in_dent = np.array([0.9 * curve.residual * spring.scale])
+    assert contacts.advance(in_dent, 1e-8) == 0.0 < 3.0 * spring.scale < contacts.largest_compression
     assert contacts.advance(np.array([-1e-9]), 1e-8) == contacts.largest_compression == 0.0  # apart, and without memory
 
 
-@pytest.mark.parametrize("thickness", [0.3e-3, *(pytest.param(h, marks=pytest.mark.long) for h in (1e-3, 3e-3))])
+@pytest.mark.parametrize("thickness", [0.3e-3, 1e-3, 3e-3])
 def test_a_bead_at_rest_is_finite_and_quiet(model, law, thickness):
     spring = spring_of(model, thickness)
     weight = 9.81 * spring.mass
-    fastest, x, state = rest(law, spring, weight, 2e-7, 10_000_000)  # 2 s
-    assert state.force == pytest.approx(weight, rel=1e-3)
-    assert fastest < 1e-6
+    u, x, force = rest(law, spring, weight, 1e-6, 2_000_000)
+    assert force == pytest.approx(weight, rel=1e-3) and abs(u) < 1e-6
     # The bead is no deeper than where the relaxation holds it.
     deepest = spring.mobility * weight * spring.relaxation
     assert x <= 1.01 * (deepest + (weight / spring.stiffness) ** (2 / 3))
 
 
 def test_a_bead_that_slides_is_that_of_the_integration(model):
-    """In two directions and with spin; 50 steps a contact."""
-    mu, v, psi = 0.3, 3.0, np.array([0.2, 1.0, 2.0, 4.0, 8.0])
-    contacts, n = Contacts(model, np.full(5, R), 1e-3), np.array([0.0, 0.0, 1.0])
-    dt = float(model.solve(v, R, 1e-3).contact_time) / 50
-    way = np.column_stack((np.cos(psi), np.sin(psi), 0.0 * psi))
-    velocity, spin = 0.4 * psi[:, None] * mu * v * way - v * n, np.cross(way, n)
-    spin *= (0.6 * psi * mu * v / R)[:, None]
-    mass, depth = contacts.mass[:, None], np.full(5, -0.4 * v * dt)
+    """In several directions; 50 steps a contact. Friction moves the surface as if it had 2/7 of the mass."""
+    mu, v, psi, normal = 0.3, 3.0, np.array([0.2, 1.0, 2.0, 4.0, 8.0]), np.array([0.0, 0.0, 1.0])
+    contacts, hit = Contacts(model, np.full(5, R), 1e-3), model.oblique(v, psi * mu * v, R, 1e-3, mu, method="solve")
+    dt = hit.contact_time[0] / 50
+    along = np.column_stack((np.cos(psi), np.sin(psi), 0.0 * psi))
+    velocity, depth = mu * v * psi[:, None] * along - v * normal, np.full(5, -0.4 * v * dt)
     for _ in range(70):
         depth -= dt * velocity[:, 2]
-        point = velocity - R * np.cross(spin, n)
-        force = contacts.advance(depth, dt)[:, None] * n + contacts.slide(n, point, mu)
-        velocity += dt / mass * force
-        spin += dt / (0.4 * mass * R**2) * -R * np.cross(n, force)
-    hit = model.oblique(v, psi * mu * v, R, 1e-3, mu, method="solve")
-    assert (velocity[:, 2] > 0.0).all()
-    assert (contacts.slide(n, point, mu) == 0.0).all()
-    point = ((velocity - R * np.cross(spin, n)) * way).sum(axis=1)
-    assert np.abs(point - hit.sliding_speed).max() < 0.012 * mu * v
+        force = contacts.advance(depth, dt)[:, None] * normal + 3.5 * contacts.slide(normal, velocity, mu)
+        velocity += dt / contacts.mass[0] * force
+    assert (velocity[:, 2] > 0.0).all() and (contacts.slide(normal, velocity, mu) == 0.0).all()
+    assert np.abs((velocity * along).sum(axis=1) - hit.sliding_speed).max() < 0.012 * mu * v
 
 
 @pytest.mark.parametrize("distance", [0.0, 1e-4, 1e-3])

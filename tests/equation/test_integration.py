@@ -7,10 +7,13 @@ import pytest
 import reference_laws
 from oracle import ALL_LAWS, FEM, impact, yield_ratio
 from overloads import solved_at
-from staying import staying_law
+from own_laws import measured, own
 
+import contactlaw as cl
 from contactlaw import laws
 from contactlaw.equation import force, integrator, motion, outcome, zener
+from contactlaw.laws import fem
+from contactlaw.physical.law import pair_numbers
 
 HERTZ = force.HERTZ.copy()
 
@@ -31,7 +34,7 @@ def test_lossless_contact():
     assert one.peak_force == pytest.approx(wm**1.5, rel=1e-10)
 
 
-@pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
+@pytest.mark.parametrize("law", [*ALL_LAWS, own(), measured()], ids=lambda law: law.name)
 def test_every_law_against_an_independent_integration(law):
     """Over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9."""
     rng = np.random.default_rng(20210326)
@@ -59,42 +62,31 @@ def overload(law, lam, dm):
     return zener.overload_at(law.data, lam, w_m, dm, 1e-12)
 
 
-def largest_imbalance(law, lam, chi):
-    """Largest imbalance of energy of the impacts, and its lambda and overload."""
-    out = solved_at(law, np.array(lam), np.array(chi), 1e-10)
+# Errors of single steps, 1e-10, add up: 6e-10 at most. Of the energy a hundredth of a thousandth
+# was lost where a step ran across a corner of an unloading curve.
+@pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
+def test_energy_balance_over_the_whole_table_and_at_the_kinks(law):
+    rng = np.random.default_rng(2147)
+    lam = 10 * np.append(np.zeros(2000), np.sort(rng.uniform(0, 1, 4000)) ** 3)
+    chi = np.exp(rng.uniform(math.log(0.3), math.log(100), 6000))
+    impacts = [
+        *zip(lam, chi, strict=True),
+        *(
+            (one, overload(law, one, kink) * (1 + step))
+            for one in (0.0, 1e-3, 0.05, 0.3, 1.0, 3.0, 5.0)
+            for kink in reference_laws.of(law.name).outcome_kinks
+            for step in (0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3)
+        ),
+    ]
+    lam, chi = np.array(impacts).T
+    out = solved_at(law, lam, chi, 1e-10)
     extremes = outcome.extremes(len(lam))
     zener.extremes(law.data, out, extremes)
     assert ((out.restitution > 0.0) & (out.restitution <= 1.0 + 1e-10)).all()
     assert ((extremes.plastic_fraction >= 0.0) & (extremes.plastic_fraction < 1.0)).all()
     left = 1 - out.restitution**2 - extremes.plastic_fraction - out.wave_rate * out.inelasticity
     worst = int(np.argmax(np.abs(left)))
-    return abs(left[worst]), lam[worst], chi[worst]
-
-
-# Errors of single steps, 1e-10, add up: 6e-10 at most. Of the energy a hundredth of a thousandth
-# was lost where a step ran across a corner of an unloading curve.
-@pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
-def test_energy_balance_over_the_whole_table_and_on_the_half_space(law):
-    rng = np.random.default_rng(2147)
-    lam = 10 * np.append(np.zeros(2000), np.sort(rng.uniform(0, 1, 4000)) ** 3)
-    chi = np.exp(rng.uniform(math.log(0.3), math.log(100), 6000))
-    worst = largest_imbalance(law, lam, chi)
-    assert worst[0] < 1e-8, worst
-
-
-@pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)
-def test_energy_balance_at_the_kinks(law):
-    steps = (0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3)
-    lam, chi = np.array(
-        [
-            (one, overload(law, one, kink) * (1 + step))
-            for one in (0.0, 1e-3, 0.05, 0.3, 1.0, 3.0, 5.0)
-            for kink in reference_laws.of(law.name).outcome_kinks
-            for step in steps
-        ]
-    ).T
-    worst = largest_imbalance(law, lam, chi)
-    assert worst[0] < 1e-8, worst
+    assert abs(left[worst]) < 1e-8, impacts[worst]
 
 
 def test_error_follows_the_tolerance():
@@ -141,9 +133,20 @@ def test_a_level_next_to_a_turn_is_sought_within_the_step():
     assert 0.0 < guess < step
 
 
+# A sphere of 1 kPa strength: its force falls as the 0.8th power of the compression at unloading.
+STAYING = cl.Pair(
+    cl.Material("stiff", 960e9, 0.164, 52e3, yield_strength=947.0),
+    cl.Material("soft", 227e6, 0.0395, 897.0, yield_strength=947.0),
+)
+
+
 def test_contact_times_and_restitution_are_continuous_where_spheres_come_to_stay():
-    """Contact times rise by 2 within 0.001 of lambda: smaller intervals, smaller changes."""
-    law = staying_law().data
+    """Contact times rise by 2 within 0.001 of lambda: smaller intervals, smaller changes.
+
+    Without the loss that stiff spheres keep contact times rise fastest: the hardest case known.
+    """
+    given = fem.Given(**pair_numbers(STAYING, "fem"))
+    law = fem.law_of(given, {**fem.fitted(), "stiffest": 1.0}).data
     low, high, steps = 0.7, 0.75, []
     for _ in range(5):
         lam = np.linspace(low, high, 61)

@@ -1,17 +1,15 @@
-"""The law fem for bodies that harden: limits, and its curves beside those of ideal bodies."""
+"""The law fem for bodies that harden: its limits. Finite elements are in tests/validation/fem/test_fit.py."""
 
 import dataclasses
-import math
 
 import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.laws import fem, law
+from contactlaw.laws import fem
 
 IDEAL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6)
 PLATE = cl.Material("plate", 70e9, 0.22, 2500)
-SHARE, LATE, BOTH, BY_EXPONENT, BY_RATIO = fem.fitted()["strain"]
 
 
 def model(sphere, plate=PLATE):
@@ -33,40 +31,6 @@ def test_without_any_rise_the_answers_are_those_of_an_ideal_body(speed):
     for name in ("restitution", "contact_time", "peak_force", "plastic_fraction"):
         assert getattr(slight, name) == pytest.approx(getattr(ideal, name), rel=3e-5, abs=1e-9)
         assert getattr(step, name) == pytest.approx(getattr(stronger, name), rel=1e-5, abs=1e-9)
-
-
-@pytest.mark.parametrize("role", ["sphere", "plate"])
-@pytest.mark.parametrize("depth", [1e-3, 1e-2, 5e-2])
-def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
-    """Force and residual compression, by the flow stress at c (w - b w_Y), for n 0.3 and E*/sigma.
-
-    That of the plate, whose Poisson's ratio is 0.22, begins with 0.995 of its own w_Y.
-    """
-    ratio, times, n = 400.0, 2.0, 0.3
-    numbers = {"modulus_share": 0.4, "poissons_ratio": 0.3, "plate_poissons_ratio": 0.22}
-    none = {"sphere_ratio": 0.0, "plate_ratio": 0.0}
-    hard = law(
-        "fem", **numbers, **{**none, f"{role}_ratio": ratio}, **{f"{role}_hardening": times, f"{role}_exponent": n}
-    )
-    onset = law("fem", **numbers, **{**none, f"{role}_ratio": ratio}).scale
-    assert hard.onset == pytest.approx(onset)
-    begins = {
-        "sphere": LATE * math.sqrt(fem.yield_scale(ratio, 0.3)),
-        "plate": 0.995 * math.sqrt(fem.yield_scale(ratio, 0.22)),
-    }
-    usual = SHARE * (0.1 - LATE * math.sqrt(fem.yield_scale(ratio, 0.3)))
-    typical = ratio / (1.0 + times * usual**n)
-    slope = SHARE * math.exp(-0.1 * BY_EXPONENT) * (typical / 300.0) ** BY_RATIO
-    strain = slope * (math.sqrt(depth) - begins[role])
-    there = {**none, f"{role}_ratio": ratio / (1.0 + times * strain**n)}
-    ideal = fem.law(*{**there, **numbers}.values())
-    for one in (hard, ideal):
-        assert one.scale < depth < one.range[1] * one.scale
-    ours, expected = (
-        (one.loading(math.sqrt(depth / one.scale)) * one.scale**1.5, one.residual(depth / one.scale) * one.scale)
-        for one in (hard, ideal)
-    )
-    assert ours == pytest.approx(expected, rel=1e-9)
 
 
 def test_restitution_rises_with_hardening_and_flow_begins_at_the_yield_strength():

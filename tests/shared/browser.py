@@ -18,6 +18,14 @@ WIDE = """[...document.querySelectorAll("*")]
   .map((e) => e.outerHTML.slice(0, 80))"""
 
 
+def _wait_for(condition):
+    """Whether a condition comes true while one waits."""
+    end = time.monotonic() + _PATIENCE
+    while not (true := condition()) and time.monotonic() < end:
+        time.sleep(0.1)
+    return true
+
+
 class Page:
     """One page; `complaints` has what its console and its scripts complained of."""
 
@@ -59,9 +67,7 @@ class Page:
         features = [{"name": name.replace("_", "-"), "value": media[name]} for name in media]
         self.call("Emulation.setEmulatedMedia", features=features)
         self.call("Page.navigate", url=path.absolute().as_uri())
-        end = time.monotonic() + _PATIENCE
-        while self.value("document.readyState") != "complete" and time.monotonic() < end:
-            time.sleep(0.1)
+        _wait_for(lambda: self.value("document.readyState") == "complete")
         return self
 
     def value(self, expression):
@@ -72,12 +78,8 @@ class Page:
 
     def wait_for_change(self, expression):
         """Whether the value of an expression changes while one waits."""
-        first, end = self.value(expression), time.monotonic() + _PATIENCE
-        while time.monotonic() < end:
-            if self.value(expression) != first:
-                return True
-            time.sleep(0.1)
-        return False
+        first = self.value(expression)
+        return _wait_for(lambda: self.value(expression) != first)
 
 
 @contextmanager
@@ -98,15 +100,13 @@ def browser(profile):
         stderr=subprocess.DEVNULL,
     )
     try:
-        port, end = profile / "DevToolsActivePort", time.monotonic() + _PATIENCE
-        while not (port.exists() and port.read_text().count("\n")) and time.monotonic() < end:
-            time.sleep(0.1)
+        port = profile / "DevToolsActivePort"
+        _wait_for(lambda: port.exists() and port.read_text().count("\n"))
         number, path = port.read_text().split()
-        with connect(f"ws://127.0.0.1:{number}{path}", max_size=None, proxy=None) as socket:
-            root = Page(socket)
-            target = root.call("Target.createTarget", url="about:blank")["targetId"]
-            with connect(f"ws://127.0.0.1:{number}/devtools/page/{target}", max_size=None, proxy=None) as own:
-                yield Page(own)
+        with connect(f"ws://127.0.0.1:{number}{path}", proxy=None) as socket:
+            target = Page(socket).call("Target.createTarget", url="about:blank")["targetId"]
+        with connect(f"ws://127.0.0.1:{number}/devtools/page/{target}", max_size=None, proxy=None) as socket:
+            yield Page(socket)
     finally:
         process.terminate()
         process.wait(30)

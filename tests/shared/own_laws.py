@@ -9,7 +9,7 @@ from contactlaw import laws
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.physical.scaling import yield_scales
 
-R, H = 0.9e-3, 1e-3
+R = 0.9e-3
 PAIR = cl.Pair("gamma-alumina", "glass")
 CUT_OFF = Loading(1.0, lambda d: 1.5 * d - 0.5)  # Hertz's curve, then its tangent
 
