@@ -61,7 +61,10 @@ def cached(law: Law, settings: Settings | None = None) -> Table:
     name = file_name("table", law.key, asdict(settings))
 
     def read(path: Path) -> Table:
-        return dataclasses.replace(file.read(path), law=law)  # laws of one key may have other names
+        found = file.read(path)
+        if (found.law.key, found.settings) != (law.key, settings):
+            raise ValueError("it is the table of another law or of other settings")
+        return dataclasses.replace(found, law=law)  # laws of one key may have other names
 
     return _kept(name, law, read, lambda: tables.build(law, settings), file.write)
 
