@@ -1,6 +1,9 @@
 """Lookups: many at once, one by one from Python, and inside compiled loops.
 
-The targets of batches are 17 times scipy's speed for myc, 10 for fem and 5.5 with a rate of strain.
+The targets of batches are 17 times scipy's speed for myc, 10 for fem and 5.5 with a rate of strain. Measured on one
+core of 2.6 GHz with vectors of four numbers: 12, 6 and 4. For four impacts of myc some 115 vector instructions
+find the places, in 7 ns an impact, and a value takes 4 to 5 ns; fem's corrections are 130 instructions more. So the
+places limit the speed. Cell polynomials in place of B-splines gained 0.8 ns, single weights per impact nothing.
 """
 
 from __future__ import annotations
