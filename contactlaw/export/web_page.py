@@ -107,7 +107,7 @@ def _shown(model: ImpactModel) -> dict[str, float | str]:
 def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
     """Numbers of a pair."""
     pair = model.pair
-    weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
+    weaker = min(body.strength or math.inf for body in pair.bodies)
     flag = Validity.SLIDING_FLOW.value
     return bodies_of(model, None), Page(pair.effective_modulus, weaker, flag)
 
