@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
-from contactlaw.laws._branches import bisect
+from contactlaw._bisect import bisect
 from contactlaw.physical.arguments import checked, shaped
 
 __all__ = ["betan"]

@@ -60,7 +60,6 @@ __all__ = [
     "unit_spring",
 ]
 
-_UP = 0.0, 0.0, 1.0
 # Largest error of COR times (steps per contact)^2.5, at any phase of the first touch: 0.86 measured
 # with velocity Verlet and the law myc, for lambda to 2 and speeds to 7 V_Y0, at 20, 50, 100 steps.
 _ERROR = 0.9

@@ -37,8 +37,8 @@ class Beads(TableLookup):
 
     def __init__(self, sphere: Material | str, other: Material | str, law: str | Law, outside: Outside) -> None:
         pair = Pair(sphere, other)
-        weak, strong = (body.strength or math.inf for body in (pair.plate, pair.sphere))
-        self._swapped = weak < strong
+        first, second = (body.strength or math.inf for body in pair.bodies)
+        self._swapped = second < first
         if self._swapped:
             pair = Pair(pair.plate, pair.sphere)
         super().__init__(TwoSpheres(pair, law_of(pair, law)), None, outside)

@@ -11,9 +11,11 @@ from contactlaw._arrays import Array
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.tabulated import TableLookup
 from contactlaw.equation import near_edge
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import at_strength
 from contactlaw.equation.notes import Notes
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, share_of_solid
+from contactlaw.equation.outcome import OK
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import check_kind
 from contactlaw.physical.responses import response_of
@@ -24,11 +26,11 @@ from contactlaw.table import lookup
 def kernel_of(tabulated: TableLookup) -> Callable[..., float]:
     """COR as a jitted function of speed, radius, thickness and mass, which belongs to one table."""
     on_plate, packed = lookup.restitution_on_plate, in_memory(tabulated.packed)
-    density = tabulated.bodies.constants.mass
+    pair = tabulated.bodies.constants
 
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float, mass: float = math.inf) -> float:
-        share = share_of_solid(density, radius, mass)
+        share = share_of_solid(pair, radius, mass)
         return on_plate(packed(), speed, radius, thickness, share)
 
     return cor
@@ -48,7 +50,7 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
 
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float, edge_distance: float, mass: float = math.inf) -> float:
-        impact = Impact(speed, radius, thickness, share_of_solid(pair.mass, radius, mass))
+        impact = Impact(speed, radius, thickness, share_of_solid(pair, radius, mass))
         return _cor_near(law(), response(), pair, path, impact, edge_distance)
 
     return cor
@@ -66,8 +68,8 @@ def _cor_near(
     if h < math.inf:
         rate = wave_rate(path, h, edge_distance) * known.time
         coupling = coupling_of(pair, known, impact)
-    y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     own, none = at_strength(law, known.strength), np.empty((0, 0))
     notes = Notes(none, none, none, none, none)
-    contact = near_edge.follow(own, response, known.inelasticity, y, coupling, rate, near_edge.QUICK, notes, 0)
-    return contact.restitution if contact.ended else math.nan
+    edges = Edges(np.atleast_2d(response), np.array([coupling]), np.array([rate]), np.empty(0))
+    contact = near_edge.follow(own, known.inelasticity, known.yield_ratio, edges, near_edge.QUICK, notes, 0)
+    return contact.restitution if contact.status == OK else math.nan

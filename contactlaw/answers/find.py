@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._arrays import Array, Integers
+from contactlaw._bisect import bisect
 from contactlaw._errors import ArgumentError
 from contactlaw._readable import in_unit
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import TableLookup
-from contactlaw.laws._branches import bisect
 from contactlaw.physical.arguments import broadcast, check, within
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity
@@ -113,14 +113,10 @@ class _Curve:
     def restitution(self, x: Array) -> Array:
         return np.asarray(self.by.rebounds(self.impacts(x)).restitution)
 
-    def roots(self, wanted: float) -> Array:
-        """Reciprocals of the values that give a COR."""
+    def solutions(self, wanted: float) -> Solutions:
         above = self.e > wanted
         at = np.flatnonzero(above[1:] != above[:-1])
-        return np.asarray(bisect(lambda x: (self.restitution(x) > wanted) == above[at], self.x[at], self.x[at + 1]))
-
-    def solutions(self, wanted: float) -> Solutions:
-        x = self.roots(wanted)
+        x = bisect(lambda x: (self.restitution(x) > wanted) == above[at], self.x[at], self.x[at + 1])
         last = [int(self.e.argmin()), int(self.e.argmax())]
         with np.errstate(divide="ignore"):
             value, at = 1.0 / x, 1.0 / self.x[last]

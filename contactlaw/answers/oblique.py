@@ -86,7 +86,7 @@ def collide_kernel(tabulated: TableLookup) -> Collide:
             "table of oblique impacts takes hours: call collide, which integrates then"
         )
     of_one, packed, slides = kernels.collide, in_memory(tabulated.packed), in_memory(tabulated.slides)
-    density = tabulated.bodies.constants.mass
+    pair = tabulated.bodies.constants
 
     @kernel(entry=True)
     def collide(
@@ -99,7 +99,7 @@ def collide_kernel(tabulated: TableLookup) -> Collide:
         wall_velocity: Vector,
         mass: float = math.inf,
     ) -> tuple[Vector, Vector]:
-        share = share_of_solid(density, radius, mass)
+        share = share_of_solid(pair, radius, mass)
         return of_one(packed(), slides(), velocity, spin, normal, radius, thickness, share, friction, wall_velocity)
 
     return collide

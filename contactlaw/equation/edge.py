@@ -58,7 +58,7 @@ class Edges(NamedTuple):
     response: Array  # (impacts, 2 SIZE), as `contactlaw.physical.responses` gives it
     coupling: Array  # mobility of a thin plate over that of the contact, at most 1
     rate: Array  # T_H/tau
-    again: Array  # set to 1 where the plate comes back to the sphere after the contact, else to 0
+    again: Array  # set to 1 where the plate comes back to the sphere after the contact, else to 0; may have no entry
 
 
 @kernel(inline=True)

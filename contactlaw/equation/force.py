@@ -246,6 +246,18 @@ def _function(law: Array, row: int, which: int, dm: float) -> float:
     return value if power == 0.0 else value * math.pow(dm - 1.0, power)
 
 
+@kernel
+def solvable(law: BlendedLaw, y: float) -> float:
+    """Yield compression to solve with: 1 in place of inf, which an elastic law has.
+
+    Slower impacts under a law with losses lose the same share, but it knows no loss of the shallowest contacts.
+    """
+    y = y if y < math.inf else 1.0
+    if y * lossless(law) > 0.05 and returned(law)[0] < 1.0:
+        return 0.05 / lossless(law)
+    return y
+
+
 @kernel(inline=True)
 def _deepest_of(law: Array, dm: float) -> Deepest:
     f, row = loading_of(law, math.sqrt(dm)), _unloading_row(law, dm)

@@ -18,7 +18,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation import legs, motion
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import ScaledContact, ScaledState
-from contactlaw.equation.notes import share_at
+from contactlaw.equation.notes import coefficients, share_at
 
 MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at
@@ -54,7 +54,7 @@ def _guess(event: int, state: ScaledState, trial: ScaledState, h: float, level: 
     if event == LEVEL:
         return h * share_at(rise, rate, last, level - state.q)
     # root of the cubic's derivative, without cancellation
-    c2, c3 = 3.0 * rise - 2.0 * rate - last, rate + last - 2.0 * rise
+    c2, c3 = coefficients(rise, rate, last)
     return h * rate / (math.sqrt(max(0.0, c2 * c2 - 3.0 * rate * c3)) - c2)
 
 

@@ -10,19 +10,18 @@ t time, h step in s, beta mobility, y yield compression; z memory.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.edge import LONGEST, NO_MEMORY, Memories
+from contactlaw.equation.edge import LONGEST, NO_MEMORY, Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.motion import ScaledState
 from contactlaw.equation.notes import AT_TIMES, Notes, note
-from contactlaw.equation.recall import recalled, remembered
+from contactlaw.equation.outcome import Solution, solution
+from contactlaw.equation.recall import comes_back, recalled, remembered
 
 # Errors of q in a step over its scale, with which the restitution is within 5e-4 and 3e-5.
 QUICK, FINE = 5e-5, 5e-7
@@ -33,32 +32,13 @@ _PARTED = 1e-2  # q at separation, over its scale: the speed errs by its fifth p
 _MOST = 50_000  # steps
 
 
-class Contact(NamedTuple):
-    """A contact that has ended, in the law's scale."""
-
-    ended: bool  # whether steps have got to its end
-    stays: bool  # whether the sphere still presses when it is not followed any more
-    speed: float  # of the sphere
-    restitution: float
-    duration: float
-    loading_time: float  # until the largest compression
-    largest: float  # compression
-    memory: Memories
-
-
 @kernel
-def follow(
-    law: BlendedLaw,
-    response: Array,
-    lam: float,
-    y: float,
-    coupling: float,
-    rate: float,
-    error: float,
-    notes: Notes,
-    n: int,
-) -> Contact:
-    """Follow one impact to its end, see `Edges`, and note points of its path in row n."""
+def follow(law: BlendedLaw, lam: float, y: float, edges: Edges, error: float, notes: Notes, n: int) -> Solution:
+    """Follow impact n to its end, and note points of its path.
+
+    The plate has all of the energy that is neither lost at the contact nor left to the sphere.
+    """
+    response, coupling, rate, y = edges.response[n], edges.coupling[n], edges.rate[n], force.solvable(law, y)
     unit = math.sqrt(math.sqrt(y))  # T_H in the law's scale
     q_scale, speed = 1.0 / (unit * unit), 1.0 / (y * unit)
     beta, pace, until, least = lam * unit, 0.5 * rate / unit, LONGEST * unit, error * q_scale
@@ -126,5 +106,10 @@ def follow(
         h *= min(2.0, 0.8 / np.cbrt(max(off, 1e-3)))
     if loading and q * q > dm:  # a sphere that stays may press harder than ever
         dm, top = q * q, t
-    restitution = 0.0 if stays else min(max(-u / speed, 0.0), 1.0)
-    return Contact(ended or stays, stays, u, restitution, t, top, dm, memory)
+    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, dm).loss, 0.0)
+    restitution = 0.0 if stays else min(max(-u / speed, 0.0), math.sqrt(left))
+    if edges.again.size:
+        again = stays or comes_back(response, memory, coupling, 2.0 * pace, u, beta, t)
+        edges.again[n] = 1.0 if again else 0.0
+    wave_rate = max(left - restitution * restitution, 0.0) / lam if lam > 0.0 else 0.0
+    return solution(law, y, ended or stays, restitution, top / unit, t / unit, dm, lam, wave_rate)

@@ -32,16 +32,23 @@ class Notes(NamedTuple):
 
 
 @kernel(inline=True)
+def coefficients(rise: float, rate: float, last: float) -> tuple[float, float]:
+    """Coefficients of x^2 and x^3 of a cubic, from its whole change and its rates per step at both ends."""
+    return 3.0 * rise - 2.0 * rate - last, rate + last - 2.0 * rise
+
+
+@kernel(inline=True)
 def cubic(rise: float, rate: float, last: float, x: float) -> float:
-    """Change of a value in the share x of a step, from its whole change and its rates per step at both ends."""
-    return x * (rate + x * (3.0 * rise - 2.0 * rate - last + x * (rate + last - 2.0 * rise)))
+    """Change of a value in the share x of a step."""
+    c2, c3 = coefficients(rise, rate, last)
+    return x * (rate + x * (c2 + x * c3))
 
 
 @kernel
 def share_at(rise: float, rate: float, last: float, change: float) -> float:
     """Share of a step in which a value changes by this, by Newton's method from the secant."""
     secant = x = change / rise
-    c2, c3 = 3.0 * rise - 2.0 * rate - last, rate + last - 2.0 * rise
+    c2, c3 = coefficients(rise, rate, last)
     for _ in range(3):
         x -= (((c3 * x + c2) * x + rate) * x - change) / ((3.0 * c3 * x + 2.0 * c2) * x + rate)
     return x if 0.0 < x < 1.0 else secant  # near a turn Newton's method may leave the step

@@ -177,15 +177,22 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
 
 
 @kernel(inline=True)
-def share_of_solid(density: float, radius: float, mass: float) -> float:
-    """Mass [kg], inf for a solid sphere's, over that; the solid one's is density R^3.
+def solid_mass(unit: Any, radius: Any) -> Any:
+    """Mass of a solid sphere [kg], from the constants of one of radius 1 m."""
+    return unit.mass * (radius * radius * radius)
 
-    NaN beyond the limits.
-    """
-    if mass == math.inf:
-        return 1.0
-    share = mass / (density * (radius * radius * radius))
-    return share if LIGHTEST <= share <= HEAVIEST else math.nan
+
+@kernel(inline=True)
+def mass_fits(share: Any) -> Any:
+    """Whether masses, over those of solid spheres, are such that the model holds."""
+    return (share >= LIGHTEST) & (share <= HEAVIEST)
+
+
+@kernel(inline=True)
+def share_of_solid(pair: PairConstants, radius: float, mass: float) -> float:
+    """Mass [kg] over that of a solid sphere, for which inf stands; NaN if the model does not hold."""
+    share = mass / solid_mass(pair, radius)
+    return 1.0 if mass == math.inf else share if mass_fits(share) else math.nan
 
 
 @kernel(entry=True)
@@ -209,7 +216,7 @@ def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
     length = speed * unit
     lam = inelasticity_of(plate, root, ratio, stiffer)
     stiffer *= math.exp(0.4 * growth)
-    force = pair.mass * (radius * radius * radius) * speed / unit
+    force = solid_mass(pair, radius) * speed / unit
     return Numbers(lam, yielding / length, unit, length, force, stiffer, strength)
 
 

@@ -5,15 +5,21 @@ initial kinetic energy. Kernels take these NamedTuples of arrays, one entry per 
 them by name.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlaw._arrays import Array
+from contactlaw._jit import kernel
+from contactlaw.equation import force
+from contactlaw.equation.force import BlendedLaw
+
+OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 
 
 class Outcome(NamedTuple):
-    """What solver and table give for impacts; the other fields follow from it and the law."""
+    """What tables keep of impacts, and the numbers that describe them; a `Solution` follows from it and the law."""
 
     restitution: Any
     contact_time: Any  # from touch to separation
@@ -25,13 +31,20 @@ class Outcome(NamedTuple):
     strength: Any  # ln of the strength at the impact's rate over that of a slow test
 
 
-class Extremes(NamedTuple):
-    """What follows from the law and the largest compression of contacts."""
+class Solution(NamedTuple):
+    """Contacts that have ended, numbers or arrays; energies as shares of the initial one."""
 
+    status: Any
+    restitution: Any
+    loading_time: Any  # until the largest compression; NaN of what was interpolated
+    contact_time: Any
     peak_force: Any
+    peak_compression: Any
     residual_compression: Any
     plastic_fraction: Any
+    wave_fraction: Any
     other_fraction: Any
+    wave_rate: Any  # wave_fraction / lam, which has a limit at lam = 0
 
 
 class History(NamedTuple):
@@ -101,9 +114,39 @@ def part(arrays: Any, chosen: Any) -> Any:
     return type(arrays)(*(values[chosen] for values in arrays))
 
 
-def extremes(count: int) -> Extremes:
-    """Allocate the extremes of contacts."""
-    return Extremes(*np.empty((len(Extremes._fields), count)))
+def extremes(count: int) -> Solution:
+    """Allocate the solutions of impacts."""
+    return Solution(*np.empty((len(Solution._fields), count)))
+
+
+@kernel(inline=True)
+def solution(
+    law: BlendedLaw,
+    y: float,
+    ended: bool,
+    restitution: float,
+    loading_time: float,
+    contact_time: float,
+    dm: float,
+    lam: float,
+    wave_rate: float,
+) -> Solution:
+    """Solution of a contact that has ended, from its largest compression in the law's scale."""
+    turned, unit = force.deepest(law, dm), y * math.sqrt(y)  # F_Y
+    per_energy = 2.0 * y * unit
+    return Solution(
+        float(OK if ended else TOO_MANY_STEPS),
+        restitution,
+        loading_time,
+        contact_time,
+        turned.force * unit,
+        dm * y,
+        turned.residual * y,
+        per_energy * (turned.loss - turned.other),
+        lam * wave_rate,
+        per_energy * turned.other,
+        wave_rate,
+    )
 
 
 def history(contact_time: Array, samples: int) -> History:

@@ -13,43 +13,29 @@ w compression, w_m that of an elastic impact, s strength; a law is its data.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw._arrays import Array
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import elastic, force, integrator, legs, motion, near_edge, outcome, recall
+from contactlaw.equation import elastic, force, integrator, legs, motion, near_edge, outcome
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import BlendedLaw
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, NONE, TURN
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.notes import AT_COMPRESSIONS, AT_TIMES, TO_THE_END, TO_THE_TOP, Notes, note
-from contactlaw.equation.outcome import Extremes, History, Outcome
+from contactlaw.equation.outcome import BAD_INPUT as BAD_INPUT
+from contactlaw.equation.outcome import OK as OK
+from contactlaw.equation.outcome import TOO_MANY_STEPS as TOO_MANY_STEPS
+from contactlaw.equation.outcome import History, Outcome, Solution, solution
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
-OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
     BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
 }
-
-
-class Solution(NamedTuple):
-    """Impacts in Hertz's scale, numbers or arrays; energies as shares of the initial one."""
-
-    status: Any
-    restitution: Any
-    loading_time: Any  # until the largest compression
-    contact_time: Any
-    peak_force: Any
-    peak_compression: Any
-    residual_compression: Any
-    plastic_fraction: Any
-    wave_fraction: Any
-    other_fraction: Any
-    wave_rate: Any  # wave_fraction / lam, which has a limit at lam = 0
 
 
 _NO_NOTES = Notes(*np.empty((5, 0, 0)))
@@ -65,33 +51,22 @@ def _integrate(
     """
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
-        if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
+        if 0.0 <= lam[n] < math.inf and y[n] > 0.0:
             law = force.at_strength(laws, s[n])
             if edges is None:
-                solution = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
+                found = follow_impact(goal, law, lam[n], y[n], rtol, notes, n)
             else:
-                solution = follow_near(law, lam[n], y[n], notes, n, edges)
-            for k in range(len(solution)):
-                out[k, n] = solution[k]
-                if out[0, n] == OK and not abs(solution[k]) < math.inf:
+                found = near_edge.follow(law, lam[n], y[n], edges, near_edge.FINE, notes, n)
+            for k in range(len(found)):
+                out[k, n] = found[k]
+                if out[0, n] == OK and not abs(found[k]) < math.inf:
                     out[0, n] = BAD_INPUT
-
-
-@kernel
-def _shallow(law: BlendedLaw, y: float) -> float:
-    """Yield compression to solve with, of a slow impact under a law with losses.
-
-    Slower impacts lose the same share, but the law knows no loss of the shallowest contacts.
-    """
-    if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
-        return 0.05 / force.lossless(law)
-    return y
 
 
 @kernel
 def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float, notes: Notes, n: int) -> Solution:
     """Integrate one impact, and note points of its path in row n."""
-    y = _shallow(law, y)
+    y = force.solvable(law, y)
     scale, h = integrator.scale_of(y, rtol)
     contact = ScaledContact(law, lam * scale.t, (integrator.LEAST_RESTITUTION * scale.u) ** 2)
     leg, curve = legs.up(law, legs.FIRST), legs.NO_CURVE
@@ -114,84 +89,16 @@ def follow_impact(goal: int, law: BlendedLaw, lam: float, y: float, rtol: float,
         if going and event != NONE:
             leg, state = integrator.after(contact, leg, turns, state)
             curve = force.unloading(law, top.q * top.q) if turns else curve
-    return _solution(
+    return solution(
         law,
         y,
-        float(OK if total < MAX_STEPS else TOO_MANY_STEPS),
+        total < MAX_STEPS,
         min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
         top.q * top.q,
         lam,
         2.0 * scale.t * state.work / scale.u**2,
-    )
-
-
-@kernel
-def _extremes(law: BlendedLaw, y: float, dm: float) -> Extremes:
-    """Find what follows from the largest compression, in the law's scale."""
-    turned, unit = force.deepest(law, dm), y * math.sqrt(y)  # F_Y
-    per_energy = 2.0 * y * unit
-    lost = per_energy * (turned.loss - turned.other)
-    return Extremes(turned.force * unit, turned.residual * y, lost, per_energy * turned.other)
-
-
-@kernel
-def _solution(
-    law: BlendedLaw,
-    y: float,
-    status: float,
-    restitution: float,
-    loading_time: float,
-    contact_time: float,
-    dm: float,
-    lam: float,
-    wave_rate: float,
-) -> Solution:
-    """Solution of a contact that has ended, from its largest compression in the law's scale."""
-    peak, residual, plastic, other = _extremes(law, y, dm)
-    return Solution(
-        status,
-        restitution,
-        loading_time,
-        contact_time,
-        peak,
-        dm * y,
-        residual,
-        plastic,
-        lam * wave_rate,
-        other,
-        wave_rate,
-    )
-
-
-@kernel
-def follow_near(law: BlendedLaw, lam: float, y: float, notes: Notes, n: int, edges: Edges) -> Solution:
-    """Follow one impact near an edge in implicit steps, and note points of its path in row n.
-
-    The plate has all of the energy that is neither lost at the contact nor left to the sphere.
-    """
-    y = _shallow(law, y)
-    response, coupling, rate = edges.response[n], edges.coupling[n], edges.rate[n]
-    contact = near_edge.follow(law, response, lam, y, coupling, rate, near_edge.FINE, notes, n)
-    unit = math.sqrt(math.sqrt(y))
-    left = max(1.0 - 2.0 * y * y * math.sqrt(y) * force.deepest(law, contact.largest).loss, 0.0)
-    rebound = min(contact.restitution, math.sqrt(left))
-    wave = max(left - rebound * rebound, 0.0)
-    again = contact.stays or recall.comes_back(
-        response, contact.memory, coupling, rate / unit, contact.speed, lam * unit, contact.duration
-    )
-    edges.again[n] = 1.0 if again else 0.0
-    return _solution(
-        law,
-        y,
-        float(OK if contact.ended else TOO_MANY_STEPS),
-        rebound,
-        contact.loading_time / unit,
-        contact.duration / unit,
-        contact.largest,
-        lam,
-        wave / lam if lam > 0.0 else 0.0,
     )
 
 
@@ -227,7 +134,7 @@ def failure(status: Array) -> tuple[int, int]:
 
 
 def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) -> Solution:
-    """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
+    """Solve one impact: lam >= 0, finite, y = d_Y/(V0 T_H) > 0; rtol error per step."""
     solutions = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
     return Solution(*(each.item() for each in solutions))
 
@@ -235,7 +142,7 @@ def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) 
 def histories(law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None) -> None:
     """Contacts at the times of `out`, which rise to that of separation; beyond it the values stay."""
     notes = Notes(out.time, np.empty_like(out.time), out.impulse, out.force, out.compression)
-    lam, y, s = outcome.inelasticity, _scale(outcome.yield_ratio), outcome.strength
+    lam, y, s = outcome.inelasticity, outcome.yield_ratio, outcome.strength
     status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=s).status)
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
@@ -268,19 +175,13 @@ def elastic_compression(law: Array, lam: ArrayLike, strength: ArrayLike = 0.0) -
     return w_m if w_m.shape else w_m.item()
 
 
-def _scale(y: Array) -> Array:
-    """Yield ratios to solve with: 1 in place of inf, which an elastic law has."""
-    return np.where(y < math.inf, y, 1.0)
-
-
 def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None) -> tuple[int, int]:
     """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
-    y = _scale(out.yield_ratio)
     lam, s = out.inelasticity, out.strength
-    solutions = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
+    solutions = _run(TO_THE_END, law, lam, out.yield_ratio, rtol, few=few, edges=edges, strength=s)
     out.restitution[:], out.contact_time[:] = solutions.restitution, solutions.contact_time
     out.wave_rate[:] = solutions.wave_rate
     out.elastic_compression[:] = elastic_compression(law, lam, s)  # of an endless plate, near edges, too
@@ -316,16 +217,23 @@ def overload_at(
 
 
 @kernel(cache=True)
-def extremes(laws: Array, outcome: Outcome, out: Extremes) -> None:
-    """Peak force, residual compression and shares of the energy of impacts.
+def extremes(laws: Array, outcome: Outcome, out: Solution) -> None:
+    """Solutions of outcomes, with the peak force, residual compression and losses that follow from the law.
 
     Contacts that follow Hertz's law need no yield compression, which is inf for an elastic law.
     """
     leaves = force.leaves_hertz(force.at_strength(laws, 0.0))
-    for n in range(out.peak_force.size):
-        w, y = outcome.compression_ratio[n] * outcome.elastic_compression[n], outcome.yield_ratio[n]
-        found = Extremes(w * math.sqrt(w), 0.0, 0.0, 0.0)
-        if w > y * leaves:
-            found = _extremes(force.at_strength(laws, outcome.strength[n]), y, w / y)
+    for n in range(outcome.restitution.size):
+        deepest, y = outcome.compression_ratio[n] * outcome.elastic_compression[n], outcome.yield_ratio[n]
+        e, time, lam, rate = (
+            outcome.restitution[n],
+            outcome.contact_time[n],
+            outcome.inelasticity[n],
+            outcome.wave_rate[n],
+        )
+        found = Solution(0.0, e, math.nan, time, deepest * math.sqrt(deepest), deepest, 0.0, 0.0, lam * rate, 0.0, rate)
+        if deepest > y * leaves:
+            own = force.at_strength(laws, outcome.strength[n])
+            found = solution(own, y, True, e, math.nan, time, deepest / y, lam, rate)
         for k in range(len(found)):
             out[k][n] = found[k]

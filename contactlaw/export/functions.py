@@ -16,8 +16,8 @@ from contactlaw.equation import force, zener
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import at_strength
 from contactlaw.equation.notes import AT_TIMES, TO_THE_END, Notes
-from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, PlateConstants, numbers
-from contactlaw.equation.outcome import History
+from contactlaw.equation.numbers import Impact, Numbers, PairConstants, PlateConstants, mass_fits, numbers, solid_mass
+from contactlaw.equation.outcome import OK, History, Solution
 from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
 from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
@@ -191,8 +191,7 @@ def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadS
 @kernel
 def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
     """Spring of a bead on a plate, as steps take it."""
-    r = bead.radius
-    return tuple_of(Spring, bead, solid=pair.unit.mass * (r * r * r))
+    return tuple_of(Spring, bead, solid=solid_mass(pair.unit, bead.radius))
 
 
 @kernel
@@ -240,16 +239,13 @@ def solid(speed: float, radius: float, thickness: float) -> Impact:
 @kernel
 def of_mass(pair: Bodies, speed: float, radius: float, thickness: float, mass: float) -> Impact:
     """Impact of a bead of this mass [kg]."""
-    share = mass / (pair.constants.mass * (radius * radius * radius))
-    return Impact(speed, radius, thickness, share)
+    return Impact(speed, radius, thickness, mass / solid_mass(pair.constants, radius))
 
 
 @kernel
 def is_valid(impact: Impact) -> bool:
     """Whether an impact is one that the model is for."""
-    return (
-        V_MIN <= impact.speed <= V_MAX and fits(impact.radius, impact.thickness) and LIGHTEST <= impact.mass <= HEAVIEST
-    )
+    return V_MIN <= impact.speed <= V_MAX and fits(impact.radius, impact.thickness) and mass_fits(impact.mass)
 
 
 @kernel
@@ -259,7 +255,7 @@ def numbers_of(pair: Bodies, impact: Impact) -> Numbers:
 
 
 @kernel
-def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Solution:
+def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> Solution:
     """Integrate an impact to a goal."""
     none = np.empty((0, 0))
     own = at_strength(pair.law, units.strength)
@@ -268,9 +264,9 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
 
 
 @kernel
-def in_si(one: zener.Solution, units: Numbers, impact: Impact) -> Answer:
+def in_si(one: Solution, units: Numbers, impact: Impact) -> Answer:
     """Solution in SI units; NaN where the integration has not come to its end."""
-    if one.status != 0.0:
+    if one.status != OK:
         return NOTHING
     return Answer(
         one.restitution,

@@ -88,7 +88,7 @@ def _python(model: ImpactModel) -> str:
 
 def _kernels(model: ImpactModel) -> str:
     """Write the kernels of `page_functions` for a model, in JavaScript."""
-    weaker = min(body.strength or math.inf for body in (model.pair.sphere, model.pair.plate))
+    weaker = min(body.strength or math.inf for body in model.pair.bodies)
     page = Page(model.pair.effective_modulus, weaker, Validity.SLIDING_FLOW.value)
     program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies_of(model, None))
     asked = program.struct(Impact, dict.fromkeys(Impact._fields, DOUBLE))

@@ -142,7 +142,7 @@ def with_guesses(pair: Pair, data: Measurements, parameters: Iterable[Parameter]
             continue
         if one.is_strength:
             guess = math.sqrt(math.prod(bounds(one, pair, data)))
-            pair = with_numbers((pair.sphere, pair.plate), {(role, "yield_strength"): guess})
+            pair = with_numbers(pair.bodies, {(role, "yield_strength"): guess})
             continue
         if data.radius is None:
             remedy = f"give their radius, or Material(..., loss_factor=(a guess, frequency)) of the {role}"
@@ -216,4 +216,4 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
         else:
             size = sizes[one.name]
             sizes[one.name] = np.full(len(data), value) if size is None else size * (value / one.centre)
-    return Setting(with_numbers((pair.sphere, pair.plate), numbers), **sizes)
+    return Setting(with_numbers(pair.bodies, numbers), **sizes)

@@ -13,7 +13,8 @@ Legend: d compression, dm the largest so far, dr what remains of it, all in unit
 
 import numpy as np
 
-from contactlaw.laws._branches import Array, Unloading, bisect
+from contactlaw._bisect import bisect
+from contactlaw.laws._branches import Array, Unloading
 
 
 def share(dm: Array) -> Array:

@@ -63,7 +63,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from contactlaw.laws._branches import Array, Loading, Unloading, bisect
+from contactlaw._bisect import bisect
+from contactlaw.laws._branches import Array, Loading, Unloading
 from contactlaw.laws._law import Law
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity

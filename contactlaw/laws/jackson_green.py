@@ -22,9 +22,10 @@ import math
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from contactlaw._bisect import bisect
 from contactlaw._errors import ArgumentError
 from contactlaw.laws import _etsion
-from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, bisect
+from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading
 from contactlaw.laws._law import Law
 
 PARAMETERS = ("modulus_ratio", "poissons_ratio")

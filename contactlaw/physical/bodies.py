@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlaw._arrays import Array, Integers
 from contactlaw._errors import ArgumentError
-from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants
+from contactlaw.equation.numbers import HEAVIEST, LIGHTEST, Impact, Numbers, PairConstants, mass_fits, solid_mass
 from contactlaw.laws import Law
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair
@@ -55,7 +55,7 @@ class SphereOnPlate:
         impacts = Impacts.on_plates(speed, radius, thickness, *more, **named)
         if impacts.mass is not None:
             share = impacts.mass / self.solid_mass(impacts.radius)
-            for n in np.flatnonzero(~((share >= LIGHTEST) & (share <= HEAVIEST)))[:1].tolist():
+            for n in np.flatnonzero(~mass_fits(share))[:1].tolist():
                 raise _refused(impacts.mass[n], share[n], n if share.size > 1 else None)
         return impacts if impacts.wall is None else on_wall(self.pair.plate, impacts, memory)
 
@@ -70,7 +70,7 @@ class SphereOnPlate:
 
     def solid_mass(self, radius: Array) -> Array:
         """Mass of a solid sphere [kg]."""
-        return self.constants.mass * (radius * radius * radius)
+        return np.asarray(solid_mass(self.constants, radius))
 
     def mass(self, impacts: Impacts) -> Array:
         """Mass that answers at the contact of each impact [kg]."""

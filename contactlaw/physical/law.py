@@ -37,7 +37,7 @@ def law_of(pair: Pair, law: str | Law) -> Law:
 
 def _refuse_auxetic(pair: Pair, law: str) -> None:
     """Refuse negative Poisson's ratios if the law depends on them."""
-    for body in (pair.sphere, pair.plate):
+    for body in pair.bodies:
         if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
             raise ArgumentError(
                 "law",

@@ -207,7 +207,7 @@ def of(
     }
     check_finite(pair, impacts, found["impulse_ratio"], found["friction_energy"])
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
-    strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
+    strength = min(body.strength or math.inf for body in pair.bodies)
     flow = flows(strength, pair.effective_modulus, flat, friction, size, after)
     beyond: Integers = np.where(flow, int(Validity.SLIDING_FLOW), 0)
     flags = flat.flags | beyond

@@ -32,10 +32,11 @@ class Pair:
     7.43
     """
 
-    __slots__ = ("given", "plate", "sphere")
+    __slots__ = ("bodies", "given", "plate", "sphere")
 
     sphere: Material
     plate: Material
+    bodies: tuple[Material, Material]  # sphere and plate
     given: tuple[Material, Material]  # before the plate's modulus was carried
 
     def __init__(self, sphere: Material | str, plate: Material | str) -> None:
@@ -44,6 +45,7 @@ class Pair:
         self.given = self.sphere, self.plate
         if self.sphere.loss_factor and self.plate.loss_factor:
             self.plate = self.plate.at_frequency(self.sphere.loss_factor[1])
+        self.bodies = self.sphere, self.plate
 
     def __repr__(self) -> str:
         return f"Pair({self.sphere.name!r}, {self.plate.name!r})"
@@ -51,10 +53,10 @@ class Pair:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Pair):
             return NotImplemented
-        return (self.sphere, self.plate) == (other.sphere, other.plate)
+        return self.bodies == other.bodies
 
     def __hash__(self) -> int:
-        return hash((self.sphere, self.plate))
+        return hash(self.bodies)
 
     @property
     def effective_modulus(self) -> float:
@@ -68,8 +70,7 @@ class Pair:
         A contact of radius a has the tangential stiffness 8 G* a.
         """
         compliance = sum(
-            (2.0 - one.poissons_ratio) * 2.0 * (1.0 + one.poissons_ratio) / one.youngs_modulus
-            for one in (self.sphere, self.plate)
+            (2.0 - one.poissons_ratio) * 2.0 * (1.0 + one.poissons_ratio) / one.youngs_modulus for one in self.bodies
         )
         return 1.0 / compliance
 
@@ -98,7 +99,7 @@ class Pair:
         >>> round(cl.Pair(bead, "glass").loss_factor, 4), round(cl.Pair(bead, bead).loss_factor, 4)
         (0.0957, 0.1)
         """
-        compliance = sum(cmath.exp(-1j * one.loss_angle) / one.plane_modulus for one in (self.sphere, self.plate))
+        compliance = sum(cmath.exp(-1j * one.loss_angle) / one.plane_modulus for one in self.bodies)
         return -compliance.imag / compliance.real
 
     @property
@@ -139,5 +140,5 @@ class Pair:
         0.01248
         """
         if strength is None:
-            strength = min(body.strength or math.inf for body in (self.sphere, self.plate))
+            strength = min(body.strength or math.inf for body in self.bodies)
         return coefficient * (math.pi * strength / self.effective_modulus) ** 2

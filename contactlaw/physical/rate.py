@@ -63,7 +63,7 @@ def strengthened(pair: Pair, factor: float) -> Pair:
     """
     flow = leading(pair)
     rate = rate_at(flow, factor) if flow else 0.0
-    return Pair(*(_strengthened(body, rate) for body in (pair.sphere, pair.plate)))
+    return Pair(*(_strengthened(body, rate) for body in pair.bodies))
 
 
 def rate_at(flow: Flow, factor: float) -> float:
@@ -73,7 +73,7 @@ def rate_at(flow: Flow, factor: float) -> float:
 
 def flows(pair: Pair) -> list[Flow]:
     """Flows of the bodies that impacts strengthen; none if no impact of a table strengthens any."""
-    known = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
+    known = [body.flow for body in pair.bodies if body.flow is not None]
     if max((largest_factor(flow) for flow in known), default=1.0) == 1.0:
         return []
     return [flow for flow in known if largest_factor(flow, REACH) > 1.0]

@@ -106,10 +106,9 @@ def rebound(
     zener.extremes(bodies.data, outcome, found)
     inelasticity, yield_ratio = unclamped
     scale, radius, thickness = impacts.speed * time, impacts.radius, impacts.thickness
-    contact_time = outcome.contact_time * time
-    deepest = outcome.compression_ratio * outcome.elastic_compression * scale
+    contact_time, deepest = found.contact_time * time, found.peak_compression * scale
     force = found.peak_force * (bodies.mass(impacts) * impacts.speed / time)
-    shares = found.plastic_fraction, outcome.inelasticity * outcome.wave_rate, found.other_fraction
+    shares = found.plastic_fraction, found.wave_fraction, found.other_fraction
     if interpolated:
         factor = outcomes.balance(outcome.restitution, sum(shares))
         shares = tuple(share * factor for share in shares)

@@ -30,7 +30,7 @@ from contactlaw.physical.responses import response_of
 from contactlaw.table.lookup import R_MIN
 
 
-def plate_mobility(plate: Material, thickness: Array) -> Array:
+def plate_mobility(plate: Material, thickness: Any) -> Any:
     """Speed of an infinite plate under a point force, per force [m/(s N)]; 0 for a half-space.
 
     alpha = sqrt(3 rho2 (1 - nu2^2)/E2)/(4 rho2 H^2) = 1/(8 sqrt(D rho2 H)), D = E2' H^3/12
@@ -39,8 +39,7 @@ def plate_mobility(plate: Material, thickness: Array) -> Array:
     wave_speed = math.sqrt(plate.plane_modulus / plate.density)
     with np.errstate(over="ignore"):  # a plate of 1e200 m is a half-space
         area = np.square(thickness)
-    mobility: Array = math.sqrt(3.0) / (4.0 * plate.density * wave_speed * area)
-    return mobility
+    return math.sqrt(3.0) / (4.0 * plate.density * wave_speed * area)
 
 
 def _yield_compression(pair: Pair, law: Law) -> float:
@@ -62,13 +61,8 @@ def yield_share(pair: Pair, law: Law) -> float:
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
     """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
     compression = pair.yield_share(coefficient, pair.sphere.require_yield_strength("measured")) * radius
-    return compression, _stiffness(pair, np.array(radius)).item() * compression**1.5
-
-
-def _stiffness(pair: Pair, radius: Array) -> Array:
-    """K of Hertz's law F = K d^1.5 for bodies of this reduced radius [N/m^1.5]."""
-    stiffness: Array = 4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius)
-    return stiffness
+    stiffness = 4.0 / 3.0 * pair.effective_modulus * math.sqrt(radius)  # K in F = K d^1.5
+    return compression, stiffness * compression**1.5
 
 
 def constants_of(pair: Pair, law: Law) -> PairConstants:
@@ -76,7 +70,7 @@ def constants_of(pair: Pair, law: Law) -> PairConstants:
     return PairConstants(
         plate=_plate_constants(pair, law),
         time=unit_time(pair),
-        mass=sphere_mass(pair.sphere.density, np.ones(())).item(),
+        mass=sphere_mass(pair.sphere.density, 1.0),
         yield_compression=_yield_compression(pair, law),
     )
 
@@ -97,8 +91,7 @@ def reduced(pair: Pair, radius: Array, other_radius: Array) -> tuple[Array, Arra
 
 def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
     """Constants of a pair's plates, at 1 m/s and R = H; they are the same for all sizes."""
-    one = np.ones(())
-    mass, time = sphere_mass(pair.sphere.density, one).item(), unit_time(pair)
+    mass, time = sphere_mass(pair.sphere.density, 1.0), unit_time(pair)
     corrections = THIN
     if law.waves is not None:
         share = pair.effective_modulus / pair.plate.plane_modulus
@@ -108,7 +101,7 @@ def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
     # beyond yield the force grows no faster than the compression
     most = SATURATION * SATURATION * _yield_compression(pair, law) / time
     return PlateConstants(
-        inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
+        inelasticity=float(plate_mobility(pair.plate, 1.0)) * mass / time,
         transit=math.sqrt(pair.plate.density / shear) / CONTACT_TIME / time,  # of a shear wave
         x_at_one=math.sqrt(time),
         saturated=most**0.25,

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._arrays import Array
+from contactlaw._bisect import bisect
 from contactlaw.equation import force
 from contactlaw.laws import Law, Strengths, fem
-from contactlaw.laws._branches import bisect
 from contactlaw.laws._expansion import Resolution, expanded, packed
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
@@ -99,7 +99,7 @@ def _given(pair: Pair, log_factor: float) -> fem.Given:
     """Numbers of the law at a factor: only the strengths change, and hardening is relative to them."""
     slow, flow = _slow(pair), rate.leading(pair)
     at = rate.rate_at(flow, math.exp(log_factor)) if flow else 0.0
-    factors = [body.flow.factor(at) if body.flow else 1.0 for body in (pair.sphere, pair.plate)]
+    factors = [body.flow.factor(at) if body.flow else 1.0 for body in pair.bodies]
     return slow._replace(sphere_ratio=slow.sphere_ratio / factors[0], plate_ratio=slow.plate_ratio / factors[1])
 
 

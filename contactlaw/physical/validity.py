@@ -297,12 +297,11 @@ class Limits(NamedTuple):
 
 def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
-    bodies = pair.sphere, pair.plate
-    sphere, plate = strengths = [body.strength or math.inf for body in bodies]
+    sphere, plate = strengths = [body.strength or math.inf for body in pair.bodies]
     taken = bool(law.parameters.get("loss_factor"))  # whether the law has the pair's losses
-    unknown = any(body.is_polymer and not (taken and body.loss_factor) for body in bodies)
+    unknown = any(body.is_polymer and not (taken and body.loss_factor) for body in pair.bodies)
     rate = unknown * Validity.RATE_DEPENDENT
-    flowing = [body for body in bodies if min(strengths) > ALONE * (body.strength or math.inf)]
+    flowing = [body for body in pair.bodies if min(strengths) > ALONE * (body.strength or math.inf)]
     bound = any(body.strength_from_hardness and body.hardening is None for body in flowing)
     on_yield = bound * Validity.FROM_HARDNESS
     common = {
@@ -316,7 +315,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         ratios = [pair.effective_modulus / (body.strength or math.inf) for body in flowing]
         known = all(RATIOS[0] <= ratio <= _SOFTEST for ratio in ratios)
         most = _STIFFEST_SPHERE if flowing == [pair.sphere] else _STIFFEST
-        most *= min(body.plane_modulus for body in bodies)
+        most *= min(body.plane_modulus for body in pair.bodies)
         known &= all(body.plane_modulus <= most for body in flowing)
         untried = (not known) * Validity.UNTRIED_STRENGTH
         hardens = any(body.flow is not None and body.flow.hardening for body in flowing)
@@ -428,7 +427,7 @@ def _damage(pair: Pair) -> float:
     p0 = (6 F E*^2/(pi^3 R^2))^(1/3). If the other body yields, it limits the pressure.
     """
     least = math.inf
-    for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
+    for body, other in (pair.bodies, pair.bodies[::-1]):
         pressure = _bearable(body)
         if pressure < math.inf and (other.strength or math.inf) * _HARDNESS > pressure / 1.5:
             least = min(least, math.pi**3 * pressure**3 / (6.0 * pair.effective_modulus**2))

@@ -72,7 +72,7 @@ class Bodies(NamedTuple):
     @property
     def materials(self) -> tuple[Material, Material]:
         """Material of the bead, and of what it has hit."""
-        return self.pair.sphere, self.pair.plate
+        return self.pair.bodies
 
 
 def bodies_of(model: Any) -> Bodies:
@@ -426,9 +426,8 @@ def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
         if not np.array_equal(surface.corners, two.surface.corners):
             raise ValueError(f"{path}: is of another run: its walls are others")
         triangle = np.concatenate([surface.triangle, two.surface.triangle])
-        points = surface.point, two.surface.point
-        known = [each for each in points if each is not None]
-        point = np.concatenate(known) if len(known) == len(points) else None
+        known = [each for each in (surface.point, two.surface.point) if each is not None]
+        point = np.concatenate(known) if len(known) > 1 else None
         surface = surface._replace(triangle=triangle, point=point)
     bodies = [*one.bodies, *(each for each in two.bodies if each not in one.bodies)]
     number = np.array([*(bodies.index(each) for each in two.bodies), -1])

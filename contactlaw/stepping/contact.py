@@ -26,7 +26,7 @@ from contactlaw.stepping.bounce import bounce
 from contactlaw.stepping.edge import REACH, EdgeEcho, place_of
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.loads import bear
-from contactlaw.stepping.plate_rows import SOLID, limits_of, solid_mass, spring_of
+from contactlaw.stepping.plate_rows import SOLID, limits_of, modelled_mass, spring_of
 from contactlaw.stepping.rigid import answer
 from contactlaw.stepping.softened import (
     BOUNCING,
@@ -268,7 +268,7 @@ def _begin(
     row.arrival = ON_EDGE if _over_edge(scene, bead, contact) else FREE
     if contact.touching and _presses_elsewhere(bead, k):
         row.arrival = SLIDING
-    solid = solid_mass(plate_row, bead.r)
+    solid = modelled_mass(plate_row, bead.r)
     if not (contact.of_body or abs(bead.mass - solid) <= SOLID * solid):
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, solid)
     if u > 0.0:

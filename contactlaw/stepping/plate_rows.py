@@ -17,7 +17,7 @@ from contactlaw._arrays import Places, Rows
 from contactlaw._jit import kernel, tuple_of
 from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
-from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
+from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain, solid_mass
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.plates import (
@@ -169,9 +169,9 @@ def spring_of(row: Any, r: float, parcel: float, bending: float, mass: float) ->
 
 
 @kernel
-def solid_mass(row: Any, r: float) -> float:
+def modelled_mass(row: Any, r: float) -> Any:
     """Mass of a solid sphere of the row's material [kg]; NaN where there is no model."""
-    return row.mass * r * r * r if row.law != 0 else math.nan
+    return solid_mass(row, r) if row.law != 0 else math.nan
 
 
 @kernel

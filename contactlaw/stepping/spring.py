@@ -141,7 +141,7 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         mass=known.mass,
         solid=known.mass,
         stiffness=stiffness,
-        mobility=float(plate_mobility(model.pair.plate, np.array(thickness))),
+        mobility=float(plate_mobility(model.pair.plate, thickness)),
         scale=scale if scale < math.inf else 1.0,
         relaxation=RELAXATION * CONTACT_TIME * (known.mass / stiffness) ** 0.4,  # at 1 m/s
         ratio=np.float64(1.0) / thickness,  # whose reciprocal may be inf without the compiler

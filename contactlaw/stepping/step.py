@@ -18,7 +18,7 @@ from contactlaw.physical.vectors import divided, norm, scaled, vector
 from contactlaw.stepping.bead import MOST_CONTACTS, apply_walls, touches
 from contactlaw.stepping.contact import CONTACT, Bead, Clock, WallScene, clear_contact
 from contactlaw.stepping.friction import FRICTION
-from contactlaw.stepping.plate_rows import SOLID, solid_mass
+from contactlaw.stepping.plate_rows import SOLID, modelled_mass
 from contactlaw.stepping.rigid import BODY
 from contactlaw.stepping.trouble import Trouble
 from contactlaw.walls.facet import Point
@@ -176,7 +176,7 @@ def _look_at_all(scene: WallScene, run: Any, clock: Clock, beads: Beads) -> None
             # `_check` misses a bead that has become so small that no wall is near it.
             fail(run, head, tag, Trouble.RESIZED.value, -1, size, head.radius)
             _forget(head, bead)
-        body, solid = body_of(beads.bodies, i), solid_mass(row, size)
+        body, solid = body_of(beads.bodies, i), modelled_mass(row, size)
         free = body is None or len(body) == 0 or body[0].inverse_mass == 0.0  # a part of a body may have any mass
         if free and head.radius == 0.0 and abs(bead.mass - solid) > SOLID * solid:  # `_check` has the others
             fail(run, head, tag, Trouble.WRONG_MASS.value, -1, bead.mass, solid)

@@ -75,7 +75,7 @@ def measured(law: Law, rtol: float, packed: Array, histories: Array | None, poin
         raise ArgumentError("seed", seed, "must not be negative")
     numbers, rtol = random_points(Grid.of(packed), points, np.random.default_rng(seed)), _FINER * rtol
     looked, exact = outcome.at(*numbers), outcome.at(*numbers)
-    sweep.solve(law, exact, rtol)
+    sweep.solve(law, exact, rtol, lambda part: part)
     lookup.fields(packed, True, looked)  # rounding may put points at the border outside
     errors, ours = {}, _named(law, looked, True)
     for name, values in _named(law, exact, False).items():

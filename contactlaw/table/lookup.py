@@ -386,7 +386,7 @@ def _write_places(
 def _find(table: Array, head: Head, hit: Impact, start: int, k: Array, s: Array) -> int:
     """Find the places of a chunk of impacts, and those of their strengths; return how many there are."""
     rated, thin, usual = head.axes.rungs > 1.0, is_thin(head.plate.corrections), not relaxes(head.plate)
-    count = min(hit.speed.size - start, _CHUNK)
+    count: int = min(hit.speed.size - start, _CHUNK)
     if rated:
         for i in range(count):
             s[i] = strength_at(head.axes, hit.speed[start + i], hit.radius[start + i])

@@ -22,7 +22,7 @@ import numpy as np
 from contactlaw._arrays import Array
 from contactlaw._jit import kernel
 from contactlaw.equation import force, zener
-from contactlaw.equation.notes import cubic
+from contactlaw.equation.notes import coefficients, cubic
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, sweep
@@ -74,10 +74,11 @@ def sample(law: Array, shapes: Array, found: Outcome, out: History) -> None:
         for k in range(SIZE + 1):
             span, rise = t[k + 1] - t[k], u[k + 1] - u[k]
             rate, last = -span * f[k], -span * f[k + 1]
+            c2, c3 = coefficients(rise, rate, last)
             before, after = span * (u[k] - lam * f[k]), span * (u[k + 1] - lam * f[k + 1])
             while i < samples and (out.time[n, i] < t[k + 1] or k == SIZE):
                 z = (out.time[n, i] - t[k]) / span
-                slope = rate + z * (2.0 * (3.0 * rise - 2.0 * rate - last) + 3.0 * z * (rate + last - 2.0 * rise))
+                slope = rate + z * (2.0 * c2 + 3.0 * z * c3)
                 out.force[n, i] = max(-slope / span, 0.0) + 0.0  # without the sign of -0.0
                 out.impulse[n, i] = 1.0 - u[k] - cubic(rise, rate, last, z)
                 out.compression[n, i] = max(d[k] + cubic(d[k + 1] - d[k], before, after, z), 0.0)

@@ -16,7 +16,7 @@ _T = TypeVar("_T")
 _PART = 250  # points that a thread solves at a time
 
 
-def solve(law: Law, out: Outcome, rtol: float, values: Callable[[Outcome], _T] = lambda part: part) -> list[_T]:
+def solve(law: Law, out: Outcome, rtol: float, values: Callable[[Outcome], _T]) -> list[_T]:
     """Solve impacts at many points; return what follows from each part of them.
 
     A bar appears on a terminal once it has taken a second.

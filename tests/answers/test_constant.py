@@ -58,13 +58,6 @@ def test_weights_are_repetitions(model):
     assert grid == model.constant([1.0, 5.0, 9.0] * 2, np.repeat([0.5e-3, 0.9e-3], 3), H, weights=[0.2] * 3 + [0.8] * 3)
 
 
-def test_nothing_is_lost_on_a_half_space_below_yield(pair):
-    best = cl.ImpactModel(pair, law="hertz").constant([1.0, 5.0], R, math.inf)
-    assert best.restitution == pytest.approx(1.0, abs=1e-12)
-    assert (best.energy_error, best.mean_energy_error) == (0.0, 0.0)
-    assert best.rebound_error < 1e-12
-
-
 @pytest.mark.parametrize(
     ("e", "name", "error"),
     [

@@ -85,16 +85,15 @@ def test_tangential_answers_near_an_edge():
 
 
 def test_what_is_flagged():
-    plate, contact = H, STEEL.solve(SPEED, R, H, edge_distance=0.999 * H)
-    assert contact.flags == Validity.NEAR_EDGE
-    assert STEEL.solve(SPEED, R, H, edge_distance=1.001 * plate).flags == 0
+    assert STEEL.solve(SPEED, R, H, edge_distance=0.999 * H).flags == Validity.NEAR_EDGE
+    assert STEEL.solve(SPEED, R, H, edge_distance=1.001 * H).flags == 0
     light = cl.ImpactModel(cl.Pair("glass", "bearing-steel-52100"))
-    speed, radius, thin = 150.0, R, 0.35e-3  # two radii of the contact are more than the thickness
-    far = light.solve(speed, radius, thin, edge="supported", edge_distance=1e-3)
-    wide = 2.0 * math.sqrt(radius * far.peak_compression)
+    speed, thin = 150.0, 0.35e-3  # two radii of the contact are more than the thickness
+    far = light.solve(speed, R, thin, edge="supported", edge_distance=1e-3)
+    wide = 2.0 * math.sqrt(R * far.peak_compression)
     assert wide > 1.1 * thin
     for distance, flagged in ((0.8 * wide, True), (1.2 * wide, False)):
-        found = light.solve(speed, radius, thin, edge="supported", edge_distance=distance)
+        found = light.solve(speed, R, thin, edge="supported", edge_distance=distance)
         assert bool(found.flags & Validity.NEAR_EDGE) is flagged
 
 

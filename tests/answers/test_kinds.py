@@ -18,15 +18,16 @@ FIELDS = [name for name in cl.Rebound.__dataclass_fields__ if name != "flags"]
 @pytest.mark.parametrize("kind", kinds.params())
 def test_tables_are_certified(kind):
     model, given = kinds.model(kind), kinds.impacts(kind)
-    found, exact = model.lookup(*given), model.solve(*given)
+    found, exact = model.lookup(*given), model.solve(*given, rtol=1e-10)
     assert found.restitution.size >= 80 and np.ptp(found.restitution) > 0.05
     rated, most = kind in kinds.RATED, bounds(model.force_law)
     for field in FIELDS:
         ours, true = getattr(found, field), getattr(exact, field)
         scale = 1.0 if field == "restitution" or "fraction" in field else np.maximum(np.abs(true), 0.01 * true.max())
         assert (np.abs(ours - true) <= most.get(field, 5e-4 if rated else 1e-5) * scale).all(), field
-    shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
-    assert np.abs(shares + found.restitution**2 - 1.0).max() < 1e-12
+    for hit, error in ((found, 1e-12), (exact, 1e-7)):
+        shares = np.array([values for name, values in vars(hit).items() if name.endswith("_fraction")])
+        assert np.abs(shares.sum(axis=0) + hit.restitution**2 - 1.0).max() < error and (shares >= 0.0).all()
     assert np.count_nonzero(found.flags != exact.flags) <= (2 if rated else 0)  # some lie on a limit
     some = [values[:20] for values in given]
     history, solved = (model.force_history(*some, samples=65, method=how) for how in ("table", "solve"))
@@ -42,9 +43,7 @@ def test_all_entries_have_one_cor(kind):
     given = list(zip(v.tolist(), r.tolist(), h.tolist(), strict=True))
     pointer = ctypes.CFUNCTYPE(*[ctypes.c_double] * 4)(model.address)
     assert model.restitution(v, r, h) == expected
-    twin = pickle.loads(pickle.dumps(model))
-    assert (twin.pair, twin.force_law, twin.law, twin.outside) == (model.pair, model.force_law, model.law, "raise")
-    for entry in (model.restitution, model.kernel, pointer, twin.restitution):
+    for entry in (model.restitution, model.kernel, pointer, pickle.loads(pickle.dumps(model)).restitution):
         assert np.array([entry(*at) for at in given]) == expected
     assert np.array([model.curve(b, c)(a) for a, b, c in given]) == expected
     outside = (-1.0, R, R), (math.nan, R, R), (5.0, 0.0, R), (5.0, R, -R), (1e4, R, R)

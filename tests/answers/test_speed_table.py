@@ -44,26 +44,30 @@ def test_no_choice_has_less_than_half_of_the_rows(curve, error):
     assert len(rows) - 2 <= (fewest if curve in ("root", "corner") else 2 * fewest)
 
 
-@pytest.mark.parametrize("law", laws.names())
-def test_straight_lines_are_within_the_error(law):
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law=law)
-    rows = model.speed_table(1e-3, 2e-3, error=2e-3, slowest=0.05, fastest=5.0)
-    v = np.geomspace(0.05, 5.0, 200_001)
-    miss = np.abs(np.interp(v, *rows[:2]) - model.restitution(v, 1e-3, 2e-3))
-    assert miss.max() <= 2e-3 + 1e-9
-    assert rows.error == pytest.approx(miss.max(), rel=1e-3)
+STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+
+
+@pytest.mark.parametrize(
+    ("pair", "law", "thickness", "error", "ends", "bound"),
+    [
+        *((STEEL, law, 2e-3, 2e-3, (0.05, 5.0), 2e-3 + 1e-9) for law in laws.names()),
+        # measured at the candidate speeds alone, the error would reach 1.0013e-5 between them
+        (STEEL, "fem", 0.5e-3, 1e-5, (0.1, 10.0), 1.0001e-5),
+        # with a corner of the COR at the border of the table
+        (cl.Pair("gamma-alumina", "glass"), "myc", R, 1e-4, (1e-29, 1e5), 1.1e-4),
+    ],
+)
+def test_straight_lines_are_within_the_error(pair, law, thickness, error, ends, bound):
+    model = cl.ImpactModel(pair, law, outside="clamp")
+    rows = model.speed_table(R, thickness, error, *ends)
+    v = np.geomspace(*ends, 300_007)
+    miss = np.abs(np.interp(v, *rows[:2]) - model.restitution(v, R, thickness)).max()
+    assert miss <= bound
+    assert rows.error == pytest.approx(miss, rel=bound / error - 1.0 + 1e-3)
     # In a longer array compiled code may round the last digit differently.
-    own = model.restitution(rows.speed, 1e-3, 2e-3)
+    own = model.restitution(rows.speed, R, thickness)
     assert rows.restitution.tolist() == pytest.approx(own.tolist(), rel=1e-15, abs=0.0)
-    assert (rows.speed[0], rows.speed[-1]) == (0.05, 5.0)
-
-
-def test_the_error_is_measured_between_the_speeds_too():
-    """Measured at the candidate speeds alone, the error would reach 1.0013e-5 between them."""
-    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law="fem")
-    rows = model.speed_table(R, 0.5e-3, error=1e-5)
-    v = np.geomspace(0.1, 10, 200_001)
-    assert np.abs(np.interp(v, *rows[:2]) - model.restitution(v, R, 0.5e-3)).max() <= 1.0001e-5
+    assert (rows.speed[0], rows.speed[-1]) == ends
 
 
 def test_tables_of_one_plate(model):
@@ -76,11 +80,3 @@ def test_tables_of_one_plate(model):
     assert model.speed_table(R, H).flags == {}
     fast = model.speed_table(R, H, fastest=60.0)
     assert fast.flags == {cl.Validity.FAST_IMPACT: int((fast.speed > 7 * 7.4265).sum())}
-
-
-def test_a_range_may_be_wide():
-    """Over 34 decades, with a corner of the COR at the border of the table."""
-    clamping = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", outside="clamp")
-    speeds, restitutions = clamping.speed_table(1e-3, 1e-3, 1e-4, 1e-29, 1e5)[:2]
-    v = np.geomspace(1e-29, 1e5, 300_007)
-    assert np.abs(np.interp(v, speeds, restitutions) - clamping.restitution(v, 1e-3, 1e-3)).max() <= 1.1e-4

@@ -20,59 +20,66 @@ def known_to(body, **errors):
     return dataclasses.replace(cl.material(body) if isinstance(body, str) else body, uncertainty=errors)
 
 
-STEEL = cl.Material("steel", 207e9, 0.3, 7800, 4e8, kind="metal")
 COPPER = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", hardening=(292e6, 0.31), rate=(0.025, 1.0))
-ELASTIC = {"youngs_modulus": 0.05, "poissons_ratio": 0.05, "density": 0.02}
-CERAMIC = cl.Material("ceramic", 300e9, 0.22, 3900, kind="ceramic", uncertainty=ELASTIC)
-UNCERTAIN = {
-    "steel": known_to(STEEL, **ELASTIC, yield_strength=0.2),
-    "ceramic": CERAMIC,
-    "hardening": known_to(dataclasses.replace(COPPER, rate=None), **ELASTIC, yield_strength=0.1, hardening=0.15),
-}
+HARD = cl.Material("hard", 124e9, 0.34, 8960, kind="metal", hardness=1e9, hardening=0.3)
+
+
+def random_body(rng, yields):
+    """A metal or a ceramic with errors; of the metals some harden, and of these half have a rate."""
+    modulus = math.exp(rng.uniform(math.log(60e9), math.log(400e9)))
+    numbers = {"youngs_modulus": modulus, "poissons_ratio": rng.uniform(0.2, 0.35), "density": rng.uniform(2300, 8500)}
+    errors = {"youngs_modulus": rng.choice([0.02, 0.05, 0.15]), "poissons_ratio": 0.05, "density": 0.02}
+    if yields:
+        strength = modulus * math.exp(-rng.uniform(5.0, 7.3))
+        numbers["yield_strength"], errors["yield_strength"] = strength, rng.choice([0.05, 0.1, 0.2, 0.3])
+        if rng.random() < 0.15:
+            numbers["hardening"] = strength * rng.uniform(0.3, 2.0), rng.uniform(0.2, 0.6)
+            errors["hardening"] = 0.15
+            if rng.random() < 0.5:
+                numbers["rate"], errors["rate"] = (rng.uniform(0.01, 0.05), 1.0), 0.2
+    return cl.Material("random", kind="metal" if yields else "ceramic", uncertainty=errors, **numbers)
 
 
 def drawn(body, deviates):
     """Take an error of each number of a body from the front of a list."""
     for name, error in body.uncertainty.items():
-        value, factor = getattr(body, name), math.exp(error * deviates.pop(0))
+        value, factor, flow = getattr(body, name), math.exp(error * deviates.pop(0)), body.flow
+        if name == "hardening" and isinstance(value, float):  # it follows from a hardness
+            body, value = dataclasses.replace(body, yield_strength=flow.strength), (flow.hardening, value)
         value = (factor * value[0], value[1]) if isinstance(value, tuple) else factor * value
         body = dataclasses.replace(body, **{name: value})
     return body
 
 
-@pytest.mark.parametrize(
-    ("bead", "plate", "speed", "thickness", "size_errors"),
-    [
-        ("steel", "ceramic", 3.0, 1.5e-3, (0.02, 0.02, 0.05)),
-        ("ceramic", "hardening", 5.0, INF, (0.0, 0.02, 0.05)),
-        ("steel", "steel", 0.1, 0.8e-3, (0.1, 0.0, 0.05)),
-        ("ceramic", "steel", "next to yield", 1.5e-3, (0.0, 0.0, 0.0)),
-    ],
-    ids=["ideal", "half-space", "both bodies", "next to yield"],
-)
-def test_the_band_is_that_of_random_pairs(bead, plate, speed, thickness, size_errors):
-    """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""
-    pair, radius = cl.Pair(UNCERTAIN[bead], UNCERTAIN[plate]), 1e-3
-    model = cl.ImpactModel(pair)
-    if speed == "next to yield":
-        speed = 1.1 * model.yield_speed(radius, thickness)
-    same = bead == plate  # one material errs alike in both bodies
-    count = len(pair.sphere.uncertainty) + (0 if same else len(pair.plate.uncertainty))
-    hits, deviates = [], norm.ppf(qmc.Sobol(count + 4, rng=3).random(512))
+@pytest.mark.parametrize("seed", [11, 25, 36, *(pytest.param(n, marks=pytest.mark.long) for n in range(50, 100))])
+def test_the_band_is_that_of_random_pairs(seed):
+    """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones.
+
+    Every third pair is next to yield, where the COR has a corner and twice as many are needed. Every fifth has one
+    material, which errs alike in both bodies.
+    """
+    rng, radius = np.random.default_rng(seed), 1e-3
+    sphere, plate = random_body(rng, seed % 3 == 0 or rng.random() < 0.75), random_body(rng, rng.random() < 0.4)
+    pair = cl.Pair(sphere, sphere if seed % 5 == 0 else plate)
+    model, thickness = cl.ImpactModel(pair), radius * rng.choice([0.4, 0.8, 1.5, 3.0, 10.0, INF])
+    speed = math.exp(rng.uniform(-3.0, 2.1))
+    if seed % 3 == 0:
+        speed = model.yield_speed(radius, max(thickness, 0.8e-3)) * math.exp(rng.uniform(-0.35, 0.35))
+    errors = {"speed_error": rng.choice([0.0, 0.02, 0.1]), "radius_error": rng.choice([0.0, 0.02])}
+    errors["thickness_error"] = rng.choice([0.0, 0.05])
+    hits, deviates = [], norm.ppf(qmc.Sobol(16, rng=3).random(1024 if seed % 3 == 0 else 512))
     for row in deviates:
-        left = list(row[:count])
-        sphere = drawn(pair.sphere, left)
-        other = cl.ImpactModel(cl.Pair(sphere, sphere if same else drawn(pair.plate, left)))
-        hit = other.solve(*(np.exp(row[count : count + 3] * size_errors) * [speed, radius, thickness]), rtol=1e-8)
+        left, sizes = list(row[4:]), np.exp(row[:3] * [*errors.values()]) * [speed, radius, thickness]
+        bead = drawn(sphere, left)
+        other = cl.ImpactModel(cl.Pair(bead, bead if pair.plate == sphere else drawn(plate, left)))
+        hit = other.solve(*sizes)
         hits.append([hit.restitution, hit.contact_time, hit.peak_force])
-    flat = cl.Rebound(**{name: np.ravel(one) for name, one in vars(model.solve(speed, radius, thickness)).items()})
-    law = law_errors.law_errors(model.force_law, pair, flat, np.array([radius / thickness]))
-    wide = np.array(hits) + law.T * deviates[:, -1:]
+    hit = model.solve([speed], radius, thickness)
+    law = law_errors.law_errors(model.force_law, pair, hit, np.array([radius / thickness]))
+    wide = np.array(hits) + law.T * deviates[:, 3:4]
     wide[:, 0] = np.clip(wide[:, 0], 0.0, 1.0)
     low, high = np.quantile(wide, norm.cdf([-1.0, 1.0]), axis=0)
-    names = "speed_error", "radius_error", "thickness_error"
-    bands = model.uncertainty(speed, radius, thickness, **dict(zip(names, size_errors, strict=True)))
-    for n, band in enumerate(vars(bands).values()):
+    for n, band in enumerate(vars(model.uncertainty(speed, radius, thickness, **errors)).values()):
         off = np.abs([band.low - low[n], band.high - high[n]]) / (0.5 * (high[n] - low[n]))
         assert off.max() < 0.15, n
 
@@ -87,55 +94,46 @@ def test_without_errors_only_the_law_is_uncertain():
 
 
 @pytest.mark.parametrize(
-    ("body", "number", "error", "within"),
+    ("bead", "plate", "number", "error", "within"),
     [
-        ("stainless-steel-304", "yield_strength", 0.2, 1e-5),
-        (COPPER, "hardening", 0.15, 1e-4),
-        (COPPER, "rate", 0.3, 2e-3),
+        ("stainless-steel-304", "glass", "yield_strength", 0.2, 1e-5),
+        ("stainless-steel-304", "stainless-steel-304", "yield_strength", 0.2, 1e-5),
+        (COPPER, "glass", "hardening", 0.15, 1e-4),
+        (COPPER, "glass", "rate", 0.3, 2e-3),
+        (HARD, "glass", "hardness", 0.1, 1e-5),
+        (HARD, "glass", "hardening", 0.1, 1e-5),
     ],
-    ids=["strength", "hardening", "rate"],
 )
-def test_one_number_alone_makes_the_band_of_its_ends(body, number, error, within):
-    bead = known_to(body, **{number: error, "density": 0.0})
-    at = 3.0, 1e-3, [2e-3, INF]
-    cor = cl.ImpactModel(cl.Pair(bead, "glass")).uncertainty(*at).restitution
-    cause = f"{number.replace('_', ' ')} of the bead"
+def test_one_number_alone_makes_the_band_of_its_ends(bead, plate, number, error, within):
+    """One material errs alike in both bodies. Other numbers may follow from a hardness."""
+    known, at = known_to(bead, **{number: error, "density": 0.0}), (3.0, 1e-3, [2e-3, INF])
+
+    def model(body):
+        return cl.ImpactModel(cl.Pair(body, body if plate == bead else plate))
+
+    cor = model(known).uncertainty(*at).restitution
+    cause = f"{number.replace('_', ' ')} of {'both bodies' if plate == bead else 'the bead'}"
     assert list(cor.causes) == [cause, "model"]
-    low, high = (cl.ImpactModel(cl.Pair(drawn(bead, [z, 0.0]), "glass")).solve(*at).restitution for z in (-1.0, 1.0))
+    low, high = (model(drawn(known, [z, 0.0])).solve(*at).restitution for z in (-1.0, 1.0))
     width = 0.5 * abs(high - low)
     assert cor.causes[cause] == pytest.approx(width, rel=within)
-    if body is not COPPER:
+    if number not in ("hardening", "rate"):
         assert 0.5 * (cor.high - cor.low) == pytest.approx(np.hypot(width, cor.causes["model"]), rel=0.02)
 
 
-def test_one_material_errs_alike_in_both_bodies():
-    steel = known_to(STEEL, yield_strength=0.2)
-    alike, apart = (range_of(steel, plate, 2.0) for plate in (steel, dataclasses.replace(steel, name="other")))
-    assert list(alike.causes) == ["yield strength of both bodies", "model"]
-    parts = [apart.causes[f"yield strength of {body}"] for body in ("the bead", "the plate")]
-    assert alike.causes["yield strength of both bodies"] == pytest.approx(sum(parts), rel=0.1)
-    assert apart.high - apart.low < 0.9 * (alike.high - alike.low)
+def rms(impacts):
+    errors = np.array([one.errors[:3] for one in impacts])
+    return np.sqrt(np.mean(errors**2, axis=0))
 
 
-def test_a_number_that_follows_from_the_hardness_has_an_error_too():
-    errors = {"hardness": 0.1, "hardening": 0.1}
-    body = cl.Material("h", 124e9, 0.34, 8960, kind="metal", hardness=1e9, hardening=0.3, uncertainty=errors)
-    causes = range_of(body, "glass", 3.0).causes
-    assert causes["hardness of the bead"] > causes["hardening of the bead"] > 0.01
-
-
-def test_the_stated_errors_of_metals_that_harden_are_those_beside_finite_elements():
-    found = [one for name in ("metals", "bodies") for one in acceptance.rows([name])[name].counted]
-    rms = np.sqrt(np.mean(np.array([one.errors[:3] for one in found]) ** 2, axis=0))
-    assert rms == pytest.approx(law_errors.HARDENING_ERRORS, rel=0.01)
-
-
-def test_the_stated_errors_of_soft_bodies_are_those_beside_finite_elements():
-    """Bodies as soft as lead, which no fit has seen."""
-    found = acceptance.members(acceptance.TARGETS["bodies"]._replace(studies=("bodies_soft",)))
-    errors = np.array([one.errors[:3] for one in found if not one.flagged])  # one bends its plate
-    assert np.sqrt(np.mean(errors**2, axis=0)) == pytest.approx(law_errors.SOFT_ERRORS, rel=0.01)
-    assert np.abs(errors[:, 0]).max() < 0.026
+def test_the_stated_errors_are_those_beside_finite_elements():
+    """Of metals that harden, and of bodies as soft as lead, which no fit has seen."""
+    hard = [one for name in ("metals", "bodies") for one in acceptance.rows([name])[name].counted]
+    assert rms(hard) == pytest.approx(law_errors.HARDENING_ERRORS, rel=0.01)
+    soft = acceptance.members(acceptance.TARGETS["bodies"]._replace(studies=("bodies_soft",)))
+    soft = [one for one in soft if not one.flagged]  # one bends its plate
+    assert rms(soft) == pytest.approx(law_errors.SOFT_ERRORS, rel=0.01)
+    assert max(abs(one.errors[0]) for one in soft) < 0.026
 
 
 def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():

@@ -25,7 +25,7 @@ import contactlaw as cl
 from contactlaw.equation import zener
 from contactlaw.equation.corrections import SATURATION
 from contactlaw.equation.numbers import Impact, Numbers
-from contactlaw.equation.zener import Solution
+from contactlaw.equation.outcome import Solution
 from contactlaw.laws import Law, fem
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import pair_numbers
