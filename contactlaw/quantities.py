@@ -129,8 +129,7 @@ def _check_units(text: str, items: list[_Item], quantity: Quantity) -> None:
         pointed = decimal_comma(text)
         hint = f"; {pointed} if it is a decimal comma" if pointed else ""
         raise ValueError(
-            f"got {text!r}: {bare!r} has no unit and others have: write {bare}{unit}, or "
-            f"{bare}{quantity.si} if that is meant{hint}"
+            f"got {text!r}: {bare!r} has no unit and others have: give each number its unit, as {bare}{unit}{hint}"
         )
 
 

@@ -97,7 +97,12 @@ def test_the_command_reads_conditions_draws_and_prints_for_other_programs(folder
     assert "steel on glass" in text and "my steel on soda-lime-glass, law fem" in text
     assert "the data agree with the model" in text and "Law fem is nearest to the data." in text
     answer("compare mine.csv --plot one.svg")
-    assert "chi-squared" in (folder / "one.svg").read_text()
+    assert "By their errors, the data agree with the model" in (folder / "one.svg").read_text()
+    (folder / "far.csv").write_text(f"{HEAD}speed_m/s,diameter_mm,thickness_mm,COR,COR_error\n3,6,5,0.1,0.02\n")
+    text = answer("compare far.csv").text
+    assert "the probability of a value as large is below 0.01 %: the data differ from the model by" in text
+    answer("compare far.csv --plot one.svg")
+    assert "the data differ from the model" in (folder / "one.svg").read_text()
     printed = answer("compare mine.csv --json").values
     assert printed["title"] == "steel on glass" and printed["chi_squared"] == pytest.approx(found.chi_squared)
     assert printed["probability"] == printed["laws"]["fem"]["probability"] == pytest.approx(found.probability)

@@ -19,7 +19,6 @@ from contactlaw.comparison import Comparison, compare
 from contactlaw.model import ImpactModel
 from contactlaw.parser import wrapped
 from contactlaw.physical.pair import Pair
-from contactlaw.quantities import TIME
 
 _UNLIKELY = 0.05  # probability of chi-squared below which chance does not explain the differences
 _FORMS = {
@@ -40,8 +39,6 @@ def add(commands: Any) -> None:
         "error of each COR, height or time. Lines of TOML behind # above the table may state materials, sizes, "
         "their errors and the source",
     )
-    what = "standard error of the instants of bounces [s] (default: that of FILE)"
-    options.add_quantity(command, "--time-error", TIME, what, metavar="T")
     measured.add_options(command, _FORMS)
 
 
@@ -91,8 +88,8 @@ def _judged(found: Comparison, pair: Pair) -> Iterator[str]:
     yield from wrapped(f"68 %: {bands.meaning(found.band, pair)}.")
     agree = found.probability >= _UNLIKELY
     yield from wrapped(
-        f"Chi-squared is {found.chi_squared:.3g} for {len(found.data)} rebounds. If the model and all stated errors "
-        f"are right, it is as large or larger in {percent(found.probability)} of cases: the data "
+        f"The number of rebounds is {len(found.data)}, and chi-squared is {found.chi_squared:.3g}. If the model and "
+        f"all stated errors are right, the probability of a value as large is {percent(found.probability)}: the data "
         f"{'agree with the model' if agree else 'differ from the model by more than the stated errors explain'}."
     )
 
@@ -102,17 +99,10 @@ def _figure(found: Comparison, model: ImpactModel, errors: Mapping[str, float], 
     data = found.data
     sizes = {name: np.asarray(getattr(data, name)) for name in ("speed", "thickness", "radius")}
     values = np.asarray(data.restitution), np.asarray(data.restitution_error), found.flags
-    title = f"Measured COR beside the model: chi-squared {found.chi_squared:.3g} for {len(data)} rebounds"
-    band = f"Band: {bands.meaning(found.band, model.pair)}"
+    title = f"By their errors, the data {'agree with' if found.probability >= _UNLIKELY else 'differ from'} the model"
+    band = f"Nothing is fitted. Band: {bands.meaning(found.band, model.pair)}"
     return measured.figure_of(
-        "restitution",
-        sizes,
-        *values,
-        lambda impact: curve(model, impact, errors),
-        title,
-        about,
-        "Nothing is fitted",
-        band,
+        "restitution", sizes, *values, lambda impact: curve(model, impact, errors), title, about, band
     )
 
 

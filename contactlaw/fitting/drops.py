@@ -98,7 +98,7 @@ def rebounds_of(data: Mapping[str, Any], density: float) -> dict[str, Any]:
     keep = np.isfinite(speed) & (first | np.isfinite(cor)) if order else first
     lost = ~keep.reshape(-1, len(rows)).any(axis=1)
     if lost.any():
-        reason = "a bounce alone has no COR: add this, its speed, or what follows, as t2"
+        reason = "a bounce alone has no COR: add the drop (in a head: # drop = '30cm'), its speed, or the next time, t2"
         if lost.all():
             raise ArgumentError("drop", None, reason)
         rows_lost = flat.get("line", np.arange(lost.size))[lost].astype(int)

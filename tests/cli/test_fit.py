@@ -204,7 +204,8 @@ def test_a_record_of_a_run_is_fitted(folder, answer, capsys):
     assert halves["values"] == pytest.approx(printed["values"], rel=1e-9)
     for refused, words in (
         ("fit run.h5 --unknown thickness", "several pairs, bearing-steel-52100 on aluminium"),
-        (f"{line} --radius 1mm", "--radius: the record has its own"),
+        (f"{line} --time-error 1ms", "--time-error: a record does not need it"),
+        (f"{line} --radius 1mm", "--radius: a record does not need it"),
     ):
         assert words in run(refused, capsys).err
 
@@ -217,6 +218,17 @@ def test_times_between_bounces_and_their_error_are_no_contact_times(table):
     assert measured().contact_time_error == pytest.approx(5e-7)
     table("speed_m/s,drop_cm,bounce_cm", "2.4,,18", ",30,17")
     assert measured(radius=2e-3).speed.size == 2
+
+
+def test_the_error_of_instants_is_an_option_or_in_the_head_behind_an_equals_sign(table, answer):
+    rows, line = ("drop_cm,t1_ms,t2_ms", "30,250,150"), f"fit a.csv {GLASS} --unknown thickness --json"
+    table(*rows)
+    without, by_option = answer(line), answer(f"{line} --time-error 1ms")
+    table('# time_error = "1ms"', *rows)
+    assert answer(line).values == by_option.values and by_option.values["errors"] != without.values["errors"]
+    table("# time_error: 1ms", *rows)
+    remark = answer(line)
+    assert remark.values == without.values and "the lines with # above its table are not used" in remark.err
 
 
 @pytest.mark.filterwarnings("always:the air changes")

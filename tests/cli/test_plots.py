@@ -9,6 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import contactlaw as cl
+from contactlaw.cli.parts.figure import Points, draw_points
 
 R, INF = 0.9e-3, math.inf
 
@@ -67,10 +68,20 @@ def test_limits_are_dashed(picture):
         assert below[[0, -1]] == pytest.approx([1.0, 100.0])
     assert thin.size == 0 and clear[0] == pytest.approx(1.0)
     assert clear[-1] <= fast <= clear[-1] * 100.0 ** (1 / 199)
-    assert [line.is_dashed() for line in axes.lines] == [True, False] * 2
+    # of the thin plate nothing is inside all limits: its name in the legend stands beside dashes, too
+    assert [line.is_dashed() for line in axes.lines] == [True, True, True, False]
     assert "radius 0.9 mm. Dashed: plate thinner than" in caption(figure)
     assert "; or faster than the impacts" in caption(figure)
     assert axes.get_xscale() == "log" and axes.get_ylabel() == "coefficient of restitution [-]"
+
+
+@pytest.mark.parametrize(("flags", "face"), [([1, 1], "white"), ([1, 0], "red"), (0, "red")])
+def test_the_legend_has_hollow_points_if_all_are(flags, face):
+    axes = Figure().subplots()
+    beyond = np.asarray(flags) * cl.Validity.THIN_PLATE
+    draw_points(axes, Points(np.ones(2), np.ones(2), "measured", flags=beyond), "red", 1.0, 1.0)
+    (handle,), (label,) = axes.get_legend_handles_labels()
+    assert (handle.get_markerfacecolor(), label) == (face, "measured")
 
 
 def test_a_history_is_the_force_over_time(picture):

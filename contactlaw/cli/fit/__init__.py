@@ -42,8 +42,15 @@ def add(commands: Any) -> None:
     )
     what = "coefficient of friction of all rebounds at angles, unless it is an --unknown"
     options.add_quantity(command, "--friction", quantities.FRICTION, what, metavar="MU")
-    what = f"quantity to find, or up to three: {', '.join(UNKNOWNS)}"
-    add("--unknown", required=True, metavar="NAME", type=lambda text: tuple(map(_named, text.split(","))), help=what)
+    what = f"quantity to find, or up to three, separated by commas: {', '.join(UNKNOWNS)}"
+    add(
+        "--unknown",
+        required=True,
+        action="extend",
+        metavar="NAME",
+        type=lambda text: tuple(map(_named, text.split(","))),
+        help=what,
+    )
     add(
         "--prior",
         action="append",
@@ -132,9 +139,9 @@ def _errors(source: rebounds.Source) -> dict[str, float]:
 def _recorded(arguments: Namespace) -> rebounds.Source:
     """Impacts on walls of the record of a run; one of several pairs has to be named."""
     record, first = read_record(*arguments.files), arguments.files[0]
-    for name in ("radius", "thickness"):
+    for name in ("radius", "thickness", "time_error"):
         if getattr(arguments, name) is not None:
-            raise ArgumentError(name, None, "the record has its own: leave this one out")
+            raise ArgumentError(name, None, "a record does not need it: leave this one out")
     on_walls = record.which[record.impact & (record.rows["plate"] >= 0)]
     pairs = {n: record.bodies[n].pair for n in np.unique(on_walls).tolist() if n >= 0}
     some, names = chosen.of_record(arguments, pairs)

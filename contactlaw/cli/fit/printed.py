@@ -39,7 +39,7 @@ def text(found: Fit) -> Iterator[str]:
     yield from Table([Column(name, title=name, shown="") for name in cells], cells).text()
     for kind, off in found.residuals.items():
         values = f"{off.size} value{'s' * (off.size > 1)}"
-        yield f"{KINDS[kind].title}: {values}, which differ from the fit by {percent(found.scatter[kind])} (rms)"
+        yield f"{KINDS[kind].title}: {values}, rms difference from the fit {percent(found.scatter[kind])}"
     for note in found.notes:
         yield from wrapped(f"- {note}", "  ")
 

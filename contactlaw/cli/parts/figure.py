@@ -103,7 +103,7 @@ class Figure:
         y = np.concatenate([part.y for part in parts])
         labels = [part.label for part in parts if part.label]
         with style.applied():
-            figure = style.figure(9.0, 6.0, self.title, ". ".join([self.about, *self._remarks()]))
+            figure = style.figure(9.0, 6.0, self.title, ". ".join([self.about, *self._remarks(parts)]))
             axes = figure.subplots()
             (x_label, x_size), (y_label, y_size) = AXES[self.x].scaled(x.max()), AXES[self.y].scaled(np.nanmax(y))
             axes.set(xlabel=x_label, ylabel=y_label)
@@ -121,7 +121,7 @@ class Figure:
             if len(labels) > _MOST_INSIDE:
                 figure.legend(loc="outside right center")
             elif len(labels) > 1:
-                axes.legend(loc="best")
+                axes.legend()
             content = io.BytesIO()
             figure.savefig(content, format=PurePath(path).suffix[1:].lower())
         _atomic.write(path, content.getvalue())
@@ -133,12 +133,11 @@ class Figure:
         count = len(self.curves)
         return style.BLUE if count == 1 else colormaps["viridis"](0.82 * n / (count - 1))
 
-    def _remarks(self) -> list[str]:
+    def _remarks(self, parts: list[Curve | Points]) -> list[str]:
         """Sentences that say what the marks of the figure mean."""
         remarks = list(self.remarks)
         if any(curve.x[-1] == math.inf for curve in self.curves):
             remarks.append("Thin line: half-space")
-        parts: list[Curve | Points] = [*self.curves, *self.points]
         flags = np.concatenate([np.ravel(part.flags) for part in parts])
         if words := limits_in_words(int(np.bitwise_or.reduce(flags)) & Validity.ACCURACY):
             remarks.append(f"{'Dashed or hollow' if self.points else 'Dashed'}: {'; or '.join(words)}")
@@ -154,8 +153,9 @@ def draw_curve(axes: Axes, curve: Curve, colour: Any, x_size: float, y_size: flo
         low, high = curve.low[finite] / y_size, curve.high[finite] / y_size
         axes.fill_between(x, low, high, color=colour, alpha=0.22, linewidth=0.0)
     inside = np.where(curve.flags & Validity.ACCURACY, np.nan, curve.y)[finite] / y_size
-    axes.plot(x, y, linestyle=(0, (3.2, 1.4)), **look)
-    axes.plot(x, inside, label=curve.label or None, **look)  # over the dashes
+    axes.plot(x, y, "--", **look)
+    # This line lies over the dashes. The legend shows its look, so it is dashed if no part of it is seen.
+    axes.plot(x, inside, "--" if np.isnan(inside).all() else "-", label=curve.label, **look)
     if not finite.all():
         axes.axhline(curve.y[-1] / y_size, color=colour, linewidth=1.0)
 
@@ -167,4 +167,6 @@ def draw_points(axes: Axes, points: Points, colour: Any, x_size: float, y_size: 
     error = None if points.error is None else points.error / y_size
     look = {"color": colour, "markersize": 7}
     axes.errorbar(x, y, error, fmt="o", markerfacecolor="white", capsize=3, **look)
-    axes.plot(x, inside, "o", label=points.label or None, zorder=3.0, **look)  # over the hollow ones
+    # These lie over the hollow ones. The legend shows their look, so they are hollow if none of them is seen.
+    face = "white" if np.isnan(inside).all() else colour
+    axes.plot(x, inside, "o", label=points.label, markerfacecolor=face, zorder=3.0, **look)

@@ -25,6 +25,8 @@ def add_options(command: argparse.ArgumentParser, forms: Mapping[str, str]) -> N
     options.add_radius(command, "all beads", quantities.value, known=of_file)
     what = f"thickness of all plates [m]; inf is a half-space{of_file}"
     options.add_quantity(command, "--thickness", quantities.LENGTH, what, metavar="H")
+    what = f"standard error of the instants of bounces [s]{of_file}"
+    options.add_quantity(command, "--time-error", quantities.TIME, what, metavar="T")
     options.add_name_of_law(command)
     command.epilog = options.UNITS
     what = "draw data and model with its band into FILE (PNG, SVG, PDF)"

@@ -98,6 +98,8 @@ def read(
     warnings = [f"left out: {sentence}" for sentence in table.wrong]
     if not measured.all():
         warnings.append(f"lines without a rebound are left out: {', '.join(map(str, lines[~measured]))}")
+    if ":" in table.comments and not head:
+        warnings.append("the lines with # above its table are not used, as they have no =")
     if table.unused and "heard0" not in table.values:
         warnings.append(f"columns that are not used: {', '.join(table.unused)}")
     for warning in warnings:
@@ -113,7 +115,7 @@ def _times_between(values: dict[str, Array], lines: Integers) -> tuple[dict[str,
         return values, lines
     if len(heard) == 1:
         heard, lines = heard.T, lines[:1]
-    times = np.diff(np.where(heard > 0.0, heard, np.nan), axis=0)  # 0: not heard
+    times = np.diff(np.where(heard > 0.0, heard, np.nan), axis=0).round(9)  # 0: not heard
     return {f"t{n}": row for n, row in enumerate(times, 1)}, lines
 
 
