@@ -8,11 +8,21 @@ from contactlaw.answers.few import switch_off_compiler
 
 
 def main() -> int:
-    """Run the command of this process, without a compiler if it asks for a few impacts."""
-    switch_off_compiler(*asked(sys.argv[1:]))
-    from contactlaw.cli import main as command
+    """Run the command of this process, without a compiler if it asks for a few impacts.
 
-    return command()
+    Returns
+    -------
+    int
+        What `contactlaw.cli.main` returns; 130 if interrupted, also while modules are imported.
+    """
+    try:
+        switch_off_compiler(*asked(sys.argv[1:]))
+        from contactlaw.cli import main as command
+
+        return command()
+    except KeyboardInterrupt:
+        print("contactlaw: interrupted", file=sys.stderr)
+        return 130
 
 
 def asked(words: Sequence[str]) -> tuple[float, str]:

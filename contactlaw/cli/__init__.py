@@ -21,7 +21,7 @@ from contactlaw.parser import Parser, for_stderr, wrapped
 
 _ABOUT = re.compile(r'"""``contactlaw (\w+)`` \((\w+)\): (.*)\.')
 _ORDER = {"ask": 0, "measure": 1, "engines": 2}  # of groups in the help; the others follow
-_DONE, _REFUSED, _MISUSED, _INTERRUPTED = 0, 1, 2, 130
+_DONE, _REFUSED, _MISUSED = 0, 1, 2
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done, 1 refused with a message on stderr, 130 interrupted; wrong usage exits with 2.
+        0 done, 1 refused with a message on stderr; wrong usage exits with 2.
 
     Examples
     --------
@@ -54,9 +54,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             warnings.showwarning = wording.print_warning  # type: ignore[assignment]
             arguments.run(arguments)
         sys.stdout.flush()  # here, so that a closed pipe is caught below
-    except KeyboardInterrupt:
-        wording.print_message("interrupted")
-        return _INTERRUPTED
     except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         _drop_output()
         return _DONE

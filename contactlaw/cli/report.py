@@ -29,11 +29,17 @@ def add(commands: Any) -> None:
         help="record of a run, or several files of one run: written by an engine's `save` (.h5), or rows of impacts "
         "written by np.save (.npy)",
     )
-    what = "scene of LAMMPS's fix, for the names of the walls and the map (default: the one that lies beside the "
-    what += "record or in a folder there)"
-    add("--scene", metavar="FILE", help=what)
-    what = "power that the impacts feed into each wall, and spectrum of their forces, in third octaves"
-    add("--spectrum", metavar="FILE.csv", help=what)
+    add(
+        "--scene",
+        metavar="FILE",
+        help="scene of LAMMPS's fix, for the names of the walls and the map (default: the one that lies beside the "
+        "record or in a folder there)",
+    )
+    add(
+        "--spectrum",
+        metavar="FILE.csv",
+        help="power that the impacts feed into each wall, and spectrum of their forces, in third octaves",
+    )
     add("--out", default="report", metavar="FOLDER", help="folder to write into (default: %(default)s)")
 
 
@@ -56,8 +62,10 @@ def _run(arguments: Namespace) -> None:
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")
     if record.surface is None and arguments.files[0].endswith(".npy"):
-        text = "the page has neither names of walls nor a map of the energy: no scene lies beside the record or in "
-        wording.print_message(text + "a folder there, or several do; add --scene FILE, or save the record as .h5")
+        wording.print_message(
+            "the page has neither names of walls nor a map of the energy: no scene lies beside the record or in "
+            "a folder there, or several do; add --scene FILE; in Python, save the record as .h5"
+        )
 
 
 def _bands(walls: list[WallRow], spectrum: Spectrum) -> str:

@@ -25,7 +25,7 @@ from contactlaw._content import content_of
 from contactlaw._errors import ArgumentError
 from contactlaw._escaped import line
 from contactlaw._version import VERSION
-from contactlaw.physical.arguments import number
+from contactlaw.physical.arguments import number, warn_of_metres
 from contactlaw.record.columns import IMPACT
 from contactlaw.record.file import Surface
 from contactlaw.stepping.bead import WallContacts
@@ -117,6 +117,7 @@ def scene(
         raise ArgumentError("walls", walls, "expected at least one wall of contactlaw.walls")
     if not 0.0 < number("largest", largest) < np.inf:
         raise ArgumentError("largest", largest, "must be the radius of the largest bead [m]")
+    warn_of_metres("largest", largest, stacklevel=2)
     contacts = WallContacts(walls, model, largest, np.zeros(1, IMPACT), types=types, **contact)
     _atomic.write(path, _content(contacts, largest))
 

@@ -31,15 +31,16 @@ WAVES = (
 )
 NO_WAVES = "The power that bending waves carry into the walls is not known by frequency: "
 OUTSIDE = "These impacts are outside a limit of the model; their numbers deserve less trust."
-INSIDE = "All impacts on walls are inside every limit of the model."
+INSIDE = "No impact on a wall is flagged as outside a limit of the model."
+UNCHECKED = "Shared plates are not checked: the record lacks materials."
 _WIDTH = 80  # of the text
 
 
 def counts(run: Run) -> str:
     """Say in one line how many impacts there are, on how many walls, and of what."""
     walls, count = len(np.unique(run.rows[["plate", "thickness"]])), run.impacts.size
-    names, beads = run.impacts.dtype.names or (), float(count)
-    if "parcel" in names:
+    beads = float(count)
+    if "parcel" in (run.impacts.dtype.names or ()):
         beads = float((np.maximum(run.impacts["parcel"], 1.0) ** 3).sum())
     stand = f", which stand for {beads:.6g} of single beads" if beads != count else ""
     return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}{stand}, {run.subject}"
@@ -52,8 +53,8 @@ def text(run: Run) -> str:
     lines += [*_columns(impacts(run)), "", *_wrapped(CONSTANT), ""]
     lines += [*_columns(energies(run)), "", *_wrapped(ENERGY), ""]
     table = waves(run)
-    lines += [*_columns(table), "", *_wrapped(WAVES), ""] if table else [*_wrapped(NO_WAVES + run.waves[1]), ""]
-    lines.append(OUTSIDE if outside else INSIDE)
+    lines += [*_columns(table), "", *_wrapped(WAVES)] if table else _wrapped(NO_WAVES + run.waves[1])
+    lines += ["", *[UNCHECKED] * (not run.record.bodies), OUTSIDE if outside else INSIDE]
     return "\n".join(lines + [line for one in outside.items() for line in _wrapped("  {}: {}".format(*one))])
 
 

@@ -31,8 +31,8 @@ def energy_map(surface: Surface, energy: Array) -> EnergyMap:
     """Sum up energies [J] by parts of a surface, which are small where triangles are large."""
     corners, hit = surface.corners, surface.triangle >= 0
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
-    reach = math.sqrt(_FEW * areas(corners).sum() / max(1, np.count_nonzero(hit)))
-    reach = min(max(reach, _FINEST * extent), _COARSEST * extent)
+    reach = math.sqrt(_FEW * areas(corners).sum() / max(1, hit.sum()))
+    reach = np.clip(reach, _FINEST * extent, _COARSEST * extent)
     where, point = surface.triangle, surface.point
     if point is None:  # parts of triangles are found for the triangles alone
         where, point = where[:0], np.empty((0, 3))
@@ -105,7 +105,8 @@ def averaged(corners: NDArray[np.floating], energy: Array, reach: float) -> Arra
     grid = max(_GRID, (float(width.prod()) / _CELLS) ** (1.0 / dimensions))
     cell = (middle // (grid * reach)).astype(int)
     shape = tuple(cell.max(axis=0) + 1)
-    window = np.arange(-math.ceil(3.0 / grid), math.ceil(3.0 / grid) + 1)
+    far = math.ceil(3.0 / grid)
+    window = np.arange(-far, far + 1)
     weight = np.exp(-0.5 * (window * grid) ** 2)
 
     def spread(values: Array) -> Array:
@@ -125,12 +126,10 @@ def vtk(found: EnergyMap, colours: Array | None = None) -> bytes:
     OVITO shows the colours, red, green and blue from 0 to 1, shape (k, 3).
     """
     n = len(found.corners)
-    lines = ["# vtk DataFile Version 3.0", "contactlaw: energy by wall [m, J]", "ASCII"]
-    lines += ["DATASET UNSTRUCTURED_GRID", f"POINTS {3 * n} double"]
-    lines += _rows(found.corners.reshape(-1, 3))
+    lines = ["# vtk DataFile Version 3.0", "contactlaw: energy by wall [m, J]", "ASCII", "DATASET UNSTRUCTURED_GRID"]
+    lines += [f"POINTS {3 * n} double", *_rows(found.corners.reshape(-1, 3))]
     lines += [f"CELLS {n} {4 * n}", *_faces(n), f"CELL_TYPES {n}", *["5"] * n, f"CELL_DATA {n}"]
-    columns = {"impacts": found.impacts, "energy_J": found.energy, "J_per_m2": found.density}
-    for name, values in columns.items():
+    for name, values in {"impacts": found.impacts, "energy_J": found.energy, "J_per_m2": found.density}.items():
         lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *_rows(values[:, None])]
     if colours is not None:  # last, or some readers lose the others
         lines += ["COLOR_SCALARS color 3", *_rows(colours)]

@@ -75,7 +75,7 @@ MESSAGES: dict[Trouble, str] = {
     Trouble.TOO_THIN: (
         "thickness: the wall is too thin for the bead, the inelasticity lambda = {value:.4g} is "
         "above {limit:.4g}, beyond which the model has no answer; take a thicker wall or smaller "
-        "beads (ImpactModel(..., outside='solve') integrates such impacts)"
+        "beads (in Python, ImpactModel(..., outside='solve') integrates such impacts)"
     ),
     Trouble.FOIL: (
         "thickness: the wall is a foil beside the bead, R/H = {value:.4g} is above {limit:.4g}, "

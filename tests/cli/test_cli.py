@@ -12,7 +12,7 @@ from command_line import parsers, run
 from places import ROOT
 
 import contactlaw as cl
-from contactlaw import cli, table
+from contactlaw import __main__, cli, table
 from contactlaw.cli import main
 
 PAIR = "cor --sphere gamma-alumina --plate glass --law myc"
@@ -188,10 +188,13 @@ def test_tables_are_described_and_checked(answer, capsys, monkeypatch):
     assert checked.status == 1 and "exceeds its bounds" in checked.err
 
 
-def test_ctrl_c_leaves_a_sentence_and_nothing_else(folder, capsys, monkeypatch):
-    """In the middle of a long check."""
-    monkeypatch.setattr(table, "certify", lambda *_, **__: signal.raise_signal(signal.SIGINT))
-    assert run("table check", capsys) == (130, "", "contactlaw: interrupted\n")
+@pytest.mark.parametrize("place", [(cli, "parser"), (table, "certify")])
+def test_ctrl_c_leaves_a_sentence_and_nothing_else(place, folder, capsys, monkeypatch):
+    """While a subcommand is imported, and in the middle of a long check."""
+    monkeypatch.setattr(*place, lambda *_, **__: signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr(sys, "argv", ["contactlaw", "table", "check"])
+    assert __main__.main() == 130
+    assert capsys.readouterr() == ("", "contactlaw: interrupted\n")
     assert list(folder.iterdir()) == []
 
 

@@ -103,6 +103,13 @@ CHANGED = [  # a text of the scene, what it becomes, and the message
     ('"pmma"', '"pmna"', "[a window]: unknown material 'pmna': did you mean 'pmma'"),
     ('plate = "glass"', 'plate = "galss"', "line 21: [a window]: plate: unknown material 'galss': did you mean"),
     ("beads = [", "beads = [[", "drum.toml: "),
+    ('"2mm"', "2mm", 'line 3, column 12); write names and numbers with a unit in quotes: "1mm"'),
+    ('"stainless-steel-304"', '"stainles"', "line 4: plate: unknown material 'stainles'"),
+    ('plate = "stainless-steel-304"', "", "[shell]: lacks plate"),
+    ('shape = "cylinder"', "", "line 7: [shell]: lacks shape"),
+    ("largest", "motion = {}\nlargest", "line 3: unknown 'motion'; known: beads, largest"),
+    ("--law", "fame", "--law: got 'fame'; unknown law"),
+    ("--set", "friction=-1", "--set: friction: friction: got -1; "),
     ("--set", "shel.thickness=1mm", "--set: unknown 'shel'; did you mean shell?"),
     ("--set", "shell.thickness=1mmm", "--set: shell.thickness: thickness: got '1mmm'"),
 ]
@@ -110,7 +117,7 @@ CHANGED = [  # a text of the scene, what it becomes, and the message
 
 @pytest.mark.parametrize(("old", "new", "message"), CHANGED)
 def test_a_scene_with_a_wrong_word_is_refused(old, new, message, drum, tmp_path, capsys):
-    change = [old, new] if old == "--set" else []
+    change = [old, new] if old.startswith("--") else []
     drum.write_text(DRUM.replace(old, new, 1))
     assert cli.main(["export", "lammps", str(drum), "--out", str(tmp_path / "out"), *change]) == 1
     assert message in capsys.readouterr().err

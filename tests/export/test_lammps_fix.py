@@ -181,6 +181,7 @@ WRONG = [
     ("walls.scene", "other.scene", r"other.scene is of contactlaw .* \(0.*-(little|big)\), and this fix of "),
     ("walls.scene", "missing.scene", "missing.scene is no scene of contactlaw"),
     ("record hits", "recrd hits", "expected a scene and 'record FILE'"),
+    ("hits.%.npy", "hits.csv", "record: got hits.csv; it must end in .npy"),
     ("hits.%.npy", "no/hits.%.npy", "record: no/hits.0.npy cannot be written: No such file"),
     ("timestep 1e-07", "timestep 4e-06", "bead [0-9]+ on wall .* at step .*timestep: too large for an impact at"),
     ("run 900", "minimize 1e-9 1e-9 9 9", "minimize, rerun: the force of the walls depends on the time steps"),

@@ -120,7 +120,8 @@ def test_what_is_no_impact_is_left_out_and_said(record, tmp_path, monkeypatch, a
     for name in ("index.html", "summary.txt"):
         share = f"{100.0 / rows.size:.2g} %"
         words = f"Of {rows.size} contacts, {share} were struck by another bead while they touched the wall and {share}"
-        assert words in " ".join((tmp_path / "out" / name).read_text().replace("\xa0", " ").split())
+        text = " ".join((tmp_path / "out" / name).read_text().replace("\xa0", " ").split())
+        assert words in text and "Shared plates are not checked: the record lacks materials." in text
     assert not (tmp_path / "out/energy.vtk").exists()
 
 

@@ -4,14 +4,14 @@ import functools
 import inspect
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from contactlaw import quantities, walls
+from contactlaw import laws, quantities, walls
 from contactlaw._errors import ArgumentError
 from contactlaw.cli.parts import own, wording
 from contactlaw.model import ImpactModel
@@ -40,33 +40,39 @@ class Scene:
     def __init__(self, path: Path, changes: Sequence[str]) -> None:
         with wording.reading(path):
             self._path, self._text = path, path.read_text("utf-8-sig")
-            table = tomllib.loads(self._text)
+            try:
+                table = tomllib.loads(self._text)
+            except tomllib.TOMLDecodeError as error:
+                raise ValueError(f'{error}; write names and numbers with a unit in quotes: "1mm"') from error
         self._changed = dict(map(_change, changes))
         for name, value in self._changed.items():
             wall, dot, word = name.rpartition(".")
             if dot and wall not in table:
                 raise ArgumentError("set", None, unknown(wall, table))
             (table[wall] if dot else table)[word] = value
-        self._walls = {name: words for name, words in table.items() if isinstance(words, dict)}
+        self._walls = {name: words for name, words in table.items() if isinstance(words, dict) and name not in _MAKERS}
         self._of_all = {name: value for name, value in table.items() if name not in self._walls}
 
     def arguments(self, materials: Mapping[str, Material], law: str) -> dict[str, Any]:
         """Arguments of `contactlaw.export.scene`, but for the path."""
+        laws.parameters(law)  # refuses an unknown law, which is no error of the file
         words = dict(self._of_all)
-        with self._naming():
+        with self.naming():
             _check(words, ["beads", "largest"], ["plate", "friction", "softening", "parcel"])
             beads, plate = words.pop("beads"), words.pop("plate", None)
             beads = beads if isinstance(beads, list) else [beads]
             spheres = [None if one == "none" else own.material_of("beads", one, materials) for one in beads]
             numbers = {name: _value(name, value, self._path) for name, value in words.items()}
+            shared = plate and own.material_of("plate", plate, materials)
         model = functools.cache(lambda sphere, body: ImpactModel(Pair(sphere, body), law=law))
         made, models = dict[str, Any](), dict[int, Any]()
         for name, words in self._walls.items():
-            with self._naming(name):
-                others = {"plate": plate, "types": [*range(1, len(spheres) + 1)]} | words
-                body = own.material_of("plate", others["plate"], materials)
+            with self.naming(name):
+                body = own.material_of("plate", words["plate"], materials) if "plate" in words else shared
+                if not body:
+                    raise ValueError("lacks plate")
                 by_type = {
-                    kind: model(sphere, body) if sphere and kind in np.ravel(others["types"]) else None
+                    kind: model(sphere, body) if sphere and kind in np.ravel(words.get("types", kind)) else None
                     for kind, sphere in enumerate(spheres, 1)
                 }
                 made[name] = _made("shape", words, self._path, by_type)
@@ -74,7 +80,7 @@ class Scene:
         return {"walls": made, "model": models, "types": len(spheres), **numbers}
 
     @contextmanager
-    def _naming(self, wall: str = "") -> Iterator[None]:
+    def naming(self, wall: str = "") -> Iterator[None]:
         """Name the line of the file, or the option, whose value is refused."""
         try:
             yield
@@ -101,7 +107,7 @@ def _change(text: str) -> tuple[str, Any]:
         return name, value
 
 
-def _check(words: Mapping[str, Any], needed: Sequence[str], others: Sequence[str]) -> None:
+def _check(words: Mapping[str, Any], needed: Sequence[str], others: Iterable[str]) -> None:
     """Refuse unknown words, and say which are missing."""
     own.check_keys(words, dict.fromkeys([*needed, *others]))
     if missing := [name for name in needed if name not in words]:
@@ -112,7 +118,8 @@ def _made(what: str, words: Mapping[str, Any], path: Path, model: Any = None) ->
     """Call the constructor that a table names."""
     makers = {one.__name__.lower(): one for one in _MAKERS[what]}
     word = "shape" if what == "shape" else "kind"
-    if (kind := words.get(word, "mesh" if "file" in words else "none")) not in makers:
+    _check(words, [] if "file" in words else [word], words)
+    if (kind := words.get(word, "mesh")) not in makers:
         raise ValueError(f"{word}: {unknown(kind, makers)}")
     make = walls.Mesh.read if kind == "mesh" else makers[kind]
     parameters = inspect.signature(make).parameters

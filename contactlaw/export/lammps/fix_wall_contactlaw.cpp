@@ -297,6 +297,8 @@ void FixWallContactlaw::post_run()
 /* Begin a record: a file of numpy's, complete after each run. */
 void FixWallContactlaw::open(std::string record)
 {
+    if (!utils::strmatch(record, "[.]npy$"))
+        error->all(FLERR, "Fix wall/contactlaw: record: got {}; it must end in .npy", record);
     const size_t rank = record.find('%');
     if (rank == std::string::npos && comm->nprocs > 1)
         error->all(FLERR, "Fix wall/contactlaw: record: got {}; on several ranks it needs a %, as in hits.%.npy", record);
