@@ -183,7 +183,7 @@ def test_tables_are_described_and_checked(answer, capsys, monkeypatch):
     pair = "--sphere stainless-steel-304 --plate glass"  # whose numbers the law takes
     assert "law fem:" in answer(f"table info --law fem {pair}").out
     assert "seed 5" in answer("table check --points 1000").out
-    monkeypatch.setattr(table, "bounds", lambda law: dict.fromkeys(table.BOUNDS, 0.0))
+    monkeypatch.setattr("contactlaw.table.table.bounds", lambda law: dict.fromkeys(table.BOUNDS, 0.0))
     checked = run("table check --points 500", capsys)
     assert checked.status == 1 and "exceeds its bounds" in checked.err
 
