@@ -31,7 +31,7 @@ from contactlaw.equation.outcome import Extremes, History, Outcome
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
 OK, TOO_MANY_STEPS, BAD_INPUT = range(3)  # status of a solution
 MESSAGES = {
-    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
+    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows, or the force jumps",
     BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
 }
 
