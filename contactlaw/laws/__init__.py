@@ -172,7 +172,7 @@ def _typed(name: str) -> tuple[str, list[str]]:
     family, bracket, numbers = str(name).partition("(")
     if family not in names() or (bracket and not _BRACKETS.fullmatch(bracket + numbers)):
         near = difflib.get_close_matches(family, names(), n=1)
-        hint = f"did you mean {near[0]!r}? " if near and near[0] != name else ""
+        hint = f"did you mean {near[0]!r}? " if near and near[0] != name else "a record of your law needs one of the "
         raise ArgumentError("law", name, f"unknown law; {hint}known laws: {', '.join(names())}")
     return family, numbers[:-1].split(",") if bracket else []
 
