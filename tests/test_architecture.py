@@ -75,9 +75,10 @@ LAWS = sorted((ROOT / "laws").glob("*[a-z].py"))
 PLAIN = """
 __future__ collections contactlaw dataclasses functools hashlib importlib itertools json math numpy scipy typing
 """
-# The size of each room, which may only fall. Python is counted in tokens, without comments, docstrings
-# and line breaks, so that neither longer lines nor missing explanations save any. Other text of the
-# packages (sources of other languages, pages, numbers) counts in lines.
+# The size of each room, which may only fall (CONTRIBUTING says how a new law, engine or scene raises
+# one). Python is counted in tokens, without comments, docstrings and line breaks, so that neither
+# longer lines nor missing explanations save any. Other text of the packages (sources of other
+# languages, pages, numbers) counts in lines.
 SIZES = {
     "contactlaw": 211_235,
     "contactlaw/answers": 11_694,
@@ -217,13 +218,17 @@ def test_no_room_outgrows_its_size():
 
 
 def test_sizes_only_fall():
-    """No number is above the one in the versions of this file before."""
+    """No number is above the one in the versions of this file before, unless a commit says that it raises some.
+
+    The subject of that commit begins with "Raise SIZES". It is the last version that is compared.
+    """
     name = "tests/test_architecture.py"
     git = ["git", "-C", str(ROOT.parent)]
-    log = subprocess.run([*git, "log", "-2", "--format=%H", "--", name], capture_output=True, text=True)
+    log = subprocess.run([*git, "log", "-2", "--format=%H %s", "--", name], capture_output=True, text=True)
     if not log.stdout:
         pytest.skip("needs the history of a clone")
-    for commit in log.stdout.split():
+    for line in log.stdout.splitlines():
+        commit, _, subject = line.partition(" ")
         source = subprocess.run([*git, "show", f"{commit}:{name}"], capture_output=True, text=True, check=True).stdout
         assigned = [node for node in ast.parse(source).body if isinstance(node, ast.Assign)]
         for node in assigned:
@@ -232,6 +237,8 @@ def test_sizes_only_fall():
                 assert before.keys() <= SIZES.keys()
                 raised = {room: most for room, most in SIZES.items() if most > before.get(room, most)}
                 assert not raised, f"{raised} were smaller in commit {commit[:8]}"
+        if subject.startswith("Raise SIZES"):
+            break
 
 
 def test_every_folder_has_a_size():

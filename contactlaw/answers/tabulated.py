@@ -202,7 +202,7 @@ def table_for(law: Law, table: TableArgument) -> Table:
     if exceeded.keys() - _NEXT_TO_YIELD:
         warnings.warn(
             f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "
-            f"are above {bounds(table.law)}: take finer Settings",
+            f"are above {bounds(table.law)}: take finer Settings, as in table=Settings(rows=160, columns=256)",
             stacklevel=2,
         )
     if not table.law.follows(served):

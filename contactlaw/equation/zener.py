@@ -33,7 +33,7 @@ from contactlaw.equation.outcome import History, Outcome, Solution, solution
 
 _CLOSE = 1e-11  # size of ln(largest compression over the one that is sought)
 MESSAGES = {
-    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
+    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows, or the force jumps",
     BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
 }
 

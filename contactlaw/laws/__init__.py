@@ -3,8 +3,9 @@
 A law knows no unit: compressions are in units of the yield compression d_Y, forces in units of
 F_Y = K d_Y^1.5, so that a law that follows Hertz up to yield is F = d^1.5 up to d = 1. A file holds
 plain numpy formulas, the kinks between which they are smooth, and their source; `Law.of` turns them
-into the array that everything else reads. A new law is a new module here that defines ``LAW``;
-nothing else has to be touched. Files that begin with ``_`` are no laws.
+into the array that everything else reads. A new law is a new module here that defines ``LAW``, which
+the package finds by itself; CONTRIBUTING lists what tests and figures want to know of it. Files that
+begin with ``_`` are no laws.
 
 A law whose scaled form depends on more than the compression defines ``PARAMETERS``, the names of
 its numbers, and a function ``law`` of them; ``DEFAULTS`` holds the values of the last of them that
@@ -135,6 +136,14 @@ def law(name: str, **numbers: float) -> Law:
     return made if typed else dataclasses.replace(made, from_pair=every)
 
 
+def own(law: Law) -> Law:
+    """Refuse a law of one's own that has the name of one of the package: it would get its errors."""
+    family = law.family
+    if family in names() and law != getattr(_module(family), "LAW", law.parameters and law):
+        raise ArgumentError("law", family, "a law of contactlaw has this name: give yours another")
+    return law
+
+
 def exact(name: str, **numbers: float) -> Law:
     """Make a law from unrounded parameters, to differentiate by them; its name shows six digits.
 
@@ -163,7 +172,7 @@ def _typed(name: str) -> tuple[str, list[str]]:
     family, bracket, numbers = str(name).partition("(")
     if family not in names() or (bracket and not _BRACKETS.fullmatch(bracket + numbers)):
         near = difflib.get_close_matches(family, names(), n=1)
-        hint = f"did you mean {near[0]!r}? " if near and near[0] != name else ""
+        hint = f"did you mean {near[0]!r}? " if near and near[0] != name else "a record of your law needs one of the "
         raise ArgumentError("law", name, f"unknown law; {hint}known laws: {', '.join(names())}")
     return family, numbers[:-1].split(",") if bracket else []
 

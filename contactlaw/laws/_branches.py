@@ -50,15 +50,17 @@ class Unloading:
         n in F = Fm ((d - dr)/(dm - dr))^n, a number or a function of dm; 1.5 is Hertz's.
     loss : callable, optional
         Function of dm: loading work minus unloading work, over (dm - 1)^loss_order [F_Y d_Y]. Give
-        it where computing the difference of the two works would lose digits.
+        it where computing the difference of the two works would lose digits, as next to yield. It
+        is refused where it is not that difference to 1e-6 of the loading work.
     recovery : callable, optional
         Function of dm: share of the loading work that unloading gives back. It takes the place of
         the exponent, which follows from it.
     other : callable, optional
         Function of dm: share of the loading work that is lost, but not as plastic work; 0 by default.
     order, loss_order : float, optional
-        Powers of dm - 1 with which residual and loss begin at yield; 2 for most laws. With 0 they
-        are not divided, and the law follows them to 1e-13 of dm and of the loading work.
+        Powers of dm - 1 with which residual and loss begin at yield, 0 by default: they are not
+        divided, and the law follows them to 1e-13 of dm and of the loading work. Most laws of the
+        package have 2.
     """
 
     start: float

@@ -102,7 +102,7 @@ def _values(name: str, part: _Function, at: Array) -> tuple[Array, Array]:
     if wrong.any():
         value, place = values[wrong][0], at[wrong][0]
         gain = "; a loop would gain energy" if part.what == "loss" and value < 0.0 else ""
-        reason = f"its {part.what} is {value:.6g} at {place:.6g} d_Y: must be finite, not negative{gain}"
+        reason = f"its {part.what} is {value:.6g} at {place:.6g} d_Y: must be finite, >= 0; a force has to rise{gain}"
         raise ArgumentError("law", name, reason)
     return values, size
 
@@ -221,15 +221,20 @@ def check_formulas(name: str, loading: Sequence[Loading], unloading: Sequence[Un
 
 
 def check_unloading(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
-    """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
+    """Refuse unloading curves that jump at yield or between branches, as outcomes would; and a wrong `loss`."""
     before: Any = (0.0, 0.0) if curve.branches[0].force == HERTZ else None
     for branch, stop in ends(branches, curve.end):
-        dm = np.array([branch.start * (1.0 + 1e-9), stop * (1.0 - 1e-9)])
+        dm = np.geomspace(branch.start * (1.0 + 1e-9), stop * (1.0 - 1e-9), 9)
         contacts = _Contacts(curve, branch)
         values = contacts.residual(dm), contacts.loss(dm)
         if before is None:  # a stiffer law has friction: any contact loses energy
             before = values[0][0], values[1][0]
-        scales = dm[0], curve.work(dm)[0]
+        work = curve.work(dm)
+        if branch.loss and not np.allclose(
+            branch.loss(dm) * (dm - 1.0) ** branch.loss_order, values[1], 0.0, 1e-6 * work
+        ):
+            raise ArgumentError("law", name, "its loss is not the work of loading minus that of unloading")
+        scales = dm[0], work[0]
         for what, value, last, scale in zip(("residual compression", "loss"), values, before, scales, strict=True):
             if not abs(value[0] - last) <= 1e-6 * scale:
                 jump = f"at {branch.start:.9g} d_Y, from {last:.6g} to {value[0]:.6g}"
@@ -253,8 +258,6 @@ class _Contacts:
         return exponent(dm) if callable(exponent) else np.full_like(dm, exponent)
 
     def loss(self, dm: Array) -> Array:
-        if self.branch.loss is not None:
-            return self.branch.loss(dm) * (dm - 1.0) ** self.branch.loss_order
         recovery = self.branch.recovery
         share = recovery(dm) if recovery is not None else self._over_work(dm) / (self.exponent(dm) + 1.0)
         return (1.0 - share) * self.curve.work(dm)

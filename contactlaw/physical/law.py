@@ -20,7 +20,7 @@ def law_of(pair: Pair, law: str | Law) -> Law:
         If `law` is neither a name nor a Law.
     """
     if isinstance(law, Law):
-        found = law
+        found = laws.own(law)
     elif not isinstance(law, str):
         raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
     elif laws.parameters(law):

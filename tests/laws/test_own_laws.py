@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from own_laws import CUT_OFF, PAIR, R, measured, own, points, residual
 
+import contactlaw as cl
 from contactlaw import laws
 from contactlaw.laws import HERTZ, Loading, Unloading
 from contactlaw.physical.scaling import yield_scales
@@ -56,6 +57,7 @@ def unloading(*arguments, **options):
             unloading(lambda dm: np.where(dm < 10.0, residual(dm), np.nan)),
             r"'mine'; its residual compression is nan at 1\d\.\d+ d_Y",
         ),
+        (unloading(residual, loss=residual), "'mine'; its loss is not the work of loading minus that of unloading"),
         ({"unloading": [Unloading(2.0, residual)]}, "the first of unloading begins there"),
         ({"yield_coefficient": None}, "must be a positive number: the law yields, got None"),
         (loading() | {"unloading": []}, "must be None: it never yields, got 0.5"),
@@ -68,6 +70,16 @@ def unloading(*arguments, **options):
 def test_wrong_laws_are_refused_and_the_message_says_where(wrong, message):
     with pytest.raises(ValueError, match=message):
         own(**wrong)
+
+
+def test_a_law_of_ones_own_has_no_name_of_the_package():
+    """It would get the errors of that one, and its records would be read as of that one."""
+    for law in (own("fem"), own("myc"), measured(name="hertz")):
+        with pytest.raises(ValueError, match=f"law: got '{law.family}'; a law of contactlaw has this name"):
+            cl.ImpactModel(PAIR, law)
+    for name in laws.names():
+        law = cl.ImpactModel(PAIR, name).force_law
+        assert cl.ImpactModel(PAIR, law).force_law == law
 
 
 class TestMeasured:

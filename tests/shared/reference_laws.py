@@ -102,9 +102,6 @@ class Reference:
         return self.work(dm) - self.loading(dm) * (dm - self.residual(dm)) / (self.exponent(dm) + 1)
 
 
-FAMILIES = {"hertz", "myc", "thornton", "kogut_etsion", "jackson_green"}
-
-
 @functools.cache
 def of(name):
     """Reference of a law, by its name with its numbers."""
