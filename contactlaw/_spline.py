@@ -4,6 +4,7 @@ A block has 4 x 4 coefficients. Loops over them take twice as long as the four v
 multiplies at once, and numba's compiler does not find these vectors by itself.
 """
 
+import functools
 from typing import Any
 
 import numba
@@ -62,6 +63,6 @@ def _code_of_value(context: Any, builder: Any, signature: Any, arguments: Any) -
     for k in range(4):
         row = builder.load(builder.bitcast(builder.gep(data, [at]), _FOUR.as_pointer()), align=8)
         total, at = times_plus(spread(a, k), row, total), builder.add(at, stride)
-    x = [builder.extract_element(builder.fmul(total, b), _INDEX(k)) for k in range(4)]
-    total = builder.fadd(builder.fadd(x[0], x[1]), builder.fadd(x[2], x[3]))
-    return builder.fmul(total, ir.Constant(ir.DoubleType(), 1.0 / 36.0))
+    weighed = builder.fmul(total, b)
+    whole = functools.reduce(builder.fadd, (builder.extract_element(weighed, _INDEX(k)) for k in range(4)))
+    return builder.fmul(whole, ir.Constant(ir.DoubleType(), 1.0 / 36.0))

@@ -198,7 +198,7 @@ def table_for(law: Law, table: TableArgument) -> Table:
         table = file.read(table)
     elif not isinstance(table, Table):
         raise TypeError(f"table: expected a Table, Settings or the path of a file, got {table!r}")
-    exceeded = table.exceeded
+    exceeded = table.exceeded()
     if exceeded.keys() - _NEXT_TO_YIELD:
         warnings.warn(
             f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "

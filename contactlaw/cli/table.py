@@ -50,8 +50,8 @@ def _check(arguments: Namespace) -> None:
     stored = _stored(arguments)
     certified = replace(stored, certificate=table.certify(stored, arguments.points, secrets.randbits(32)))
     _print_certificate(certified)
-    if certified.exceeded:
-        raise ValueError(f"the table exceeds its bounds: {certified.exceeded}")
+    if exceeded := certified.exceeded():
+        raise ValueError(f"the table exceeds its bounds: {exceeded}")
 
 
 def _build(arguments: Namespace) -> None:

@@ -392,17 +392,14 @@ class Function:
         if name == "_array_at":
             return self._at_address(*node.args)
         values = [self.value(one) for one in node.args]
-        if called is tuple_of:
-            source, changed = node.args[1], {one.arg: one.value for one in node.keywords}
-            fields: list[Any] = [changed.get(name, ast.Attribute(source, name)) for name in values[0].known._fields]
-            return self._call(ast.Call(node.args[0], fields, []))
-        if called is numbers_at:
-            array, begin, step = node.args[1:]
-            numbers: list[Any] = [
-                ast.Subscript(array, ast.BinOp(begin, ast.Add(), ast.BinOp(ast.Constant(k), ast.Mult(), step)))
-                for k in range(len(values[0].known._fields))
-            ]
-            return self._call(ast.Call(node.args[0], numbers, []))
+        if called in (tuple_of, numbers_at):
+            (maker, source, *where), names = node.args, values[0].known._fields
+            changed = {one.arg: one.value for one in node.keywords}
+            fields: list[Any] = [changed.get(name, ast.Attribute(source, name)) for name in names]
+            if where:
+                steps = (ast.BinOp(ast.Constant(k), ast.Mult(), where[1]) for k in range(len(names)))
+                fields = [ast.Subscript(source, ast.BinOp(where[0], ast.Add(), one)) for one in steps]
+            return self._call(ast.Call(maker, fields, []))
         if called is len:
             return self._length(node, values[0])
         if called in (min, max, np.minimum, np.maximum):

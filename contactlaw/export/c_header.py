@@ -202,9 +202,8 @@ def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
     stronger = f" and strengths to {strength:.4g}" if strength > 1.0 else ""
     yield from _comment(
         f"table of COR, lambda to {settings.largest_inelasticity:g} and chi to "
-        f"{settings.largest_overload:g}{stronger}; certificate: at {certificate.points} random "
-        f"points, seed {certificate.seed}, within {certificate.largest['restitution']:.1e} of the "
-        "integrated equation"
+        f"{settings.largest_overload:g}{stronger}; certificate: within "
+        f"{certificate.largest['restitution']:.1e} of the integrated equation"
     )
 
 

@@ -71,8 +71,6 @@ def measured(law: Law, rtol: float, packed: Array, histories: Array | None, poin
     """Compare a table with the solver at random points."""
     if not 100 <= points <= 10_000_000:
         raise ArgumentError("points", points, "at least 100 and at most 10 000 000 are taken")
-    if seed < 0:
-        raise ArgumentError("seed", seed, "must not be negative")
     numbers, rtol = random_points(Grid.of(packed), points, np.random.default_rng(seed)), _FINER * rtol
     looked, exact = outcome.at(*numbers), outcome.at(*numbers)
     sweep.solve(law, exact, rtol, lambda part: part)
@@ -99,7 +97,7 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
     # uniform in the root: COR changes most where lambda is small
     root = np.clip((1.0 + 2.0 * _AT_ENDS) * u[0] - _AT_ENDS, 0.0, 1.0)
     lam = root**2 * (STRETCH * axes.x_max / (1.0 - axes.x_max))
-    log_k = np.sort(u[1]) * grid.ladder[-1]
+    log_k = np.sort(u[1]) * math.log(grid.rungs[-1, 0])
     rung = np.array([np.interp(np.exp(log_k), grid.rungs[:, 0], column) for column in grid.rungs.T])
     kinds = [u[2] < 0.2, u[2] < 0.4, u[2] < 0.4 + 0.1 * (axes.after > 0.0)]
     t = np.select(kinds, [u[3], 1.0 + _NEAR_KINK * (2.0 * u[3] - 1.0), 2.0 + u[3]], 1.0 + u[3])

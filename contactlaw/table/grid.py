@@ -109,11 +109,6 @@ class Grid:
         return cls(packed[: lookup.HEADER], packed[lookup.HEADER : end].reshape(-1, RUNG))
 
     @property
-    def ladder(self) -> Array:
-        """Return ln k of the rungs."""
-        return np.log(self.rungs[:, 0])
-
-    @property
     def axes(self) -> Axes:
         """Numbers of cells and limits."""
         return Axes(*self.head[: len(Axes._fields)].tolist())

@@ -52,13 +52,8 @@ class Table:
         """Nodes of the fields."""
         return Grid.of(self.packed)
 
-    @property
-    def exceeded(self) -> dict[str, float]:
-        """Errors of the certificate that are larger than promised."""
-        return self.above(1.0)
-
-    def above(self, share: float) -> dict[str, float]:
-        """Errors of the certificate above this share of what is promised."""
+    def exceeded(self, share: float = 1.0) -> dict[str, float]:
+        """Errors of the certificate that are above this share of what is promised."""
         largest, promised = self.certificate.largest if self.certificate else {}, bounds(self.law)
         return {name: error for name, error in largest.items() if not error <= share * promised[name]}
 
@@ -94,12 +89,12 @@ def build(law: Law, settings: Settings | None = None, *, points: int = POINTS) -
     for doubling in range(_DOUBLINGS):
         grid = grid.with_axes(beyond=settings.columns * 2**doubling)
         table = _certified(slow, settings, grid, points)
-        if not table.above(margin):
+        if not table.exceeded(margin):
             break
     for halving in range(_DOUBLINGS if law.strengths else 0):
         ladder = grids.ladder_of(law, _APART / 2**halving)
         table = _certified(law, settings, grid.on_ladder(law, ladder), points)
-        if not table.above(margin):
+        if not table.exceeded(margin):
             break
     return table
 
