@@ -111,7 +111,7 @@ def plate_signal(
     >>> record = cl.Record(rows, [cl.Bodies(pair, "fem")])
     >>> signal = cl.plate_signal(record, wall=0, at=(0.1, 0.0, 0.0), rate=1e6)
     >>> f"{1e3 * signal.value.max():.2f} mm/s after {1e3 * signal.time[signal.value.argmax()]:.2f} ms"
-    '3.08 mm/s after 0.10 ms'
+    '3.93 mm/s after 0.06 ms'
     """
     rate = positive("rate", rate, "1/s")
     if quantity not in ("velocity", "acceleration"):

@@ -130,8 +130,8 @@ class Run:
     @cached_property
     def waves(self) -> tuple[Spectrum | None, str]:
         """Power that `walls` take, by frequency; without it the reason why it is not known."""
-        if not np.ptp(self.rows["time"]):
-            return None, "all contacts are at one time"
+        if np.unique(self.rows["time"]).size < 2:
+            return None, "there are no contacts at two times"
         rows = self.rows.copy()
         rows["plate"] = self._named[1]
         try:

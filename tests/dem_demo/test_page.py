@@ -106,6 +106,6 @@ def test_a_rain_that_never_lands(tmp_path, page, monkeypatch, capfd):
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     said, errors = capfd.readouterr()
     assert "Written to" in said and errors == ""
-    assert "All impacts on walls are inside" in (tmp_path / "summary.txt").read_text()
+    assert "No impact on a wall is flagged" in (tmp_path / "summary.txt").read_text()
     page.open(tmp_path / "index.html", 390)
     assert page.value(WIDE) == []
