@@ -51,8 +51,11 @@ def histories_of(record: Record) -> Iterator[Histories]:
     known = False
     for number, (pair, law) in enumerate(record.bodies):
         some = np.flatnonzero((rows["kind"] == Kind.IMPACT) & (record.which == number))
-        for part in np.split(some, range(_CHUNK, some.size, _CHUNK)) if some.size else ():
-            hit, model = rows[part], ImpactModel(pair, law, outside="solve")
+        if not some.size:
+            continue
+        model = ImpactModel(pair, law, outside="solve")
+        for part in np.split(some, range(_CHUNK, some.size, _CHUNK)):
+            hit = rows[part]
             beads, thickness = np.maximum(hit["parcel"], 1.0) ** 3, hit["thickness"]
             contact = model.force_history(
                 hit["approach_speed"], hit["radius"], thickness, _SAMPLES, mass=hit["mass"] / beads

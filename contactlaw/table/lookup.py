@@ -62,7 +62,6 @@ STRETCH = 2.0  # c of x = lambda/(lambda + c)
 DEGREE = 11  # of polynomials
 NO_MASSES = np.empty(0)
 _CHUNK = 256  # impacts at a time: the scratch arrays stay in the first-level cache
-_SCRATCH = 11 * _CHUNK  # of which a rung takes most
 
 
 class Axes(NamedTuple):
@@ -212,6 +211,7 @@ class Rung(NamedTuple):
 
 SINGLE = Rung(0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # of a table without a ladder
 _ROUNDING = 1.0 + 1e-9  # largest way between two rungs
+_SCRATCH = len(Rung._fields) * _CHUNK  # numbers of a chunk's rungs, which are more than those of its places
 
 
 @kernel(inline=True)

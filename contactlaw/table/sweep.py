@@ -38,8 +38,10 @@ def solve(law: Law, out: Outcome, rtol: float, values: Callable[[Outcome], _T]) 
             )
         return values(part)
 
-    parts, show = range(0, out.strength.size, _PART), {"desc": "contactlaw: solving", "delay": 1, "disable": None}
-    solved: list[_T] = thread_map(of_part, parts, max_workers=os.cpu_count(), **show)
+    parts = range(0, out.strength.size, _PART)
+    solved: list[_T] = thread_map(
+        of_part, parts, max_workers=os.cpu_count(), desc="contactlaw: solving", delay=1, disable=None
+    )
     return solved
 
 
