@@ -33,8 +33,8 @@ from contactlaw.physical.strengths import Fineness
 
 # Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
 # model's, and in the scan before, within 5e-2.
-COARSE = Fineness(1e-6, 6.0, 0.04, REACH, 5e-3)
-ROUGH = Fineness(1e-5, 6.0, 0.12, REACH, 5e-3)
+COARSE = Fineness(1e-6, 4.0, 0.04, REACH, 5e-3)
+ROUGH = Fineness(1e-5, 4.0, 0.12, REACH, 5e-3)
 _STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 

@@ -24,28 +24,29 @@ import math
 import pkgutil
 import re
 from types import ModuleType
+from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law, Strengths
 
-__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Strengths", "Unloading", "exact", "law", "names", "parameters"]
+__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Strengths", "Unloading", "law", "names", "parameters"]
 
 DEFAULT = "fem"
 """The law if none is named; it meets the targets of ``validation.accuracy.acceptance``."""
 
-_RANGES = {  # lowest and highest value of each parameter that a law may have
-    "modulus_ratio": (0.0, 1e6),
-    "poissons_ratio": (0.0, 0.5),
-    "sphere_ratio": (0.0, 1e13),  # no Material reaches 1e13: its sigma_Y is at least 1e-12 E
-    "plate_ratio": (0.0, 1e13),
-    "modulus_share": (0.0, 1.0),
-    "plate_poissons_ratio": (0.0, 0.5),
-    "sphere_hardening": (0.0, 1e12),
-    "plate_hardening": (0.0, 1e12),
-    "sphere_exponent": (0.0, 1.0),
-    "plate_exponent": (0.0, 1.0),
-    "loss_factor": (0.0, 1.0),
+_LARGEST = {  # value of each parameter that a law may have; the least is 0
+    "modulus_ratio": 1e6,
+    "poissons_ratio": 0.5,
+    "sphere_ratio": 1e13,  # no Material reaches 1e13: its sigma_Y is at least 1e-12 E
+    "plate_ratio": 1e13,
+    "modulus_share": 1.0,
+    "plate_poissons_ratio": 0.5,
+    "sphere_hardening": 1e12,
+    "plate_hardening": 1e12,
+    "sphere_exponent": 1.0,
+    "plate_exponent": 1.0,
+    "loss_factor": 1.0,
 }
 _BRACKETS = re.compile(r"\([-+.,0-9e]+\)")
 
@@ -93,13 +94,15 @@ def parameters(name: str) -> tuple[str, ...]:
     return () if typed else tuple(getattr(_module(family), "PARAMETERS", ()))
 
 
-def law(name: str, **numbers: float) -> Law:
+def law(name: str, *, exact: bool = False, **numbers: float) -> Law:
     """Look up a law by its name.
 
     Parameters
     ----------
     name : str
         One of `names`. The values of a law's `parameters` may follow in brackets.
+    exact : bool, optional
+        Take the values as they are, to differentiate by them, and at any size; the name shows six digits.
     **numbers : float
         Values of its `parameters` if the name has none, rounded to six digits; others are ignored.
 
@@ -115,6 +118,9 @@ def law(name: str, **numbers: float) -> Law:
     0.68
     >>> law("kogut_etsion", poissons_ratio=0.3).name
     'kogut_etsion(0.3)'
+    >>> near = [law("kogut_etsion", exact=True, poissons_ratio=nu) for nu in (0.3, 0.3 + 1e-9)]
+    >>> near[0].name == near[1].name, near[0].yield_coefficient == near[1].yield_coefficient
+    (True, False)
     """
     family, typed = _typed(name)
     module = _module(family)
@@ -129,10 +135,11 @@ def law(name: str, **numbers: float) -> Law:
         plain: Law = module.LAW
         return plain
     form = f"{family}({','.join(wanted)})"
-    values = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
+    values: Any = typed or [numbers[parameter] for parameter in wanted if parameter in numbers]
     if len(values) != len(wanted):
         raise ArgumentError("law", name, f"needs a value for each parameter: name it as {form}")
-    made: Law = module.law(*(_rounded(*pair, form) for pair in zip(wanted, values, strict=True)))
+    values = values if exact else [_rounded(*pair, form) for pair in zip(wanted, values, strict=True)]
+    made: Law = module.law(*values)
     return made if typed else dataclasses.replace(made, from_pair=every)
 
 
@@ -142,29 +149,6 @@ def own(law: Law) -> Law:
     if family in names() and law != getattr(_module(family), "LAW", law.parameters and law):
         raise ArgumentError("law", family, "a law of contactlaw has this name: give yours another")
     return law
-
-
-def exact(name: str, **numbers: float) -> Law:
-    """Make a law from unrounded parameters, to differentiate by them; its name shows six digits.
-
-    Parameters
-    ----------
-    name : str
-        Name of a law with `parameters`, without their values.
-    **numbers : float
-        Values of the parameters; others are ignored.
-
-    Examples
-    --------
-    >>> from contactlaw.laws import exact
-    >>> near = [exact("kogut_etsion", poissons_ratio=nu) for nu in (0.3, 0.3 + 1e-9)]
-    >>> near[0].name == near[1].name, near[0].yield_coefficient == near[1].yield_coefficient
-    (True, False)
-    """
-    module = _module(name)
-    numbers = {**getattr(module, "DEFAULTS", {}), **numbers}
-    made: Law = module.law(*(numbers[parameter] for parameter in module.PARAMETERS))
-    return made
 
 
 def _typed(name: str) -> tuple[str, list[str]]:
@@ -183,12 +167,11 @@ def _module(family: str) -> ModuleType:
 
 def _rounded(parameter: str, value: float | str, form: str) -> float:
     """Round a law's parameter to the six digits that its name shows, and check its range."""
-    low, high = _RANGES[parameter]
     try:
         number = float(f"{float(value):.6g}")
     except (TypeError, ValueError):
         number = math.nan
-    if not low <= number <= high:
-        reason = f"{parameter} must lie between {low:g} and {high:g}, not {value!r}"
+    if not 0.0 <= number <= (most := _LARGEST[parameter]):
+        reason = f"{parameter} must lie between 0 and {most:g}, not {value!r}"
         raise ArgumentError("law", form, reason)
     return number

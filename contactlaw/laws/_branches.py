@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -10,8 +11,21 @@ from contactlaw._arrays import Array as Array  # also for the laws
 
 Formula = Callable[[Array], Array]
 
+T = TypeVar("T")
 END = 1e5  # [d_Y]; a law without a range follows its formulas up to here; for more see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
+
+
+def once(function: Callable[[Array], T]) -> Callable[[Array], T]:
+    """Keep the values at the last array: several functions of a law are asked for at the same one."""
+    last: list[Any] = [None, None]
+
+    def kept(at: Array) -> T:
+        if at is not last[0]:
+            last[:] = at, function(at)
+        return last[1]  # type: ignore[no-any-return]
+
+    return kept
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ is used without expansion.
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.polynomial import Polynomial, chebyshev
 from contactlaw._arrays import Array, Mask
 from contactlaw._errors import ArgumentError
 from contactlaw.equation import force as _force
-from contactlaw.laws._branches import HERTZ, Formula, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Formula, Loading, Unloading, once
 
 _TERMS = 18  # Chebyshev terms per piece
 _ROUNDING = 1e-13  # a value may be negative by this share of its size, from rounding
@@ -246,7 +247,8 @@ class _Contacts:
     """Contacts of one branch, as its formulas have them, for arrays of largest compressions."""
 
     def __init__(self, curve: LoadingCurve, branch: Unloading) -> None:
-        self.curve, self.branch = curve, branch
+        self.curve, self.branch = curve, replace(branch, residual=once(branch.residual))
+        self.work, self.loss = once(curve.work), once(self._loss)
 
     def residual(self, dm: Array) -> Array:
         return self.branch.residual(dm) * (dm - 1.0) ** self.branch.order
@@ -257,18 +259,18 @@ class _Contacts:
             return self._over_work(dm) / recovery(dm) - 1.0
         return exponent(dm) if callable(exponent) else np.full_like(dm, exponent)
 
-    def loss(self, dm: Array) -> Array:
+    def _loss(self, dm: Array) -> Array:
         recovery = self.branch.recovery
         share = recovery(dm) if recovery is not None else self._over_work(dm) / (self.exponent(dm) + 1.0)
-        return (1.0 - share) * self.curve.work(dm)
+        return (1.0 - share) * self.work(dm)
 
     def _over_work(self, dm: Array) -> Array:
         """Force times the compression that is given back, over the loading work."""
-        return self.curve.force(dm) * (dm - self.residual(dm)) / self.curve.work(dm)
+        return self.curve.force(dm) * (dm - self.residual(dm)) / self.work(dm)
 
     def rows(self, name: str, edges: Sequence[float], resolution: Resolution) -> list[_Piece]:
         """Pieces of the unloading curves."""
-        branch, curve = self.branch, self.curve
+        branch = self.branch
 
         # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
         # for a loss, the loss itself; for an exponent, what rounding of the span leaves. Rounding does
@@ -277,7 +279,7 @@ class _Contacts:
             return branch.residual(dm) * np.clip(1.0 - self.residual(dm) / dm, 0.05, 1.0)
 
         def lost(dm: Array) -> Array:
-            work = curve.work(dm)
+            work = self.work(dm)
             return np.clip(self.loss(dm), 0.05 * work, 0.2 * work)
 
         def per_span(dm: Array) -> Array:
@@ -289,7 +291,7 @@ class _Contacts:
             _Function("exponent", lambda dm: 2.0 * self.exponent(dm), branch.recovery and per_span),
             # divided by its power of dm - 1, a loss does not vanish and is its own size
             _Function("loss", branch.loss or self.loss, None if branch.loss_order else lost),
-            _Function("other loss", lambda dm: other(dm) * curve.work(dm), lost),
+            _Function("other loss", lambda dm: other(dm) * self.work(dm), lost),
         ]
         powers = (branch.order, 0.0, branch.loss_order, 0.0)
         return [

@@ -64,7 +64,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from contactlaw._bisect import bisect
-from contactlaw.laws._branches import Array, Loading, Unloading
+from contactlaw.laws._branches import Array, Loading, Unloading, once
 from contactlaw.laws._law import Law
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
@@ -203,8 +203,6 @@ class Given(NamedTuple):
         }
 
 
-_STRENGTHS = Given._fields[:2]
-_HARDENING = Given._fields[5:9]
 PARAMETERS = Given._fields
 DEFAULTS = Given._field_defaults  # of the numbers of hardening and losses
 
@@ -243,7 +241,8 @@ class Curves:
                 powers = np.array(cases.get(case, {}).get(part, [[0.0]]))
                 terms[int(part == "share"), : len(powers), : len(powers[0])] += weight * powers
             usual, moved = terms  # the term with the modulus has a factor 1 - t
-            self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
+            self._terms[name] = np.zeros((_POWERS[0] + 1, _POWERS[1]))
+            self._terms[name][:-1] = usual + moved
             self._terms[name][1:] -= moved
 
     def _own(self, q: Array) -> Array:
@@ -327,8 +326,7 @@ class Strains(NamedTuple):
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
-        usual = given._replace(**{name: Given._field_defaults[name] for name in _HARDENING})
-        return usual._replace(**dict(zip(_STRENGTHS, self.ratios(given, _TYPICAL), strict=True)))
+        return Given(*self.ratios(given, _TYPICAL), *given[2:5], loss_factor=given.loss_factor)
 
 
 def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
@@ -350,7 +348,7 @@ def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
 def flowing(given: Given, found: dict[str, Any]) -> Given:
     """Bodies as they flow: those with losses flow less, as stronger ones would."""
     weaker = math.exp(-found["pressure"] * given.relaxation)
-    return given._replace(**{name: weaker * getattr(given, name) for name in _STRENGTHS})
+    return given._replace(sphere_ratio=weaker * given.sphere_ratio, plate_ratio=weaker * given.plate_ratio)
 
 
 def comparable(given: Given) -> list[Given]:
@@ -358,6 +356,27 @@ def comparable(given: Given) -> list[Given]:
     if not given.hardens:
         return [given]
     return [given, *(one.typical(given) for one in strains(given, fitted()))]
+
+
+class Stronger:
+    """How much stronger bodies that harden are than at the typical depth; both by their share of the flow."""
+
+    def __init__(self, given: Given, found: dict[str, Any]) -> None:
+        self.given, self.taken = given, strains(given, found)[1]
+        self.typical, blend = self.taken.typical(given), found["blend"]
+        self.flow = list(self.typical.flow(blend).values())
+        self.root = math.sqrt(self.typical.yield_scale(blend))  # sqrt(d_Y/R) at the typical strength
+        # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
+        # strength there would stop the flow again, so that its strain begins before yield, too.
+        latest = _LATEST * self.root * self.at(0.0)
+        self.corner = math.log(self.taken.start / latest)  # the law has a corner where this changes its sign
+        self.taken = self.taken._replace(start=min(self.taken.start, latest))
+
+    def at(self, w: Any) -> Any:
+        """Strength at w = sqrt(d/R) over that at the typical depth."""
+        now = self.taken.ratios(self.given, w)
+        shares = zip(self.flow, self.typical, now, strict=False)
+        return math.prod((then / now) ** share for share, then, now in shares if share)
 
 
 class HardeningCurves(Curves):
@@ -371,34 +390,19 @@ class HardeningCurves(Curves):
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or fitted()
-        blend, (_, taken) = float(found["blend"]), strains(given, found)
-        typical = taken.typical(given)
-        super().__init__(typical, found)
-        flow = list(typical.flow(blend).values())
-        self.onset = Given(*given[:5]).yield_scale(blend)
-        root = math.sqrt(self.scale)
-
-        def stronger(w: Any) -> Any:
-            """Strength over that at the typical depth; both bodies' by their share of the flow."""
-            now = taken.ratios(given, w)
-            shares = zip(flow, typical, now, strict=False)
-            return math.prod((then / now) ** share for share, then, now in shares if share)
-
-        # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
-        # strength there would stop the flow again, so that its strain begins before yield, too.
-        latest = _LATEST * root * float(stronger(0.0))
-        self.corner = math.log(taken.start / latest)  # the law has a corner where this changes its sign
-        taken = taken._replace(start=min(taken.start, latest))
+        stronger = Stronger(given, found)
+        super().__init__(stronger.typical, found)
+        self.onset = Given(*given[:5]).yield_scale(found["blend"])
+        root, taken = stronger.root, stronger.taken
         # yield begins where the compression passes that of the strength there
-        first = float(bisect(lambda w: w < root * stronger(w), 0.0, _WIDEST))
+        first: float = bisect(lambda w: w < root * stronger.at(w), 0.0, _WIDEST)
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
         self._rise = first / (first - taken.start)  # of ln(strain) with ln(w) at yield
         self._hardening = []
-        hardening = (given.sphere_hardening, given.plate_hardening)
-        exponents = (given.sphere_exponent, given.plate_exponent)
-        for share, times, n, slope in zip(flow, hardening, exponents, taken[:2], strict=True):
+        # B/A, n and the slope of the strain of sphere and plate
+        for share, times, n, slope in zip(stronger.flow, given[5:7], given[7:9], taken[:2], strict=True):
             part = times * (slope * (first - taken.start)) ** n
             self._hardening.append((share, part / (1.0 + part), n))
 
@@ -440,12 +444,8 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
-    def recovery(dm: Array) -> Array:
-        return curves.shares(np.sqrt(dm))[0]
-
-    def other(dm: Array) -> Array:
-        return np.asarray(1.0 - sum(curves.shares(np.sqrt(dm))))
-
+    shares = once(lambda dm: curves.shares(np.sqrt(dm)))
+    work: Any = {"recovery": lambda dm: shares(dm)[0], "other": lambda dm: 1.0 - sum(shares(dm))}
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
@@ -454,13 +454,12 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     def residual(dm: Array) -> Array:
         return curves.residual(np.sqrt(dm))
 
-    lossy = curves.recovered < 1.0
-    left, order = (residual, 0.0) if lossy else (np.zeros_like, 2.0)
+    left, order = (residual, 0.0) if curves.recovered < 1.0 else (np.zeros_like, 2.0)
     # tables begin at `start`; the loss begins below, so that no contact in a table is lossless
-    unloading = [Unloading(0.1 * start, left, recovery=recovery, other=other)]
+    unloading = [Unloading(0.1 * start, left, **work)]
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
-        unloading.append(Unloading(1.0, residual, recovery=recovery, other=other, order=order))
+        unloading.append(Unloading(1.0, residual, order=order, **work))
     return {
         "name": "fem",
         "parameters": dict(zip(PARAMETERS, named, strict=False)),

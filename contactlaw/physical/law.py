@@ -1,6 +1,7 @@
 """The law that a user chose for a pair, with the numbers that it takes from the materials."""
 
 import dataclasses
+from typing import Any
 
 from contactlaw import laws
 from contactlaw._errors import ArgumentError
@@ -23,11 +24,15 @@ def law_of(pair: Pair, law: str | Law) -> Law:
         found = laws.own(law)
     elif not isinstance(law, str):
         raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
-    elif laws.parameters(law):
-        _refuse_auxetic(pair, law)
-        found = laws.law(law, **pair_numbers(pair, law))
     else:
-        found = laws.law(law)
+        for body in pair.bodies:
+            if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
+                reason = (
+                    f"it is made for Poisson's ratios from 0 to 0.5, {body.name!r} has "
+                    f'{body.poissons_ratio:g}: take law="myc", or "hertz" for bodies that do not yield'
+                )
+                raise ArgumentError("law", law, reason)
+        found = laws.law(law, **pair_numbers(pair, law))
     if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
         found = dataclasses.replace(found, from_pair=())  # of another pair: numbers held fixed
     if found.yields and found.scale is None:
@@ -35,27 +40,12 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     return found
 
 
-def _refuse_auxetic(pair: Pair, law: str) -> None:
-    """Refuse negative Poisson's ratios if the law depends on them."""
-    for body in pair.bodies:
-        if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
-            raise ArgumentError(
-                "law",
-                law,
-                f"it is made for Poisson's ratios from 0 to 0.5, {body.name!r} has "
-                f'{body.poissons_ratio:g}: take law="myc", or "hertz" for bodies that do not yield',
-            )
-
-
 def law_for_pair(pair: Pair, law: Law) -> Law:
     """Law for another pair: it gets that pair's numbers, unrounded, if it takes any."""
-    if not law.from_pair:
-        return law
-    own = laws.exact(law.family, **pair_numbers(pair, law.family))
-    return dataclasses.replace(own, from_pair=law.from_pair)
+    return laws.law(law.family, exact=True, **pair_numbers(pair, law.family)) if law.from_pair else law
 
 
-def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
+def pair_numbers(pair: Pair, law: str) -> dict[str, Any]:
     """Numbers that laws take from a pair."""
     numbers = {
         "poissons_ratio": pair.sphere.poissons_ratio,

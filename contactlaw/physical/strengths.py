@@ -79,8 +79,8 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
 
 def law_array(formulas: dict[str, Any], end: float, fineness: Fineness = USUAL) -> Array:
     """Law of `formulas_at`, as kernels take it, which follows them up to a compression [d_Y]."""
-    resolution = Resolution(fineness.vanished, fineness.widest)
-    return packed(*expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, resolution))
+    branches = formulas["loading"], formulas["unloading"]
+    return packed(*expanded(formulas["name"], *branches, end, Resolution(*fineness[:2])))
 
 
 def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:
@@ -105,8 +105,7 @@ def _given(pair: Pair, log_factor: float) -> fem.Given:
 
 @functools.lru_cache(maxsize=4)
 def _slow(pair: Pair) -> fem.Given:
-    known = pair_numbers(pair, "fem")
-    return fem.Given(**{name: known[name] for name in fem.PARAMETERS if name in known})
+    return fem.Given(**pair_numbers(pair, "fem"))
 
 
 @functools.lru_cache(maxsize=4)
@@ -165,7 +164,7 @@ def _same_sign(pair: Pair, k: int, value: float, log_factor: float) -> bool:
 def _corners(pair: Pair, log_factor: float) -> list[float]:
     """Numbers that change their signs at corners of the law."""
     given = fem.flowing(_given(pair, log_factor), fem.fitted())
-    found = [fem.HardeningCurves(given).corner] if given.hardens else []
+    found = [fem.Stronger(given, fem.fitted()).corner] if given.hardens else []
     for one in fem.comparable(given):
         found += [math.log(one.ratio / at) for at in (*RATIOS, *_DEEPEST)]
         if min(one[:2]) > 0.0:

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, eigh, solve_triangular
 from scipy.optimize import brentq
 
-from contactlaw import laws
+from contactlaw.laws import fem
 
 Array = NDArray[np.float64]
 
@@ -42,15 +42,8 @@ INELASTICITIES = 0.03, 0.1, 0.3, 1.0
 DISTANCES = 0.15, 0.3, 0.6, 1.2, 2.4, 4.8  # [sqrt(b T_H)]; steps of 2 share plates, see `SPANS`
 OVERLOADS = {"hertz": (0.0,), "myc": (10.0, 100.0), "fem": (1.0, 10.0, 100.0)}
 SPANS = 8.0, 32.0  # times for which the plate is followed [T_H]: the second for long contacts
-# Gamma-alumina on glass, where only the sphere yields, in the numbers that the law "fem" takes.
-FEM = {
-    "modulus_ratio": 23.2,
-    "poissons_ratio": 0.21,
-    "sphere_ratio": 23.2,
-    "plate_ratio": 0.0,
-    "modulus_share": 0.1435,
-    "plate_poissons_ratio": 0.21,
-}
+# Gamma-alumina on glass, where only the sphere yields: first numbers of `contactlaw.laws.fem.PARAMETERS`.
+FEM = 23.2, 0.0, 0.1435, 0.21, 0.21
 _TRUSTED = 0.75  # share of that time in which no wave has come back from the far boundary
 _HELD = {"free": 0, "supported": 1, "clamped": 2}  # of deflection and slope at the edge
 
@@ -202,7 +195,7 @@ class Law:
 
     def __init__(self, name: str, y: float) -> None:
         self.y, self.largest, self.residual = y, 0.0, 0.0
-        self._fem = laws.law("fem", **FEM) if name == "fem" else None
+        self._fem = fem.law(*FEM) if name == "fem" else None
         self._myc = name == "myc"
         self._unload: Callable[[float], float] = lambda w: 0.0
 
