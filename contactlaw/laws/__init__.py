@@ -146,6 +146,7 @@ def law(name: str, *, exact: bool = False, **numbers: float) -> Law:
 def own(law: Law) -> Law:
     """Refuse a law of one's own that has the name of one of the package: it would get its errors."""
     family = law.family
+    # families without parameters have one law, LAW; laws of the others are told by their parameters
     if family in names() and law != getattr(_module(family), "LAW", law.parameters and law):
         raise ArgumentError("law", family, "a law of contactlaw has this name: give yours another")
     return law

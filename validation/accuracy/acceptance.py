@@ -227,9 +227,9 @@ def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
     >>> len(members(TARGETS["paper"]))
     112
     """
-    found = [one for study in target.studies for one in _of_study(study, law, target.least)]
+    found = [one for study in target.studies for one in _of_study(study, law)]
     return tuple(
-        one
+        one._replace(errors=one.errors._replace(restitution=(one.law - one.fem) / max(one.fem, target.least)))
         for one in found
         if one.slenderness <= target.slenderness * (1.0 + 1e-9) and one.speed_ratio <= target.speed_ratio * (1.0 + 1e-9)
     )
@@ -247,12 +247,13 @@ def differences(law: str, flag: Validity, beside: Validity) -> list[float]:
     (9, 0.028)
     """
     others = Validity.ACCURACY & ~(flag | beside)
-    every = (one for study in STORED for one in _of_study(study, law, 1.0))
+    every = (one for study in STORED for one in _of_study(study, law))
     return sorted(one.law - one.fem for one in every if one.flags & flag and not one.flags & others)
 
 
 @functools.cache
-def _of_study(study: str, law: str, least: float) -> tuple[Member, ...]:
+def _of_study(study: str, law: str) -> tuple[Member, ...]:
+    """Impacts of a study, with the errors of a law; those in COR are differences."""
     data = store.read(study).data
     count = data["speed"].size
     impacts = [{key: values[n] for key, values in data.items()} for n in range(count)]
@@ -265,11 +266,11 @@ def _of_study(study: str, law: str, least: float) -> tuple[Member, ...]:
         speed, radius, thickness = (data[key][rows] for key in ("speed", "radius", "thickness"))
         hit = cl.ImpactModel(pair, law).solve(speed, radius, thickness, rtol=1e-10)
         for k, n in enumerate(rows):
-            found[n] = _member(study, pair, impacts[n], hit, k, least)
+            found[n] = _member(study, pair, impacts[n], hit, k)
     return tuple(found[n] for n in sorted(found))
 
 
-def _member(study: str, pair: cl.Pair, fem: dict[str, float], hit: Rebound, k: int, least: float) -> Member:
+def _member(study: str, pair: cl.Pair, fem: dict[str, float], hit: Rebound, k: int) -> Member:
     model = {
         name: float(np.asarray(getattr(hit, name))[k])
         for name in ("restitution", "contact_time", "peak_force", "plastic_fraction")
@@ -286,7 +287,7 @@ def _member(study: str, pair: cl.Pair, fem: dict[str, float], hit: Rebound, k: i
         fem=cor,
         law=model["restitution"],
         errors=Errors(
-            (model["restitution"] - cor) / max(cor, least),
+            model["restitution"] - cor,
             model["contact_time"] / float(fem["contact_time"]) - 1.0,
             model["peak_force"] / float(fem["peak_force"]) - 1.0,
             model["plastic_fraction"] - float(fem["plastic"]),
