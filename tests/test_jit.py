@@ -14,6 +14,7 @@ import numba
 import pytest
 from command_line import parsers
 from forked import fill_disk, in_child, lose_home
+from lasting import long
 from places import ROOT
 
 from contactlaw import _folder, _jit, _kept, cli, laws
@@ -315,12 +316,7 @@ print(json.dumps(found))
 
 
 @pytest.mark.parametrize(
-    "given",
-    [
-        [one for one in COMMANDS if one.split()[1] in ("cor", "constant")],
-        pytest.param(COMMANDS, marks=pytest.mark.long),
-    ],
-    ids=["common", "all"],
+    "given", [[one for one in COMMANDS if one.split()[1] in ("cor", "constant")], long(COMMANDS)], ids=["common", "all"]
 )
 def test_a_second_process_compiles_nothing(given, tmp_path):
     """A kernel that several commands need is read, or compiled, by the first that needs it."""

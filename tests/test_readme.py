@@ -11,6 +11,7 @@ from runpy import run_path
 import needs
 import numpy as np
 import pytest
+from lasting import long
 from places import ROOT
 from rains import write_rain
 
@@ -157,9 +158,7 @@ def test_a_few_beads_run_down_the_hopper(capsys):
 
 
 @pytest.mark.parametrize(
-    "script",
-    [pytest.param(one, marks=pytest.mark.long) if one.stem == "hopper_pymunk" else one for one in EXAMPLES],
-    ids=lambda path: path.stem,
+    "script", [long(one) if one.stem == "hopper_pymunk" else one for one in EXAMPLES], ids=lambda path: path.stem
 )
 def test_examples_run(script):
     """Run the examples as a user does; each prints a result."""

@@ -4,6 +4,7 @@ import kinds
 import numpy as np
 import polymer
 import pytest
+from lasting import long
 
 MYC = kinds.model("myc")
 MODELS = {name: kinds.model(name) for name in ("myc", "fem", "hertz", "rate of the sphere")}
@@ -21,15 +22,7 @@ def impacts(count):
     return speed, sliding, radius, radius * 10 ** generator.uniform(0, 1.5, count), friction
 
 
-@pytest.mark.parametrize(
-    "law",
-    [
-        "myc",
-        "losses and flow",
-        "rate of the sphere",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("fem", "hertz")),
-    ],
-)
+@pytest.mark.parametrize("law", ["myc", "losses and flow", "rate of the sphere", *(long(n) for n in ("fem", "hertz"))])
 def test_table_is_within_its_promise(law):
     """2e-3 of mu V; 7e-3 for metals with a rate of strain at overloads above 50.
 

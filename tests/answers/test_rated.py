@@ -4,6 +4,7 @@ import dataclasses
 
 import kinds
 import pytest
+from lasting import long
 
 import contactlaw as cl
 from contactlaw.cli import main
@@ -17,7 +18,7 @@ MODEL = kinds.model("rate of the sphere")
 PLAIN = dataclasses.replace(kinds.COPPER, rate=None)
 
 
-@pytest.mark.parametrize("other", [None, "glass", pytest.param(kinds.STEEL, marks=pytest.mark.long)])
+@pytest.mark.parametrize("other", [None, "glass", long(kinds.STEEL)])
 def test_beads(other):
     """The rate goes with the reduced radius."""
     v, r, o = 3.0, R, 3.0 * R

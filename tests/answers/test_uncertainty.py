@@ -6,6 +6,7 @@ import math
 import numpy as np
 import own_laws
 import pytest
+from lasting import long
 from scipy.stats import norm, qmc
 
 import contactlaw as cl
@@ -51,7 +52,7 @@ def drawn(body, deviates):
     return body
 
 
-@pytest.mark.parametrize("seed", [36, *(pytest.param(n, marks=pytest.mark.long) for n in range(50, 100))])
+@pytest.mark.parametrize("seed", [36, *(long(n) for n in range(50, 100))])
 def test_the_band_is_that_of_random_pairs(seed):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones.
 

@@ -2,6 +2,7 @@
 
 import pytest
 from demos import names
+from lasting import long
 
 import contactlaw as cl
 from dem_demo import cli
@@ -28,9 +29,7 @@ def test_an_impact_outside_the_table_is_integrated_or_stops_the_run(tmp_path, no
 KINDS = "glass", "aluminium-2024-t351", "epdm"
 
 
-@pytest.mark.parametrize(
-    "sphere", [one if one in KINDS else pytest.param(one, marks=pytest.mark.long) for one in cl.materials()]
-)
+@pytest.mark.parametrize("sphere", [one if one in KINDS else long(one) for one in cl.materials()])
 def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, request, tmp_path, capsys):
     """The beads fall on glass at up to 15 m/s; figures are drawn of bodies that do not yield."""
     request.getfixturevalue("empty_pictures" if sphere == "glass" else "nothing_drawn")

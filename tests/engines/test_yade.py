@@ -29,7 +29,7 @@ def printed(folder):
         package = Path(importlib.util.find_spec(name).origin).parent
         for part in package, package.with_name(f"{name}.libs"):
             (folder / part.name).symlink_to(part)
-    script, kept = ROOT / "docs/examples/yade_softsphere.py", str(folder / "machine-code")  # of another numpy
+    script, kept = ROOT / "docs/examples/yade_softsphere.py", str(ROOT / ".pytest_cache/yade")  # of another numpy
     environment = os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": kept}
     done = subprocess.run(["yade", "-x", "-n", script], env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr

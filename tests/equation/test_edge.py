@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from lasting import long
 from scipy.signal import argrelmax
 from scipy.special import sici
 
@@ -61,11 +62,7 @@ def test_the_mobility_at_a_free_edge(poisson, ratio):
 # between those of the fit; at a clamped and at a supported edge they make no difference
 @pytest.mark.parametrize(
     ("poisson", "kind"),
-    [
-        *((0.15, kind) for kind in KINDS if kind != "supported"),
-        pytest.param(0.15, "supported", marks=pytest.mark.long),
-        pytest.param(0.4, "free", marks=pytest.mark.long),
-    ],
+    [*((0.15, kind) for kind in KINDS if kind != "supported"), long(0.15, "supported"), long(0.4, "free")],
 )
 def test_the_fitted_response_does_the_work_of_the_exact_one(kind, poisson):
     assert error_of_work(kind, poisson) < 0.005
@@ -74,7 +71,7 @@ def test_the_fitted_response_does_the_work_of_the_exact_one(kind, poisson):
 
 
 @pytest.mark.parametrize(  # between those of the fit
-    "radius", [4.0, *(pytest.param(radius, marks=pytest.mark.long) for radius in (20.0, 1.0))]
+    "radius", [4.0, *(long(radius) for radius in (20.0, 1.0))]
 )
 def test_the_fitted_response_near_holes(radius):
     assert error_of_work("free", 0.3, radius) < 0.01

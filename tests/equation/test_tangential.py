@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from lasting import long
 from oracle import contact
 from overloads import solved_at
 
@@ -53,7 +54,7 @@ def solved(lam, chi, law=MYC):
     return solved_at(law, np.array([lam]), np.array([chi]), 1e-11)
 
 
-@pytest.mark.parametrize("kappa", [0.8, *(pytest.param(kappa, marks=pytest.mark.long) for kappa in (0.6, 1.0))])
+@pytest.mark.parametrize("kappa", [0.8, *(long(kappa) for kappa in (0.6, 1.0))])
 @pytest.mark.parametrize(("lam", "chi"), [(0.0, 0.9), (0.3, 3.0), (1.0, 12.0), (2.0, 40.0)])
 def test_springs_of_scipy(lam, chi, kappa):
     found = solved(lam, chi)

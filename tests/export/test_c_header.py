@@ -15,6 +15,7 @@ import numpy as np
 import polymer
 import pytest
 from header import COMPILERS, FIELDS, WARNINGS, build
+from lasting import long
 from own_laws import own
 from places import ROOT
 
@@ -37,7 +38,7 @@ QUICK = "fem", "own", "losses and flow", "a rate"
 
 
 def some(*quick):
-    return [one if one in quick else pytest.param(one, marks=pytest.mark.long) for one in MODELS]
+    return [one if one in quick else long(one) for one in MODELS]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -358,7 +359,7 @@ REFUSED += [
     for prefix in ("", "Steel", "steel-glass", "2pairs", "a__b", "a_", None)
 ]
 # Both bodies come to yield; the laws of such a pair take half a minute.
-REFUSED.append(pytest.param(FLOWS, {}, "above 1000000.*a rate for one of two bodies", marks=pytest.mark.long))
+REFUSED.append(long(FLOWS, {}, "above 1000000.*a rate for one of two bodies"))
 
 
 # The table of the pair of which both bodies come to flow alike is within 2e-5, and says so.

@@ -9,6 +9,7 @@ import numpy as np
 import polymer
 import pytest
 from browser import WIDE
+from lasting import long
 from places import ROOT
 
 import contactlaw as cl
@@ -28,7 +29,7 @@ MODELS = {
 }
 # The others have the same kernels, and other numbers.
 QUICK = "fem", "corners of loading", "losses and flow", "two rates"
-NAMES = [one if one in QUICK else pytest.param(one, marks=pytest.mark.long) for one in MODELS]
+NAMES = [one if one in QUICK else long(one) for one in MODELS]
 # Errors of COR, and of the sliding speed over friction times speed, by laws as the page has them.
 # Its laws are blends of fewer ones.
 BETWEEN = dict.fromkeys(("rate", "two rates"), (2e-4, 1e-3))

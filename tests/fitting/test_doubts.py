@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from lasting import long
 from rebounds import RADIUS, STEEL, rebounds
 
 import contactlaw as cl
@@ -24,7 +25,7 @@ def doubts(pair, data, unknown, stated=True):
     return " | ".join(note for note in notes if DOUBT.search(note))
 
 
-@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 8), marks=pytest.mark.long)], ids=["few", "more"])
+@pytest.mark.parametrize("seeds", [range(3), long(range(3, 8))], ids=["few", "more"])
 @pytest.mark.parametrize("stated", [True, False])
 @pytest.mark.parametrize(
     ("pair", "unknown", "speed"),

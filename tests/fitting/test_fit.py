@@ -11,6 +11,7 @@ import numpy as np
 import own_laws
 import polymer
 import pytest
+from lasting import long
 from places import ROOT
 from rebounds import KINDS, RADIUS, STEEL, THICKNESS, rebounds
 from scipy import stats
@@ -48,7 +49,7 @@ def true(pair, name):
             for name in names
         ),
         (STEEL, "fem", ("plate_yield_strength", "thickness"), 2e-5),
-        pytest.param(STEEL, "fem", ("radius", "thickness", "plate_yield_strength"), 2e-5, marks=pytest.mark.long),
+        long(STEEL, "fem", ("radius", "thickness", "plate_yield_strength"), 2e-5),
         (ON_CARBIDE, "fem", ("yield_strength",), 2e-5),
         (SOFT, "fem", ("yield_strength", "thickness"), 2e-5),
         (RATED, "fem", ("plate_yield_strength",), 1e-3),  # strengths at the rates of the impacts
@@ -329,10 +330,7 @@ def test_the_page_prints_what_the_command_prints(folder, answer):
     assert (output[: len(lines)], more) == (lines, "...")
 
 
-@pytest.mark.parametrize(
-    ("name", "law"),
-    [pytest.param("thickness", "fem", marks=pytest.mark.long), ("density", "fem"), ("yield_strength", "myc")],
-)
+@pytest.mark.parametrize(("name", "law"), [long("thickness", "fem"), ("density", "fem"), ("yield_strength", "myc")])
 def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(name, law):
     """A part of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""
     sets = 30

@@ -4,6 +4,7 @@ import csv
 
 import numpy as np
 import pytest
+from lasting import long
 from places import ROOT
 
 import contactlaw as cl
@@ -80,10 +81,7 @@ def test_friction_of_the_measurements_of_kharaz_and_others(column, kind):
     assert abs(found.values["friction"] - 0.092) < 2.0 * found.errors["friction"] < 0.004
 
 
-@pytest.mark.parametrize(
-    ("friction", "noise"),
-    [(0.5, 0.01), *(pytest.param(*at, marks=pytest.mark.long) for at in ((1.0, 0.03), (2.0, 0.01)))],
-)
+@pytest.mark.parametrize(("friction", "noise"), [(0.5, 0.01), *(long(*at) for at in ((1.0, 0.03), (2.0, 0.01)))])
 def test_beads_that_stick_do_not_determine_it(friction, noise):
     data = measured(KINDS[:1], np.linspace(2.0, 12.0, 4), friction, noise)
     with pytest.raises(cl.UnidentifiedError, match="friction: any above .* larger angles") as error:

@@ -7,6 +7,7 @@ import random
 import numpy as np
 import pytest
 import reference_laws
+from lasting import long
 from mpmath import mpf
 from oracle import ALL_LAWS, NUMBERS
 
@@ -119,11 +120,7 @@ def test_names_of_no_law_are_refused_and_told_what_there_is(name, message):
         laws.law(name)
 
 
-@pytest.mark.parametrize(
-    "pairs",
-    [SOFT + random.Random(44).sample(PAIRS, 12), pytest.param(PAIRS, marks=pytest.mark.long)],
-    ids=["some", "all"],
-)
+@pytest.mark.parametrize("pairs", [SOFT + random.Random(44).sample(PAIRS, 12), long(PAIRS)], ids=["some", "all"])
 @pytest.mark.parametrize("name", laws.names())
 def test_pairs_of_the_catalogue_have_an_answer_or_are_told_what_to_take(name, pairs):
     for pair in pairs:

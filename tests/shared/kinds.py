@@ -6,7 +6,7 @@ import math
 import numpy as np
 import own_laws
 import polymer
-import pytest
+from lasting import long
 
 import contactlaw as cl
 
@@ -39,7 +39,7 @@ SLOW = "rate of the plate", "a corner of the law", "rate and losses"
 
 def params(*left_out, slow=SLOW):
     """Names of the kinds as parameters of a test, of which some take long."""
-    return [pytest.param(one, marks=pytest.mark.long) if one in slow else one for one in PAIRS if one not in left_out]
+    return [long(one) if one in slow else one for one in PAIRS if one not in left_out]
 
 
 @functools.cache

@@ -6,6 +6,7 @@ import lammps_box as box
 import numpy as np
 import pytest
 from lammps_box import R, lost
+from lasting import long
 
 import contactlaw as cl
 from contactlaw.engines.record import Kind
@@ -58,7 +59,7 @@ def test_a_bead_near_an_edge(kind, wall, distance, softening):
     assert abs(row["scheme_energy"]) < 2e-3 * left
 
 
-@pytest.mark.parametrize("count", [12, pytest.param(60, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [6, long(60)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_impacts_near_edges(kind, count):
     """Lambda to 2; from a thickness away to where edges no longer matter; 50 steps a contact."""

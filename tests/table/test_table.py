@@ -8,6 +8,7 @@ import metal
 import numpy as np
 import pytest
 import reference_laws
+from lasting import long
 from oracle import ALL_LAWS
 from overloads import solved_at
 
@@ -40,11 +41,7 @@ def built_for(law):
 # One of the laws has corners, one a smooth loading curve.
 EVERY_LAW = pytest.mark.parametrize(
     "law",
-    [
-        law if law.family in ("thornton", "jackson_green") else pytest.param(law, marks=pytest.mark.long)
-        for law in ALL_LAWS
-        if law.yields
-    ],
+    [law if law.family in ("thornton", "jackson_green") else long(law) for law in ALL_LAWS if law.yields],
     ids=lambda law: law.name,
 )
 
@@ -110,9 +107,7 @@ def pair_of(seed):
     return cl.Pair(body(bool(rng.random() < 0.7)), other), rng
 
 
-@pytest.mark.parametrize(
-    "seed", [seed if seed < 10 else pytest.param(seed, marks=pytest.mark.long) for seed in range(100)]
-)
+@pytest.mark.parametrize("seed", [seed if seed < 10 else long(seed) for seed in range(100)])
 def test_tables_of_random_pairs(seed, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     pair, rng = pair_of(seed)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from dumbbell import ACROSS, ALONG, impact, response
 from lammps_box import ALIKE, MASS, PAIR, R, attach, flat, quiet, state
+from lasting import long
 
 import contactlaw as cl
 from contactlaw.engines.record import Kind
@@ -77,7 +78,10 @@ def energies(lmp):
     return MASS * (middle**2).sum(axis=1) + 0.5 * turning
 
 
-@pytest.mark.parametrize(("friction", "softening"), [(0.0, 1), (0.1, 1), (0.5, 1), (3.0, 1), (0.0, 50), (0.5, 50)])
+BODIES = [(0.0, 1), (0.5, 1), (0.0, 50), (0.5, 50), *(long(mu, 1) for mu in (0.1, 3.0))]
+
+
+@pytest.mark.parametrize(("friction", "softening"), BODIES)
 def test_a_dumbbell_rebounds_as_a_rigid_body_on_springs(friction, softening):
     lmp, _, rows = thrown(AXES, friction, softening)
     first = rows[np.unique(rows["bead"], return_index=True)[1]]

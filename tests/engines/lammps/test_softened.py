@@ -5,6 +5,7 @@ import math
 import lammps_box as box
 import numpy as np
 import pytest
+from lasting import long
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, pair_coeff
@@ -42,7 +43,7 @@ def thrown(model, thickness, speed, sliding=0.0, *, steps=30, softening=SOFT, **
 ALL = [*((one, SOFT, 1.0) for one in MODELS), (MODELS[0], 1.0, 2.0), (MODELS[0], 100.0, 2.0)]
 
 
-@pytest.mark.parametrize("beads", [120, pytest.param(1000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("beads", [120, long(1000)])
 @pytest.mark.parametrize(("model", "softening", "parcel"), ALL, ids=map(str, range(len(ALL))))
 def test_beads_leave_as_from_the_true_impact(model, softening, parcel, beads):
     """Beads of parcels as one of those for which they stand."""

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from lasting import long
 
 import contactlaw as cl
 from validation.fem import curved, walls
@@ -16,7 +17,7 @@ LINER = cl.Validity.LINER
         ((("steel", 0.3), ("steel", 0.2)), 0.003, False),  # layers of one material change nothing
         ((("aluminium", 0.25), ("steel", 0.25)), 0.003, False),
         ((("ceramic", 0.5), ("steel", 0.5)), 0.005, False),
-        pytest.param((("polymer", 0.25), ("steel", 0.25)), 0.025, True, marks=pytest.mark.long),
+        long((("polymer", 0.25), ("steel", 0.25)), 0.025, True),
     ],
 )
 def test_layers_are_as_near_to_finite_elements_as_their_flags_say(plate, most, flag):

@@ -146,6 +146,7 @@ def test_energy_and_momentum_are_kept(sliding):
     assert speed[-1] == sliding.sliding_speed
 
 
+@pytest.mark.long
 def test_normal_incidence_has_neither_spin_nor_tangential_force():
     """Rounding decides which elements touch first: the impulse is 3e-6 to 1.6e-5, by their size."""
     hit = oblique_impact(PAIR, SPEED, 0.0, R, R, FRICTION, across=3)
