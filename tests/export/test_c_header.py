@@ -282,7 +282,7 @@ def partly_odd(rng, usual, share):
     return np.where(rng.random(usual.shape) < share, odd, usual)
 
 
-@pytest.mark.parametrize("name", some("fem", "a rate"))
+@pytest.mark.parametrize("name", some("a rate"))
 def test_sanitizers_find_nothing_whatever_the_input(name, folder_of):
     """Arguments, springs and states may be NaN, inf, zero, negative, denormal or random bits."""
     sizes = [f"-DGIVEN={header.GIVEN}", f"-DWIDTH={header.WIDTH}"]
@@ -453,7 +453,7 @@ def test_the_documented_c_compiles(folder_of):
     build(folder_of("fem"), source, "-c", *WARNINGS)
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("compiler", ["gcc", long("g++")])
 def test_several_pairs_live_in_one_source_file(compiler, tmp_path):
     """Each prefix has its own pair's numbers, and no name of another; without one they clash."""
     models = {"contactlaw": model_of("myc"), "steel": cl.ImpactModel(STEEL), "steel2": model_of("fem")}

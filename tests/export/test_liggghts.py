@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import scenes
 import trimesh
+from lasting import long
 from once import once
 from places import ROOT
 
@@ -255,7 +256,7 @@ def shower(scene):
     return beads(centres, velocities)
 
 
-@pytest.mark.parametrize("soft", [1, 100])
+@pytest.mark.parametrize("soft", [1, long(100)])
 def test_ranks_runs_in_parts_and_a_restart_in_contact_change_no_digit(soft, scene):
     start, walls = shower(scene), softening(soft) + meshes(sheet=3)
     options = {"friction": FRICTION, "skin": 4e-5, "every": 10, "step": time_step(MODEL, 9.0, RADIUS, math.inf)}

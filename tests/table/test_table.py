@@ -107,7 +107,7 @@ def pair_of(seed):
     return cl.Pair(body(bool(rng.random() < 0.7)), other), rng
 
 
-@pytest.mark.parametrize("seed", [seed if seed < 10 else long(seed) for seed in range(100)])
+@pytest.mark.parametrize("seed", [seed if seed < 6 else long(seed) for seed in range(100)])
 def test_tables_of_random_pairs(seed, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     pair, rng = pair_of(seed)

@@ -78,10 +78,7 @@ def energies(lmp):
     return MASS * (middle**2).sum(axis=1) + 0.5 * turning
 
 
-BODIES = [(0.0, 1), (0.5, 1), (0.0, 50), (0.5, 50), *(long(mu, 1) for mu in (0.1, 3.0))]
-
-
-@pytest.mark.parametrize(("friction", "softening"), BODIES)
+@pytest.mark.parametrize(("friction", "softening"), [(0.0, 1), (0.5, 1), long(3.0, 1), (0.0, 50), (0.5, 50)])
 def test_a_dumbbell_rebounds_as_a_rigid_body_on_springs(friction, softening):
     lmp, _, rows = thrown(AXES, friction, softening)
     first = rows[np.unique(rows["bead"], return_index=True)[1]]
