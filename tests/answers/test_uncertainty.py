@@ -12,7 +12,6 @@ from scipy.stats import norm, qmc
 import contactlaw as cl
 from contactlaw.answers import law_errors
 from contactlaw.cli.parts import bands
-from validation.accuracy import acceptance
 
 INF = math.inf
 
@@ -120,21 +119,6 @@ def test_one_number_alone_makes_the_band_of_its_ends(bead, plate, number, error,
     assert cor.causes[cause] == pytest.approx(width, rel=within)
     if number not in ("hardening", "rate"):
         assert 0.5 * (cor.high - cor.low) == pytest.approx(np.hypot(width, cor.causes["model"]), rel=0.02)
-
-
-def rms(impacts):
-    errors = np.array([one.errors[:3] for one in impacts])
-    return np.sqrt(np.mean(errors**2, axis=0))
-
-
-def test_the_stated_errors_are_those_beside_finite_elements():
-    """Of metals that harden, and of bodies as soft as lead, which no fit has seen."""
-    hard = [one for name in ("metals", "bodies") for one in acceptance.rows([name])[name].counted]
-    assert rms(hard) == pytest.approx(law_errors.HARDENING_ERRORS, rel=0.01)
-    soft = acceptance.members(acceptance.TARGETS["bodies"]._replace(studies=("bodies_soft",)))
-    soft = [one for one in soft if not one.flagged]  # one bends its plate
-    assert rms(soft) == pytest.approx(law_errors.SOFT_ERRORS, rel=0.01)
-    assert max(abs(one.errors[0]) for one in soft) < 0.026
 
 
 def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():

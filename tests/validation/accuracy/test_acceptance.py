@@ -8,6 +8,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
+from contactlaw.answers import law_errors
 from validation.accuracy import acceptance, halfspace
 from validation.accuracy.acceptance import TARGETS, Errors, Member, Row
 from validation.fem import census
@@ -67,6 +68,21 @@ def test_flags_say_how_wrong_the_cor_is(law, flag, beside, count, least, largest
     (words,) = cl.explain(flag)
     ends = (f"{abs(end):.2f}" for end in (found[0], found[-1]) if abs(end) >= 0.025)
     assert all(end in words for end in ends)
+
+
+def rms(impacts):
+    errors = np.array([one.errors[:3] for one in impacts])
+    return np.sqrt(np.mean(errors**2, axis=0))
+
+
+def test_the_stated_errors_are_those_beside_finite_elements(rows):
+    """Of metals that harden, and of bodies as soft as lead, which no fit has seen."""
+    hard = [one for name in ("metals", "bodies") for one in rows[name].counted]
+    assert rms(hard) == pytest.approx(law_errors.HARDENING_ERRORS, rel=0.01)
+    soft = acceptance.members(TARGETS["bodies"]._replace(studies=("bodies_soft",)))
+    soft = [one for one in soft if not one.flagged]  # one bends its plate
+    assert rms(soft) == pytest.approx(law_errors.SOFT_ERRORS, rel=0.01)
+    assert max(abs(one.errors[0]) for one in soft) < 0.026
 
 
 def test_spheres_much_stiffer_than_the_plate():

@@ -83,7 +83,7 @@ def test_a_set_is_drawn_by_its_seed():
     ]
 
 
-@pytest.mark.parametrize("yielding", ["both", long("sphere"), long("plate")])
+@pytest.mark.parametrize("yielding", ["plate", long("both")])
 def test_a_coarse_indentation_again(yielding):
     """On a mesh half as fine, twice as fast, it is within 3 % of the stored one."""
     data = store.read(campaign.NAME).data

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from lasting import long
 
 import contactlaw as cl
 from validation.fem import prony
@@ -15,7 +14,8 @@ NU, LOSS, TIME = 0.35, 0.2, 5e-5
 LOSSY = cl.Material("lossy", 3e9, NU, 1200.0, loss_factor=(LOSS, 1e4))
 
 
-@pytest.mark.parametrize("branches", ["standard solid", long("constant loss")])
+@pytest.mark.long
+@pytest.mark.parametrize("branches", ["standard solid", "constant loss"])
 def test_impact_of_lossy_bodies_is_hertzs_with_memory(branches, monkeypatch):
     """Contact of 1/37 of the radius, on a plate of ten times the modulus."""
     plate = cl.Material("plate", 3e10, NU, 3000.0, loss_factor=(LOSS, 1e4))
