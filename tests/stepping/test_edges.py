@@ -127,7 +127,7 @@ def test_an_edge_moves_with_its_plate():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(("x", "speed"), [(1e-6, 0), (0.3e-3, 0), (1e-3, 3), (0.015, -3)])
+@pytest.mark.parametrize(("x", "speed"), [(1e-6, 0), (1e-3, 3), (0.015, -3)])
 def test_a_bead_rests_and_rolls_near_edges(kind, x, speed):
     """It keeps its height, gains no energy, and rolls past the reach of the edge."""
     g = 9.81
