@@ -24,13 +24,12 @@ import math
 import pkgutil
 import re
 from types import ModuleType
-from typing import Any
 
 from contactlaw._errors import ArgumentError
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law, Strengths
 
-__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Strengths", "Unloading", "law", "names", "parameters"]
+__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Strengths", "Unloading", "exact", "law", "names", "parameters"]
 
 DEFAULT = "fem"
 """The law if none is named; it meets the targets of ``validation.accuracy.acceptance``."""
@@ -94,15 +93,13 @@ def parameters(name: str) -> tuple[str, ...]:
     return () if typed else tuple(getattr(_module(family), "PARAMETERS", ()))
 
 
-def law(name: str, *, exact: bool = False, **numbers: float) -> Law:
+def law(name: str, **numbers: float) -> Law:
     """Look up a law by its name.
 
     Parameters
     ----------
     name : str
         One of `names`. The values of a law's `parameters` may follow in brackets.
-    exact : bool, optional
-        Take the values as they are, to differentiate by them, and at any size; the name shows six digits.
     **numbers : float
         Values of its `parameters` if the name has none, rounded to six digits; others are ignored.
 
@@ -118,9 +115,6 @@ def law(name: str, *, exact: bool = False, **numbers: float) -> Law:
     0.68
     >>> law("kogut_etsion", poissons_ratio=0.3).name
     'kogut_etsion(0.3)'
-    >>> near = [law("kogut_etsion", exact=True, poissons_ratio=nu) for nu in (0.3, 0.3 + 1e-9)]
-    >>> near[0].name == near[1].name, near[0].yield_coefficient == near[1].yield_coefficient
-    (True, False)
     """
     family, typed = _typed(name)
     module = _module(family)
@@ -135,11 +129,10 @@ def law(name: str, *, exact: bool = False, **numbers: float) -> Law:
         plain: Law = module.LAW
         return plain
     form = f"{family}({','.join(wanted)})"
-    values: Any = typed or [numbers[parameter] for parameter in wanted if parameter in numbers]
+    values = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
     if len(values) != len(wanted):
         raise ArgumentError("law", name, f"needs a value for each parameter: name it as {form}")
-    values = values if exact else [_rounded(*pair, form) for pair in zip(wanted, values, strict=True)]
-    made: Law = module.law(*values)
+    made: Law = module.law(*(_rounded(*pair, form) for pair in zip(wanted, values, strict=True)))
     return made if typed else dataclasses.replace(made, from_pair=every)
 
 
@@ -150,6 +143,29 @@ def own(law: Law) -> Law:
     if family in names() and law != getattr(_module(family), "LAW", law.parameters and law):
         raise ArgumentError("law", family, "a law of contactlaw has this name: give yours another")
     return law
+
+
+def exact(name: str, **numbers: float) -> Law:
+    """Make a law from unrounded parameters, to differentiate by them; its name shows six digits.
+
+    Parameters
+    ----------
+    name : str
+        Name of a law with `parameters`, without their values.
+    **numbers : float
+        Values of the parameters; others are ignored.
+
+    Examples
+    --------
+    >>> from contactlaw.laws import exact
+    >>> near = [exact("kogut_etsion", poissons_ratio=nu) for nu in (0.3, 0.3 + 1e-9)]
+    >>> near[0].name == near[1].name, near[0].yield_coefficient == near[1].yield_coefficient
+    (True, False)
+    """
+    module = _module(name)
+    numbers = {**getattr(module, "DEFAULTS", {}), **numbers}
+    made: Law = module.law(*(numbers[parameter] for parameter in module.PARAMETERS))
+    return made
 
 
 def _typed(name: str) -> tuple[str, list[str]]:
@@ -168,11 +184,12 @@ def _module(family: str) -> ModuleType:
 
 def _rounded(parameter: str, value: float | str, form: str) -> float:
     """Round a law's parameter to the six digits that its name shows, and check its range."""
+    most = _LARGEST[parameter]
     try:
         number = float(f"{float(value):.6g}")
     except (TypeError, ValueError):
         number = math.nan
-    if not 0.0 <= number <= (most := _LARGEST[parameter]):
+    if not 0.0 <= number <= most:
         reason = f"{parameter} must lie between 0 and {most:g}, not {value!r}"
         raise ArgumentError("law", form, reason)
     return number

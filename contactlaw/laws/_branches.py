@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -11,19 +10,23 @@ from contactlaw._arrays import Array as Array  # also for the laws
 
 Formula = Callable[[Array], Array]
 
-T = TypeVar("T")
 END = 1e5  # [d_Y]; a law without a range follows its formulas up to here; for more see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
 
 
-def once(function: Callable[[Array], T]) -> Callable[[Array], T]:
-    """Keep the values at the last array: several functions of a law are asked for at the same one."""
-    last: list[Any] = [None, None]
+def once(function: Formula) -> Formula:
+    """Keep a function's values at the last array, by identity: a law asks for them several times.
 
-    def kept(at: Array) -> T:
-        if at is not last[0]:
-            last[:] = at, function(at)
-        return last[1]  # type: ignore[no-any-return]
+    The array must not change meanwhile. The values are a copy, since a formula may write all of its
+    values into one array.
+    """
+    last = values = np.empty(0)
+
+    def kept(at: Array) -> Array:
+        nonlocal last, values
+        if at is not last:
+            last, values = at, np.array(function(at))
+        return values
 
     return kept
 

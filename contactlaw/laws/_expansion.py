@@ -8,7 +8,6 @@ is used without expansion.
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -247,11 +246,11 @@ class _Contacts:
     """Contacts of one branch, as its formulas have them, for arrays of largest compressions."""
 
     def __init__(self, curve: LoadingCurve, branch: Unloading) -> None:
-        self.curve, self.branch = curve, replace(branch, residual=once(branch.residual))
+        self.curve, self.branch, self.divided = curve, branch, once(branch.residual)
         self.work, self.loss = once(curve.work), once(self._loss)
 
     def residual(self, dm: Array) -> Array:
-        return self.branch.residual(dm) * (dm - 1.0) ** self.branch.order
+        return self.divided(dm) * (dm - 1.0) ** self.branch.order
 
     def exponent(self, dm: Array) -> Array:
         exponent, recovery = self.branch.exponent, self.branch.recovery
@@ -276,7 +275,7 @@ class _Contacts:
         # for a loss, the loss itself; for an exponent, what rounding of the span leaves. Rounding does
         # not allow less than 0.05 of dm and of the work.
         def smaller(dm: Array) -> Array:
-            return branch.residual(dm) * np.clip(1.0 - self.residual(dm) / dm, 0.05, 1.0)
+            return self.divided(dm) * np.clip(1.0 - self.residual(dm) / dm, 0.05, 1.0)
 
         def lost(dm: Array) -> Array:
             work = self.work(dm)
@@ -287,7 +286,7 @@ class _Contacts:
 
         other = branch.other or np.zeros_like
         parts = [
-            _Function("residual compression", branch.residual, smaller if branch.order else np.positive),
+            _Function("residual compression", self.divided, smaller if branch.order else np.positive),
             _Function("exponent", lambda dm: 2.0 * self.exponent(dm), branch.recovery and per_span),
             # divided by its power of dm - 1, a loss does not vanish and is its own size
             _Function("loss", branch.loss or self.loss, None if branch.loss_order else lost),

@@ -85,7 +85,7 @@ _REACH_OF_SHARE, _REACH_OF_POISSON = 0.45, 0.1
 # lose less than 1e-5 of the energy, and a law needs some room between its kinks.
 _ELASTIC_BEYOND = 0.98
 ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
-_POWERS = (5, 4)  # number of powers of t and of w
+_POWERS = (6, 4)  # number of powers of t, one of them for the factor 1 - t, and of w
 
 
 @functools.cache
@@ -241,9 +241,7 @@ class Curves:
                 powers = np.array(cases.get(case, {}).get(part, [[0.0]]))
                 terms[int(part == "share"), : len(powers), : len(powers[0])] += weight * powers
             usual, moved = terms  # the term with the modulus has a factor 1 - t
-            self._terms[name] = np.zeros((_POWERS[0] + 1, _POWERS[1]))
-            self._terms[name][:-1] = usual + moved
-            self._terms[name][1:] -= moved
+            self._terms[name] = usual + moved - np.roll(moved, 1, axis=0)
 
     def _own(self, q: Array) -> Array:
         """Root compression in units of the root of d_Y that the strength at q stands for."""
@@ -301,13 +299,13 @@ class Curves:
         own = self._own(above)
         return np.asarray(((own - 1.0) / (own + SHIFT)) ** 2 * self._sum("impact", above))
 
-    def shares(self, q: Array) -> tuple[Array, Array]:
+    def shares(self, q: Array) -> Array:
         """Shares of the loading work that unloading gives back, and that is plastic work."""
         recovery = self.recovery(q)
         lost = 1.0 - recovery / (1.0 - self.friction)
         plastic = lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0)))
         less = 1.0 / (1.0 + self.lost_before * recovery)
-        return recovery * less * self.returned * (1.0 + self.lost_before), plastic * less
+        return np.array([recovery * less * self.returned * (1.0 + self.lost_before), plastic * less])
 
 
 class Strains(NamedTuple):
@@ -359,7 +357,10 @@ def comparable(given: Given) -> list[Given]:
 
 
 class Stronger:
-    """How much stronger bodies that harden are than at the typical depth; both by their share of the flow."""
+    """How much stronger bodies that harden are than at the typical depth.
+
+    Each body counts by its share of the flow.
+    """
 
     def __init__(self, given: Given, found: dict[str, Any]) -> None:
         self.given, self.taken = given, strains(given, found)[1]

@@ -1,7 +1,6 @@
 """The law that a user chose for a pair, with the numbers that it takes from the materials."""
 
 import dataclasses
-from typing import Any
 
 from contactlaw import laws
 from contactlaw._errors import ArgumentError
@@ -27,11 +26,12 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     else:
         for body in pair.bodies:
             if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
-                reason = (
+                raise ArgumentError(
+                    "law",
+                    law,
                     f"it is made for Poisson's ratios from 0 to 0.5, {body.name!r} has "
-                    f'{body.poissons_ratio:g}: take law="myc", or "hertz" for bodies that do not yield'
+                    f'{body.poissons_ratio:g}: take law="myc", or "hertz" for bodies that do not yield',
                 )
-                raise ArgumentError("law", law, reason)
         found = laws.law(law, **pair_numbers(pair, law))
     if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
         found = dataclasses.replace(found, from_pair=())  # of another pair: numbers held fixed
@@ -42,10 +42,12 @@ def law_of(pair: Pair, law: str | Law) -> Law:
 
 def law_for_pair(pair: Pair, law: Law) -> Law:
     """Law for another pair: it gets that pair's numbers, unrounded, if it takes any."""
-    return laws.law(law.family, exact=True, **pair_numbers(pair, law.family)) if law.from_pair else law
+    if not law.from_pair:
+        return law
+    return dataclasses.replace(laws.exact(law.family, **pair_numbers(pair, law.family)), from_pair=law.from_pair)
 
 
-def pair_numbers(pair: Pair, law: str) -> dict[str, Any]:
+def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
     """Numbers that laws take from a pair."""
     numbers = {
         "poissons_ratio": pair.sphere.poissons_ratio,

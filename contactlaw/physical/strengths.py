@@ -79,8 +79,8 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
 
 def law_array(formulas: dict[str, Any], end: float, fineness: Fineness = USUAL) -> Array:
     """Law of `formulas_at`, as kernels take it, which follows them up to a compression [d_Y]."""
-    branches = formulas["loading"], formulas["unloading"]
-    return packed(*expanded(formulas["name"], *branches, end, Resolution(*fineness[:2])))
+    pieces = Resolution(*fineness[:2])
+    return packed(*expanded(formulas["name"], formulas["loading"], formulas["unloading"], end, pieces))
 
 
 def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:

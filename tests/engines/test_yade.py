@@ -27,7 +27,7 @@ def printed():
     if subprocess.run(["/usr/bin/python3", "-c", version]).returncode:
         pytest.skip("YADE: the system's Python has another version than this one, whose packages it cannot use")
     folder = ROOT / ".pytest_cache/yade"
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     for name in "contactlaw", "numba", "llvmlite", "h5py", "platformdirs", "filelock", "tqdm":
         package = Path(importlib.util.find_spec(name).origin).parent
         for part in package, package.with_name(f"{name}.libs"):

@@ -246,8 +246,8 @@ def test_the_first_lines_of_the_page_run_in_an_empty_folder(tmp_path):
     block = re.search(r"```sh\n(cat .*?)```", (ROOT / "docs/lammps.md").read_text(), re.DOTALL)[1]
     search = os.environ | {
         "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}",
-        "CXXFLAGS": "-O0",
-    }  # built in half the time
+        "CXXFLAGS": "-O0",  # built sooner
+    }
     done = subprocess.run(["bash", "-ec", block], cwd=tmp_path, env=search, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "thick, 3 mm" in (tmp_path / "report/index.html").read_text()

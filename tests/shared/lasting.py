@@ -4,5 +4,5 @@ import pytest
 
 
 def long(*values):
-    """Mark parameters of a test for `make test-long`; one that is not long holds a part of what it shows."""
+    """Leave a test with these parameters to `make test-long`. The quick ones show a part of the same."""
     return pytest.param(*values, marks=pytest.mark.long)
