@@ -70,12 +70,12 @@ def test_random_impacts_near_edges(kind, count):
             v, r, h = np.exp(logs) * (1.0, 1.0, np.exp(logs[1]))
             far, dt = model.solve(v, r, h), float(model.solve(v, r, math.inf).contact_time) / 50
             reach = cl.edge_distance(model.pair.plate, h, float(far.contact_time))
-            distance = h * max(reach / h, 1.1) ** rng.uniform()
-            wide = 20.0 * (r + distance)
-            wall = Plate((distance - wide, -0.5 * wide, 0), (wide, 0, 0), (0, wide, 0), h, edges=(None, kind, None, None))
+            away = h * max(reach / h, 1.1) ** rng.uniform()
+            wide = 20.0 * (r + away)
+            wall = Plate((away - wide, -0.5 * wide, 0), (wide, 0, 0), (0, wide, 0), h, edges=(None, kind, None, None))
             bead = {"radius": r, "density": model.pair.sphere.density, "dt": dt, "steps": 1000}
             rows, _ = box.dropped(model, [wall], (0, 0, r + 0.3 * dt * v), (0, 0, -v), **bead)
-            expected = model.solve(v, r, h, edge=kind, edge_distance=distance).restitution
+            expected = model.solve(v, r, h, edge=kind, edge_distance=away).restitution
             if far.inelasticity < 2.0:
                 off.append(abs(rows["restitution"][:1].max(initial=0.0) - expected))
     assert len(off) > 2.7 * count
