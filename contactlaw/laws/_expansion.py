@@ -246,6 +246,7 @@ class _Contacts:
     """Contacts of one branch, as its formulas have them, for arrays of largest compressions."""
 
     def __init__(self, curve: LoadingCurve, branch: Unloading) -> None:
+        # divided: the residual compression over (dm - 1)^order
         self.curve, self.branch, self.divided = curve, branch, once(branch.residual)
         self.work, self.loss = once(curve.work), once(self._loss)
 

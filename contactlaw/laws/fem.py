@@ -356,8 +356,8 @@ def comparable(given: Given) -> list[Given]:
     return [given, *(one.typical(given) for one in strains(given, fitted()))]
 
 
-class Stronger:
-    """How much stronger bodies that harden are than at the typical depth.
+class RelativeStrength:
+    """Strength of bodies that harden, over that at the typical depth.
 
     Each body counts by its share of the flow.
     """
@@ -391,19 +391,19 @@ class HardeningCurves(Curves):
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or fitted()
-        stronger = Stronger(given, found)
-        super().__init__(stronger.typical, found)
+        strength = RelativeStrength(given, found)
+        super().__init__(strength.typical, found)
         self.onset = Given(*given[:5]).yield_scale(found["blend"])
-        root, taken = stronger.root, stronger.taken
+        root, taken = strength.root, strength.taken
         # yield begins where the compression passes that of the strength there
-        first: float = bisect(lambda w: w < root * stronger.at(w), 0.0, _WIDEST)
+        first: float = bisect(lambda w: w < root * strength.at(w), 0.0, _WIDEST)
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
         self._rise = first / (first - taken.start)  # of ln(strain) with ln(w) at yield
         self._hardening = []
         # B/A, n and the slope of the strain of sphere and plate
-        for share, times, n, slope in zip(stronger.flow, given[5:7], given[7:9], taken[:2], strict=True):
+        for share, times, n, slope in zip(strength.flow, given[5:7], given[7:9], taken[:2], strict=True):
             part = times * (slope * (first - taken.start)) ** n
             self._hardening.append((share, part / (1.0 + part), n))
 

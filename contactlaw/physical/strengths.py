@@ -164,7 +164,7 @@ def _same_sign(pair: Pair, k: int, value: float, log_factor: float) -> bool:
 def _corners(pair: Pair, log_factor: float) -> list[float]:
     """Numbers that change their signs at corners of the law."""
     given = fem.flowing(_given(pair, log_factor), fem.fitted())
-    found = [fem.Stronger(given, fem.fitted()).corner] if given.hardens else []
+    found = [fem.RelativeStrength(given, fem.fitted()).corner] if given.hardens else []
     for one in fem.comparable(given):
         found += [math.log(one.ratio / at) for at in (*RATIOS, *_DEEPEST)]
         if min(one[:2]) > 0.0:
